@@ -19,7 +19,7 @@ from heuncli.base.available_memory import result_memory
 from heuncli.base.errors import Problem, SpecError, UsageError
 from heuncli.base.records import replace
 from heuncli.base.spelling import find_similar
-from heuncli.loads.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.snapshots.selection import ReportChoice, parse_choice, select_reports
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import Overrides, load, load_with_cases

@@ -59,11 +59,11 @@ METHODS = (
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's section 20: rotation from the start; fails at 180 deg", "rodrigues.DOP853_GLOBAL",
+        "Heun's section 20: rotation from the start; fails at 180 deg", "dop853.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
-        "rotation from the step's start: as accurate as quaternions", "rodrigues.DOP853_RECENTRED",
+        "rotation from the step's start: as accurate as quaternions", "dop853.DOP853_RECENTRED",
     ),
     MethodRow(
         "Gauss4", 4, "implicit", "fixed", "quaternion",
@@ -83,15 +83,15 @@ METHODS = (
     ),
     MethodRow(
         "SciPy-Radau", 5, "SciPy", "adaptive", "quaternion",
-        "independent check of stiff systems", "scipy_methods.RADAU",
+        "independent check of stiff systems", "collocation.RADAU",
     ),
     MethodRow(
         "SciPy-BDF", 5, "SciPy", "adaptive", "quaternion",
-        "independent check, orders 1 to 5", "scipy_methods.BDF",
+        "independent check, orders 1 to 5", "collocation.BDF",
     ),
     MethodRow(
         "SciPy-LSODA", 12, "SciPy", "adaptive", "quaternion",
-        "independent check, orders 1 to 12; detects stiffness itself", "scipy_methods.LSODA",
+        "independent check, orders 1 to 12; detects stiffness itself", "collocation.LSODA",
     ),
 )  # fmt: skip
 BY_NAME = {row.name.lower(): row for row in METHODS}

@@ -26,10 +26,12 @@ copyreg.pickle(MappingProxyType, lambda mapping: (restore_mapping, (dict(mapping
 
 @dataclass_transform(frozen_default=True, eq_default=False)
 def record(cls: type[T]) -> type[T]:
-    """Make a class a frozen record whose annotated names are its fields."""
-    names = tuple(cls.__annotations__)
+    """Make a class a frozen record whose annotated names are its fields, after those of a record that it extends."""
+    inherited = getattr(cls, "__record_fields__", ())
+    names = tuple(dict.fromkeys((*inherited, *cls.__annotations__)))
     known = frozenset(names)
-    required = frozenset(name for name in names if name not in cls.__dict__)
+    optional = {*cls.__dict__, *(name for name in inherited if hasattr(cls, name))}
+    required = frozenset(names) - optional
     first_optional = max((i + 1 for i, name in enumerate(names) if name in required), default=0)
 
     def __init__(self: T, *values: Any, **named: Any) -> None:

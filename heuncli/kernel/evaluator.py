@@ -472,7 +472,7 @@ def evaluate_piece(
 
 def area_under(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
     """Return the integral from 0 to x of a table that has its areas after the coefficients
-    (scene/expressions/areas.py).
+    (scene/expressions/curves.py).
 
     Within x's own piece it is summed from where the area is known, or from 0 itself, so that an area much smaller than
     the piece's keeps its digits. Two Gauss nodes are exact for cubics.

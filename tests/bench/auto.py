@@ -18,14 +18,12 @@ import numpy as np
 
 from heuncli.base.errors import HeunError
 from heuncli.base.method_rows import DEFAULT, METHODS
-from heuncli.motion.integration.check.distance import MotionPoints, motion_error
 from heuncli.motion.integration.check.estimate import evaluate_run
-from heuncli.motion.integration.check.instants import interleave
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.check.run_comparison import MotionPoints, interleave, motion_error
+from heuncli.motion.integration.integrated_scene import find_discontinuities
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec

@@ -19,8 +19,7 @@ from scipy.special import ellipk, ellipkinc
 from heuncli.base.errors import HeunError, LimitError, SolveError
 from heuncli.base.method_rows import METHODS
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.results.results import Array

@@ -10,8 +10,7 @@ import numpy as np
 from heuncli.scene.file_format.models import Shape
 from heuncli.scene.meshes.reading import read_closed_mesh, read_soup
 from heuncli.scene.shapes.composite_solid import make_composite_solid
-from heuncli.scene.shapes.figure_kinds import CuttingPlanes
-from heuncli.scene.shapes.figures import find_figure
+from heuncli.scene.shapes.figures import CuttingPlanes, find_figure
 from tests.bench.load_cases import least_ms
 from tests.shared import triangles as t
 

@@ -7,8 +7,7 @@ import json
 import pytest
 
 from heuncli.base.method_rows import METHODS
-from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, load_method_by_name
 from heuncli.scene.file_format.foreign_words import METHOD_WORDS
 from heuncli.scene.file_format.methods import iter_method_problems, method_hint
 from tests.shared.command import SPEC_TEXTS, Heun

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from heuncli.base import available_memory
-from heuncli.motion.integration.run.step_records import GrowingRows
+from heuncli.motion.integration.run.progress import GrowingRows
 from heuncli.motion.integration.trajectory import StepRecords
 from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.scene.file_format.load import load

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.base.errors import SolveError
 from heuncli.motion.integration.methods.dop853 import DOP853
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.results.results import Array, Results
 from tests.shared.gear_trains import pair
 from tests.shared.scenes import solved

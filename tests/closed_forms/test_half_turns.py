@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import HeunError, SolveError
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load

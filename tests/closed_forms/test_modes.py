@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.modes.study import compute_spec_modes
-from heuncli.motion.linearisation.modes import SceneModes
+from heuncli.motion.linearisation.oscillations import SceneModes
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.governors import porter, spindle

@@ -12,8 +12,7 @@ from heuncli.analyses.motion_diagnostics.numerics.stiffness import find_stable_d
 from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
 from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.motion.integration.methods.dop853 import DOP853
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.kernel_loop import KernelLoop
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options

@@ -15,9 +15,9 @@ from heuncli.base.errors import SolveError
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.loads.equilibrium.directions import decompose
 from heuncli.loads.equilibrium.pose import make_bearing_pose
-from heuncli.loads.equilibrium.rest_check import require_at_rest
 from heuncli.loads.equilibrium.search import MAX_STEPS
 from heuncli.loads.equilibrium.slopes import RestLaw
+from heuncli.loads.equilibrium.verification import require_at_rest
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.load import load

@@ -10,8 +10,8 @@ LONG_TITLE = Addition(
     "An error",
     {
         "heuncli/scene/file_format/rules/every.py": (
-            Edit("    threads,\n)\n", "    threads,\n    titles,\n)\n"),
-            Edit("expect, curves, not_yet,\n", "expect, curves, not_yet, titles,\n"),
+            Edit("    stops,\n)\n", "    stops,\n    titles,\n)\n"),
+            Edit("expect,\n)", "expect,\n    titles,\n)"),
         ),
     },
     {

@@ -23,7 +23,7 @@ from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format import resolve_loads
 from heuncli.scene.file_format.entries import keys_of
 from heuncli.scene.file_format.fields import Moment, SiNumber
-from heuncli.scene.file_format.format_elastic import JointLoadEntry, PairEntry
+from heuncli.scene.file_format.format_joints import JointLoadEntry, PairEntry
 from heuncli.scene.file_format.resolve_couplings import ReferenceResolver
 from tests.contributing.addition import cited
 from tests.oracle.loads import KINDS_OF_LOAD, between, pushes

@@ -19,9 +19,9 @@ BOBS = Addition(
 
 from __future__ import annotations
 
-from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.importers.description import ImportOptions
 from heuncli.scene.importers.description import DescribedBody, DescribedEntry, DescribedMachine, DescribedPoint
-from heuncli.scene.importers.names import format_original_name, assign_names
+from heuncli.scene.importers.description import format_original_name, assign_names
 from heuncli.scene.importers.xml_elements import XmlElement
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.scene.file_format.models import ZERO

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.method_rows import METHODS
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
 from tests.shared.bars import chain, double

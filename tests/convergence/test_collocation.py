@@ -10,8 +10,7 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, SolveError
 from heuncli.motion.integration.methods.collocation import GAUSS4, GAUSS6, RADAU5, RADAU9
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array, Results
 from tests.bench.stiff import STIFF_SCENES

@@ -13,8 +13,7 @@ import pytest
 from heuncli.base.errors import SolveError
 from heuncli.base.method_rows import METHODS
 from heuncli.base.records import replace
-from heuncli.motion.integration.methods.method import Method, Row
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import Method, Row, load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.results.results import Array

@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.base.method_rows import METHODS
 from heuncli.base.tolerances import EPS
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.results.results import Array
 from tests.bench.long import KNOWN, Errors, errors, runner_of
 

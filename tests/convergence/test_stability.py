@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.method_rows import METHODS
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 
 WATCHED = [m for m in (load_method_by_name(row.name) for row in METHODS if row.kind == "explicit") if m.stable]
 

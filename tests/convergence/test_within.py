@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from heuncli.motion.integration.check.singular_poses import find_singular_positions
-from heuncli.motion.integration.run import step_records
+from heuncli.motion.integration.integrated_scene import find_discontinuities
+from heuncli.motion.integration.run import progress
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -129,7 +129,7 @@ KEEPING_FEW = [(name, 500) for name in SCENES if name in LONG or name in WRITTEN
 )  # fmt: skip
 def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """States at other instants are those of a run that was asked for them; which are asked changes no step."""
-    monkeypatch.setattr(step_records, "MAX_RECORD_NUMBERS", kept)
+    monkeypatch.setattr(progress, "MAX_RECORD_NUMBERS", kept)
     setup = scene(name)
     times = asked(setup)
     run, bare = trajectory(setup, times), trajectory(setup, times[[0, -1]])

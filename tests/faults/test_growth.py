@@ -11,8 +11,8 @@ import pytest
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.base.progress_messages import current_listener, progress_listener
 from heuncli.base.tolerances import MOST_STEPS
-from heuncli.motion.integration.run import slow_runs
-from heuncli.motion.integration.run.pace import FIRST_LOOK, project_steps
+from heuncli.motion.integration.run import supervision
+from heuncli.motion.integration.run.progress import FIRST_LOOK, project_steps
 from tests.shared.scenes import solved
 
 SCENE = """\
@@ -188,8 +188,8 @@ class Heard(Exception):
 @pytest.mark.heavy
 def test_a_long_run_says_so_while_it_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """A sheave of 1e-9 kg on a pin, whose spin answers to rounding of the rope's pull: named, with the reason."""
-    monkeypatch.setattr(slow_runs, "PATIENCE", 0.5)
-    monkeypatch.setattr(slow_runs, "LONG_RUN", 1.0)
+    monkeypatch.setattr(supervision, "PATIENCE", 0.5)
+    monkeypatch.setattr(supervision, "LONG_RUN", 1.0)
 
     def hear(text: str) -> None:
         raise Heard(text)

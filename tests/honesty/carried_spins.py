@@ -19,7 +19,7 @@ import numpy as np
 
 from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
-from heuncli.motion.linearisation.modes import SceneModes
+from heuncli.motion.linearisation.oscillations import SceneModes
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from tests.honesty.rest_poses import spread

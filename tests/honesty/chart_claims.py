@@ -19,7 +19,7 @@ from heuncli.analyses.work_precision.motion import make_motion
 from heuncli.analyses.work_precision.plan import ChartOptions
 from heuncli.analyses.work_precision.results import ChartRun
 from heuncli.analyses.work_precision.study import chart
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.scene.file_format.load import load
 from tests.shared.chains import DRAWN, Array, chain

@@ -18,8 +18,7 @@ import numpy as np
 
 from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
-from heuncli.motion.linearisation.modes import SceneModes
-from heuncli.motion.linearisation.oscillations import Mode
+from heuncli.motion.linearisation.oscillations import Mode, SceneModes
 from heuncli.scene.file_format.load import load
 from tests.honesty.indifferent import PARTS, Bench
 from tests.honesty.rest_poses import spread

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from heuncli.multibody.mechanism.build import build
-from heuncli.multibody.reduction.model import Reduction
+from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.plane.step import step
 from heuncli.multibody.tree.prepare import prepare
 from heuncli.scene.file_format.load import load

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.check.distance import MotionPoints, bounded_motion_error, motion_error
+from heuncli.motion.integration.check.run_comparison import MotionPoints, bounded_motion_error, motion_error
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array

@@ -14,8 +14,7 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.base.method_rows import METHODS, MethodRow
-from heuncli.motion.integration.check.distance import MotionPoints
-from heuncli.motion.integration.check.matching_impulses import is_between_impulses
+from heuncli.motion.integration.check.run_comparison import MotionPoints, is_between_impulses
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.study.queries.study import Study

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.oracle.values import to_yaml

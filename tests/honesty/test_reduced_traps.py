@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import set_up

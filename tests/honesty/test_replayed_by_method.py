@@ -14,11 +14,10 @@ import pytest
 
 from heuncli.base.errors import SolveError
 from heuncli.base.method_rows import METHODS
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.integrated_scene import find_discontinuities
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -109,7 +108,7 @@ def test_polynomials_of_very_long_runs_are_let_go(monkeypatch: pytest.MonkeyPatc
     runner, end = runner_of("chaotic 0")
     asked = np.linspace(0.0, end, 301)
     kept = run_of("chaotic 0", load_method_by_name("DOP853"), asked, keeping=True)
-    monkeypatch.setattr("heuncli.motion.integration.run.step_records.MAX_POLYNOMIAL_NUMBERS", 10)
+    monkeypatch.setattr("heuncli.motion.integration.run.progress.MAX_POLYNOMIAL_NUMBERS", 10)
     left = run_of("chaotic 0", load_method_by_name("DOP853"), asked, keeping=True)
     assert kept.polynomials is not None and kept.polynomials.spans[:, 0].any()
     assert left.polynomials is None

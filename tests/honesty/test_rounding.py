@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.study.compose.warnings import warn_unbalanced
 from tests.shared.scenes import near, solved
 

@@ -12,7 +12,7 @@ from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.names import is_name
 from heuncli.scene.file_format.source import read_source
 from heuncli.scene.importers import xml_elements
-from heuncli.scene.importers.names import assign_names, clean_name
+from heuncli.scene.importers.description import assign_names, clean_name
 from heuncli.scene.importers.xml_elements import MAX_ATTRIBUTE_LENGTH, MAX_DEPTH
 from tests.shared.imported import described, imported
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.scene.shapes.by_component import (
+from heuncli.scene.shapes.rotations import (
     bodies_contiguous,
     cross_components,
     instants_first,

@@ -10,7 +10,7 @@ from heuncli.loads.redundancy.count import count_self_stresses, count_without_lo
 from heuncli.loads.redundancy.self_stress import find_self_stress
 from heuncli.motion.integration.run.runner import make_runner
 from heuncli.multibody.mechanism.build import build, make_forms
-from heuncli.multibody.tree.frame import remove_loads
+from heuncli.multibody.tree.layout import remove_loads
 from heuncli.multibody.tree.prepare import prepare
 from heuncli.scene.file_format.load import load
 from tests.shared.bits import bits

@@ -22,9 +22,8 @@ from heuncli.multibody.response import (
     solve_columns,
     solve_impulses,
 )
-from heuncli.multibody.tree.flat import moves_in_plane
 from heuncli.multibody.tree.prepare import prepare
-from heuncli.multibody.tree.tables import Table
+from heuncli.multibody.tree.tables import Table, moves_in_plane
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import build_with_cuts, set_up

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.runner import make_runner
-from heuncli.multibody.reduction.model import Reduction
+from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.plane import step as plane
 from heuncli.multibody.tree.prepare import PreparedScene, prepare
 from heuncli.results.results import Array

@@ -18,7 +18,7 @@ from heuncli.motion.integration.integrated_scene import integrate_reduced
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.reduction import immobile_bodies, spins, welded_bodies
-from heuncli.multibody.reduction.model import ReducedScene, Reduction
+from heuncli.multibody.reduction.compose import ReducedScene, Reduction
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load

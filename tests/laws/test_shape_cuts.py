@@ -10,7 +10,7 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape
-from heuncli.scene.shapes import composite_solid, quadrature
+from heuncli.scene.shapes import composite_solid, solids
 from heuncli.scene.shapes.composite_solid import make_composite_solid
 from tests.oracle.masses import Plane, cloud
 from tests.shared import polyhedra
@@ -149,9 +149,9 @@ def test_planes_that_graze_a_rim_lose_no_accuracy(name: str, monkeypatch: pytest
     f = make_composite_solid([SOLIDS[name]])
     cases = grazing(SOLIDS[name], np.random.default_rng(8), 20)
     pieces = [beyond(f, n, d) for n, d in cases]
-    monkeypatch.setattr(quadrature, "NODE_COUNT", 40)
+    monkeypatch.setattr(solids, "NODE_COUNT", 40)
     monkeypatch.setattr(tolerances, "QUADRATURE", 1e-16)
-    monkeypatch.setattr(quadrature, "MAX_DEPTH", 10)
+    monkeypatch.setattr(solids, "MAX_DEPTH", 10)
     for (n, d), rough in zip(cases, pieces, strict=True):
         for one, other in zip(rough, beyond(f, n, d), strict=True):
             assert difference(one, other, f.whole_inertia()) < 1e-13

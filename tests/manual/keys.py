@@ -8,8 +8,8 @@ from typing import Any, NamedTuple, get_args
 from heuncli.base import units as u
 from heuncli.scene.file_format import fields
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format.chapters import CHAPTERS, INLINE, TOP
 from heuncli.scene.file_format.entries import Entry, Field, fields_of
+from heuncli.scene.file_format.json_schema import CHAPTERS, INLINE, TOP
 from tests.shared.manual import headings
 
 ALL = "all"  # in place of the types that have a key, where all have it

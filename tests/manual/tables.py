@@ -20,11 +20,10 @@ from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
 from heuncli.base.load_kinds import LOAD_KINDS, LOAD_SYNONYMS
 from heuncli.base.method_rows import METHODS
 from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
-from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
+from heuncli.scene.expressions.names import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
-from heuncli.scene.file_format.foreign_words import SHAPE_WORDS
-from heuncli.scene.file_format.type_aliases import list_aliases
+from heuncli.scene.file_format.foreign_words import SHAPE_WORDS, list_aliases
 from tests.manual import codes
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations

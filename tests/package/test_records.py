@@ -34,6 +34,20 @@ def test_fields_by_place_and_by_name() -> None:
     assert repr(Cut("b", 3)) == "Cut(body='b', count=3)"
 
 
+@record
+class PlacedCut(Cut):
+    """A record that extends another one."""
+
+    place: float = 0.5
+
+
+def test_a_record_has_the_fields_of_the_one_that_it_extends() -> None:
+    assert fields(PlacedCut("b", 2)) == {"body": "b", "count": 2, "place": 0.5}
+    assert fields(replace(PlacedCut("b", place=0.1), count=3)) == {"body": "b", "count": 3, "place": 0.1}
+    with pytest.raises(TypeError, match="body"):
+        PlacedCut(place=0.1)  # type: ignore[call-arg]
+
+
 @pytest.mark.parametrize(
     ("values", "named", "wrong"),
     [((), {}, "body"), ((), {"count": 2}, "body"), (("b",), {"size": 2}, "size"), (("b",), {"body": "c"}, "body"),

@@ -54,7 +54,6 @@ SHAPED = {
 REDUNDANT = {
     "heuncli.loads.redundancy.resolve",
     "heuncli.loads.redundancy.self_stress",
-    "heuncli.loads.redundancy.neighbours",
 }
 RARE = {
     "heuncli.scene.file_format.tables",

@@ -22,7 +22,7 @@ from heuncli.output.tables.page import make_page
 from heuncli.results.results import Block, Results
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Expect
-from heuncli.scene.file_format.rules import not_yet
+from heuncli.scene.file_format.rules import references
 from heuncli.study.quantities.labels import StopInfo
 from heuncli.study.queries.expectations import compare
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum
@@ -294,7 +294,7 @@ expect: [{}]
     ("{of: impulses.0.foundation.elements.s.force.z, is: 1}", ""),
 ])  # fmt: skip
 def test_expectations_of_blows(item: str, message: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(not_yet, "NOT_YET", ())
+    monkeypatch.setattr(references, "NOT_YET", ())
     told = ""
     try:
         load("x.yaml", text=SCENE.format(item))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from heuncli.scene.importers.description import DescribedMachine
-from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.importers.description import DescribedMachine, ImportOptions
 from heuncli.scene.importers.readers import find_reader
 from heuncli.scene.importers.spec_text import format_spec
 from heuncli.scene.importers.xml_elements import parse_xml

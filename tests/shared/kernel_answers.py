@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.app.cli.entry import enter
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.multibody.response import jacobian, multiplier_joint_loads, solve_columns, tangent
 from heuncli.scene.file_format.load import load

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.records import record, replace
-from heuncli.multibody.assembly.gaps import mean_arm
+from heuncli.multibody.assembly.conditions import mean_arm
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import rotation_from_vector, vector_from_rotation

@@ -6,7 +6,7 @@ import pytest
 
 from heuncli.base.errors import Finding
 from heuncli.base.units import FORCE, LENGTH
-from heuncli.scene.expressions.calculations import CalculationCache
+from heuncli.scene.expressions.codegen import CalculationCache
 from heuncli.scene.expressions.grammar import DimensionedParameter, Scope, compile_expression
 from tests.shared.bits import bits
 

@@ -10,7 +10,7 @@ import pytest
 from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.rules import not_yet
+from heuncli.scene.file_format.rules import references
 from heuncli.scene.file_format.rules.every import RULES, DraftDocument
 from tests.shared.folders import ROOT
 
@@ -18,7 +18,7 @@ from tests.shared.folders import ROOT
 @pytest.fixture(autouse=True)
 def whole_format(monkeypatch: pytest.MonkeyPatch) -> None:
     """The format is read whole, also what is not solved yet."""
-    monkeypatch.setattr(not_yet, "NOT_YET", ())
+    monkeypatch.setattr(references, "NOT_YET", ())
 
 
 def problems(text: str) -> list[str]:
@@ -604,7 +604,7 @@ def test_what_is_not_yet_solved_is_refused_by_name(monkeypatch: pytest.MonkeyPat
     def where(scene: DraftDocument) -> list[tuple[str | int, ...]]:
         return [("forces", name, "type") for name, load in scene.document.forces.items() if load.type == "damper"]
 
-    monkeypatch.setattr(not_yet, "NOT_YET", (("dampers", where),))
+    monkeypatch.setattr(references, "NOT_YET", (("dampers", where),))
     assert found_in("forces.f: {type: damper, joint: shaft, coefficient: 1}") == ["13 forces.f.type not-yet"]
     assert found_in("forces.f: {type: torque, joint: shaft, value: 1}") == []
 

@@ -16,11 +16,10 @@ import heuncli
 from heuncli.base.errors import Finding, SpecError
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import document
-from heuncli.scene.file_format.entries import Entry, fields_of
+from heuncli.scene.file_format.entries import Entry, fields_of, validate_entry
 from heuncli.scene.file_format.fields import ReadContext
+from heuncli.scene.file_format.json_schema import make_model
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.pydantic_models import make_model
-from heuncli.scene.file_format.validation import validate_entry
 
 SPECS = Path(heuncli.__file__).parents[1] / "specs"
 FILES = sorted([*SPECS.glob("*.yaml"), *SPECS.glob("broken/*.yaml")])

@@ -17,7 +17,7 @@ from heuncli.base.errors import SpecError
 from heuncli.base.records import fields
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.rules import not_yet
+from heuncli.scene.file_format.rules import references
 
 POINT = "{mass: 1, center: [0, 0, 0], inertia: [0, 0, 0], points: {p: [0, 0, 0], q: [1, 2, 3]}}"
 
@@ -25,7 +25,7 @@ POINT = "{mass: 1, center: [0, 0, 0], inertia: [0, 0, 0], points: {p: [0, 0, 0],
 @pytest.fixture(autouse=True)
 def whole_format(monkeypatch: pytest.MonkeyPatch) -> None:
     """The format is read whole, also what is not solved yet."""
-    monkeypatch.setattr(not_yet, "NOT_YET", ())
+    monkeypatch.setattr(references, "NOT_YET", ())
 
 
 def scene(text: str, **overrides: str) -> m.Spec:

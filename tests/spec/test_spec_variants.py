@@ -24,7 +24,7 @@ from heuncli.scene.file_format.lookups import (
     iter_changed_in_document,
 )
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.overrides import PLAIN_NUMBER, parse_settings
+from heuncli.scene.file_format.parameters import PLAIN_NUMBER, parse_settings
 from heuncli.scene.file_format.sharing import is_same
 from heuncli.scene.file_format.source import parse_source
 from heuncli.scene.file_format.variants import SpecVariants

@@ -12,7 +12,7 @@ from heuncli.multibody.mechanism.build import build
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene, prepare
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.rules import not_yet
+from heuncli.scene.file_format.rules import references
 
 TOP = """\
 heun: 1
@@ -26,7 +26,7 @@ PIN = "joints: {pivot: {type: pin, from: ground.O, to: bar.a, axis: [0, 0, 1]}}\
 @pytest.fixture(autouse=True)
 def whole_format(monkeypatch: pytest.MonkeyPatch) -> None:
     """The format is read whole, also what is not solved yet."""
-    monkeypatch.setattr(not_yet, "NOT_YET", ())
+    monkeypatch.setattr(references, "NOT_YET", ())
 
 
 def mechanism(text: str) -> Mechanism:

@@ -12,13 +12,12 @@ from heuncli.app.cli.completion import complete_measures, complete_overrides
 from heuncli.base.errors import SpecError
 from heuncli.output.tables.export import to_json
 from heuncli.scene.file_format.entries import keys_of
-from heuncli.scene.file_format.foreign_words import TYPES
+from heuncli.scene.file_format.foreign_words import TYPE_ALIASES, TYPES, replace_type_aliases
 from heuncli.scene.file_format.format import ENTRY_BLOCKS
 from heuncli.scene.file_format.json_schema import make_spec_schema
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.source import read_source
-from heuncli.scene.file_format.type_aliases import TYPE_ALIASES, replace_type_aliases
 from heuncli.scene.file_format.variants import SpecVariants
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

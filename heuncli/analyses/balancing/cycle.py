@@ -20,7 +20,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.records import fields, record, replace
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
-from heuncli.motion.integration.determined_motion import find_determined_motion
+from heuncli.motion.integration.integrated_scene import find_determined_motion
 from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism

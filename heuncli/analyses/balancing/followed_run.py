@@ -18,10 +18,10 @@ from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.motion.integration.check.estimate import evaluate_run
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
+from heuncli.motion.integration.integrated_scene import find_discontinuities
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array

@@ -16,7 +16,7 @@ from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_scales
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.loads.redundancy.count import count_redundancy
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.runner import make_runner
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene

@@ -14,7 +14,7 @@ from heuncli.base.records import record
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.motion.integration.diagnosis.domains import evaluate_coordinates
-from heuncli.motion.integration.diagnosis.path_ends import Moving
+from heuncli.motion.integration.diagnosis.guide_departures import Moving
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import JointLoad, Load
 from heuncli.results.results import Array, Block

@@ -18,10 +18,9 @@ from heuncli.base.joint_kinds import JOINTS, is_length
 from heuncli.base.records import record
 from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.motion.linearisation.linearise import LinearisedEquations
+from heuncli.motion.linearisation.linearise import LinearisedEquations, point_twist
+from heuncli.motion.linearisation.linearise import coordinate_rows as rows_of_scene
 from heuncli.motion.linearisation.reduced_equations import find_massless_spins, orthogonal_complement
-from heuncli.motion.linearisation.shapes import coordinate_rows as rows_of_scene
-from heuncli.motion.linearisation.shapes import point_twist
 from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene

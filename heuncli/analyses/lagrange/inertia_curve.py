@@ -21,13 +21,12 @@ from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_rope_actions
 from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.kinetostatics.shares import GRAVITY
-from heuncli.motion.integration.determined_motion import find_determined_motion
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
+from heuncli.motion.integration.integrated_scene import find_determined_motion
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.multibody.mechanism.model import GROUND
-from heuncli.multibody.tree.held_speeds import find_speed_rows
-from heuncli.multibody.tree.layout import Layout, rate_indices
+from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.results.results import Array
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.file_format.models import Analysis, Drive, Spec

@@ -9,7 +9,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
-from heuncli.multibody.tree.held_speeds import find_speed_rows
+from heuncli.multibody.tree.layout import find_speed_rows
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.recovery import Recovery, recover

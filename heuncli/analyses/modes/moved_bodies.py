@@ -11,7 +11,7 @@ import numpy as np
 
 from heuncli.analyses.modes.study import solve_modes, to_results
 from heuncli.base.records import record, replace
-from heuncli.motion.linearisation.modes import SceneModes
+from heuncli.motion.linearisation.oscillations import SceneModes
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec

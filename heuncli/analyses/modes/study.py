@@ -18,11 +18,10 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.equilibrium.steady_states import has_constant_rate
-from heuncli.loads.redundancy.neighbours import find_neighbour_poses
+from heuncli.loads.redundancy.self_stress import find_neighbour_poses
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
-from heuncli.motion.linearisation.modes import SceneModes, find_largest_coordinates, make_shape
-from heuncli.motion.linearisation.oscillations import Mode, find_modes
-from heuncli.motion.linearisation.shapes import coordinate_rows
+from heuncli.motion.linearisation.linearise import coordinate_rows
+from heuncli.motion.linearisation.oscillations import Mode, SceneModes, find_largest_coordinates, find_modes, make_shape
 from heuncli.motion.linearisation.smoothness import iter_without_slope
 from heuncli.motion.linearisation.steady_motion import (
     LinearisedState,
@@ -32,7 +31,7 @@ from heuncli.motion.linearisation.steady_motion import (
     linearise_scene,
 )
 from heuncli.multibody.mechanism.model import RopeLoad
-from heuncli.multibody.tree.held_speeds import find_speed_rows
+from heuncli.multibody.tree.layout import find_speed_rows
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.error_places import attach_locations
@@ -74,7 +73,7 @@ def solve_modes(spec: Spec) -> SpecModes:
     setup = set_up_at_rest(spec) if spec.analysis.type == "rest" else set_up(spec, reduce=False)
     require_time_independent(setup)
     if find_speed_rows(setup.scene.layout).any() and setup.spec.analysis.type != "rest":
-        from heuncli.motion.linearisation.rolling import find_rolling_modes, has_rolling  # few scenes have wheels
+        from heuncli.motion.linearisation.steady_motion import find_rolling_modes, has_rolling  # few scenes have wheels
 
         linearised_state = linearise_start(setup)
         if has_rolling(linearised_state):

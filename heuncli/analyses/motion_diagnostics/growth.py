@@ -15,7 +15,7 @@ from heuncli.base.linear_algebra import null_space
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.methods.method import QUATERNION, Method
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.run.stiffness import choose_implicit_method
+from heuncli.motion.integration.run.supervision import choose_implicit_method
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 

@@ -21,7 +21,7 @@ from heuncli.analyses.motion_diagnostics.numerics.shares import Loop, compute_lo
 from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.loads.redundancy.neighbours import find_neighbour_poses
+from heuncli.loads.redundancy.self_stress import find_neighbour_poses
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.queries.study import Study

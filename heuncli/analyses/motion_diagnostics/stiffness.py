@@ -25,7 +25,7 @@ from heuncli.base import tolerances
 from heuncli.base.method_rows import find_method
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.methods.dop853 import DOP853
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 

@@ -25,10 +25,9 @@ from heuncli.analyses.variants.parameters import CASE, format_value
 from heuncli.base.errors import Finding, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.cases import list_case_settings
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.names import as_mapping
-from heuncli.scene.file_format.overrides import Setting, apply_settings, parse_settings
+from heuncli.scene.file_format.parameters import Setting, apply_settings, list_case_settings, parse_settings
 from heuncli.scene.file_format.quantity import ParameterValue, Scope, evaluate_quantity, match_quantity
 from heuncli.scene.file_format.source import FLOAT, INTEGER, SourceFile, read_source
 from heuncli.study.model.options import Options

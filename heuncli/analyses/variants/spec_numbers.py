@@ -11,10 +11,15 @@ from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
 from heuncli.base.units import parse_unit
-from heuncli.scene.file_format.cases import list_case_settings
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import as_mapping
-from heuncli.scene.file_format.overrides import apply_settings, get_value, parse_path, parse_settings
+from heuncli.scene.file_format.parameters import (
+    apply_settings,
+    get_value,
+    list_case_settings,
+    parse_path,
+    parse_settings,
+)
 from heuncli.scene.file_format.quantity import NumberWithUnit, Scope, match_quantity, read_number
 from heuncli.scene.file_format.source import read_source
 

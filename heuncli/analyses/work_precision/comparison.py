@@ -14,9 +14,13 @@ import numpy as np
 from heuncli.analyses.work_precision.results import Errors
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.reactions import JointLoads
-from heuncli.motion.integration.check.distance import angle_difference, point_distance, replace_nan_errors
 from heuncli.motion.integration.check.estimate import evaluate_run, evaluate_together
-from heuncli.motion.integration.check.matching_impulses import is_between_impulses
+from heuncli.motion.integration.check.run_comparison import (
+    angle_difference,
+    is_between_impulses,
+    point_distance,
+    replace_nan_errors,
+)
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array, Mask

@@ -14,10 +14,9 @@ from heuncli.base.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.base.method_rows import AUTO, DEFAULT
 from heuncli.base.records import record
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.determined_motion import BY_JOINTS
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
-from heuncli.motion.integration.run.errors import StiffRun
+from heuncli.motion.integration.integrated_scene import BY_JOINTS
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
+from heuncli.motion.integration.run.request import StiffRun
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import ResultCondition, Spec
 from heuncli.study.model.setup import Setup, set_up

@@ -15,7 +15,7 @@ from heuncli.analyses.work_precision.results import ChartRow
 from heuncli.base.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.base.method_rows import DEFAULT, METHODS, MethodRow, find_method
 from heuncli.base.records import record
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)

@@ -20,8 +20,7 @@ from heuncli.base.method_rows import DEFAULT, find_method
 from heuncli.base.records import record
 from heuncli.motion.integration.check.estimate import estimate_errors
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED, load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
 from heuncli.study.solve.error_extents import ESTIMATED

@@ -20,9 +20,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, SolveError
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED, Method, load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
 
 MIN_LIMIT_SECONDS = 1.0  # time limit of a run, or LIMIT_FACTOR times the reference's time, if longer

@@ -14,9 +14,8 @@ import numpy as np
 
 from heuncli.base.errors import Problem, SourceLocation, SpecError, UsageError
 from heuncli.base.text_safety import escape
-from heuncli.scene.file_format.digest import digest
-from heuncli.scene.file_format.overrides import Setting
-from heuncli.scene.file_format.reading import STANDARD_INPUT
+from heuncli.scene.file_format.parameters import Setting
+from heuncli.scene.file_format.reading import STANDARD_INPUT, digest
 from heuncli.scene.file_format.source import MAX_DEPTH, TOO_DEEP, TOO_DEEP_HINT, Mark, Path_, SourceFile, format_path
 
 MAPPING, TEXT = "<mapping>", "<text>"  # in place of a file name in locations

@@ -1,4 +1,7 @@
-"""A pose at which all coordinates rest, with its remaining accelerations and the contacts that bear."""
+"""A pose at which all coordinates rest, with its remaining accelerations and the contacts that bear.
+
+Explain in the words of an error why a scene has no rest pose.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.base.errors import Problem
 from heuncli.base.records import record
 from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest
+from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
+from heuncli.multibody.mechanism.model import ThreadLoad
 from heuncli.results.results import Array
 
 if TYPE_CHECKING:
     from heuncli.multibody.tree.layout import Contact
+
+
+# Pose
 
 
 @record
@@ -69,3 +78,102 @@ def count_dependent_rows(pose: Pose) -> int:
     """Count the closed rows that depend on others."""
     rows = pose.evaluation.rows
     return int(np.count_nonzero(rows["closed"][0])) - int(np.count_nonzero(rows["chosen"][0]))
+
+
+# Reasons
+
+CODE = "no-rest-pose"
+MAX_NAMES = 3
+HOLD_HINT = "constrain it by a joint, a spring or a stop, or leave it out"
+
+
+def no_rest_problem(message: str, hint: str) -> Problem:
+    """Make a problem of this kind."""
+    return Problem(CODE, f"no rest position: {message}", hint=hint)
+
+
+def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Array) -> Problem:
+    """Make the problem of coordinates that move without end.
+
+    displacement (n,): how far they came
+    distances (n,): relative to the limits
+    """
+    gravity = coordinates.layout.mechanism.gravity
+    sentences: dict[str, None] = {}
+    for k in np.flatnonzero(distances >= 0.5 * distances.max()).tolist():
+        name, turns = coordinates.find_owner(k)
+        if turns:
+            sentences[f"{name} rotates without end"] = None
+        elif name.startswith("bodies."):
+            falls = displacement[find_free_shifts(coordinates, k)] @ gravity > 0.0
+            sentences[f"{name} {'falls' if falls else 'moves without end'}"] = None
+        else:
+            sentences[f"{name} slides without end"] = None
+    clauses = list(sentences)
+    more = f" and {len(clauses) - MAX_NAMES} more" if len(clauses) > MAX_NAMES else ""
+    has_thread_friction = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
+    hint = (
+        f"{HOLD_HINT}; friction of a self-locking thread creeps, so it holds nothing at rest"
+        if has_thread_friction
+        else HOLD_HINT
+    )
+    return no_rest_problem(f"{', '.join(clauses[:MAX_NAMES])}{more}: nothing stops it", hint)
+
+
+def find_free_shifts(coordinates: Coordinates, number: int) -> Array:
+    """Return the numbers of the three shifts of a free body, one of which this is; otherwise three times the given
+    one.
+    """
+    name, _ = coordinates.find_owner(number)
+    body_shifts = [
+        k for k in range(coordinates.count) if coordinates.find_owner(k)[0] == name and coordinates.shifts[k]
+    ]
+    return np.array(body_shifts if len(body_shifts) == 3 else [number] * 3)
+
+
+def endless_search_problem(coordinates: Coordinates, pose: Pose, steps: int) -> Problem:
+    """Make the problem of a search that does not end: where it was, and the largest remaining force."""
+    layout = coordinates.layout
+    states = make_body_states(layout, pose.evaluation)
+    mass = np.array([body.mass for body in layout.mechanism.bodies])
+    remaining_forces = mass * np.sqrt(np.sum(states.a_centre[0] ** 2, axis=1))
+    k = int(np.argmax(remaining_forces))
+    x, y, z = states.centre[0, k]
+    name = layout.mechanism.bodies[k].name
+    message = (
+        f"the search did not converge in {steps} steps; at the last one the mass centre of bodies.{name} is at "
+        f"({x:.6g}, {y:.6g}, {z:.6g}) m, with an unbalanced force of {remaining_forces[k]:.3g} N"
+    )
+    hint = "do loads jump (sign, step)? smooth them, start nearer to the rest position, or run a motion with dampers"
+    return no_rest_problem(message, hint)
+
+
+def jumping_load_problem(coordinates: Coordinates, pose: Pose, shape: Array) -> Problem:
+    """Make the problem of loads that push towards a jump where they change sign; shape (n,): the motion that they
+    drive.
+    """
+    name, _ = coordinates.find_owner(int(np.argmax(np.abs(shape) * coordinates.weights)))
+    remaining = float(np.abs(pose.accelerations * coordinates.weights).max())
+    message = f"{name} is driven from both sides to a jump of a load; it is in equilibrium on neither side"
+    hint = f"smooth the jump: tanh(x/0.001) instead of sign(x); unbalanced acceleration {remaining:.3g} 1/s²"
+    return no_rest_problem(message, hint)
+
+
+def singular_pose_problem(coordinates: Coordinates, pose: Pose) -> Problem:
+    """Make the problem of a path that ends in a singular position, from which several motions are possible."""
+    layout, rows = coordinates.layout, pose.evaluation.rows
+    left_out = [r for r in range(len(layout.rows)) if rows["closed"][0, r] > rows["chosen"][0, r]]
+    names = dict.fromkeys(layout.mechanism.owner_path(layout.rows[r]) for r in left_out)
+    through = f" through {' and '.join(names)}" if names else ""
+    message = f"the search ends at a singular position: the closed loop{through} is stretched, folded or flat"
+    return no_rest_problem(message, "more than one motion is possible from there: add a stop before that position")
+
+
+def no_value_problem(coordinates: Coordinates, change: Array) -> Problem:
+    """Make the problem of loads without a value, or a slope, where the search is; change (k, f): near the pose."""
+    what = "value" if not np.isfinite(change).all() else "derivative"
+    layout = coordinates.layout
+    loads = [load.path for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
+    which = f" ({', '.join(loads[:MAX_NAMES])})" if loads else ""
+    message = f"the search reached a position where a load{which} has no {what}: a root, a logarithm, coincident points"
+    return no_rest_problem(message, "start nearer to the rest position, or give the load a value on both sides")

@@ -4,7 +4,7 @@
 
 is that motion: damped in proportion to its mass, a scene moves arbitrarily slowly along the accelerations it would have
 at rest. A step follows the linear law about its pose exactly (slopes.py), stiff directions to their end and soft ones
-as far as s goes, with a third-order correction (rosenbrock_step.py); it is accepted if the correction is a small part
+as far as s goes, with a third-order correction (slopes.py); it is accepted if the correction is a small part
 of it, else a shorter one is tried. Where all directions are near their end, s grows without bound, and the step is
 Newton's. An unstable direction that nothing pushes stays as it is, as in that motion. Contacts close where their gap
 closes, and open where they would pull. A finer search shows how far a search can be trusted (verification.py).
@@ -17,24 +17,27 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.loads.equilibrium.coordinates import Coordinates, make_coordinates
-from heuncli.loads.equilibrium.coupled_coordinates import find_coupled_pairs
+from heuncli.loads.equilibrium.coordinates import Coordinates, find_coupled_pairs, make_coordinates
 from heuncli.loads.equilibrium.pose import (
     Pose,
     contact_force,
     contact_opening,
     count_dependent_rows,
-    make_bearing_pose,
-    make_pose,
-)
-from heuncli.loads.equilibrium.reasons import (
     endless_search_problem,
     jumping_load_problem,
+    make_bearing_pose,
+    make_pose,
     runaway_problem,
     singular_pose_problem,
 )
-from heuncli.loads.equilibrium.rosenbrock_step import RosenbrockStep, uncorrected_step
-from heuncli.loads.equilibrium.slopes import PERTURBED_POSES, RestLaw, make_rest_law, separate_indifferent
+from heuncli.loads.equilibrium.slopes import (
+    PERTURBED_POSES,
+    RestLaw,
+    RosenbrockStep,
+    make_rest_law,
+    separate_indifferent,
+    uncorrected_step,
+)
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates as joint_coordinates
 from heuncli.motion.integration.evaluator import Evaluator

@@ -6,6 +6,14 @@ T are displacements that the closures admit, orthonormal by the coordinates' wei
 (motion/linearisation/linearise.py). c is the remaining acceleration along each direction; noise is its rounding error:
 anything below counts as zero. Nearly parallel directions share a block instead of eigenvalues of their own
 (directions.py).
+
+One step along dq/ds = a(q, rates 0): an exponential Rosenbrock step of third order.
+
+    z(s) = s phi_1(s A) c + 2 s phi_3(s A) (s/h)^2 d,     d = rates at z(h) - c - A z(h)
+
+z is the displacement within the closures from the pose where the linear law (A, c) holds. Without d the step is of
+second order, follows stiff directions to their end and is exact where the law is; d is what the law misses at the
+step's end, and its share of the step is the error estimate. Hochbruck, Ostermann, Schweitzer 2009: exprb32.
 """
 
 from __future__ import annotations
@@ -19,13 +27,14 @@ from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, rounding_displacement
 from heuncli.loads.equilibrium.directions import SpectralDecomposition, decompose, decompose_with_null_space
-from heuncli.loads.equilibrium.pose import Pose
-from heuncli.loads.equilibrium.reasons import no_value_problem
+from heuncli.loads.equilibrium.pose import Pose, no_value_problem
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.linearisation.indifference import Indifference
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.multibody.response import solve_columns
 from heuncli.results.results import Array, Mask
+
+# Slopes
 
 PERTURBED_POSES = 4  # poses moved by rounding; it is unlikely that all of them hide a direction
 
@@ -245,3 +254,39 @@ def spring_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) 
         return np.zeros((coordinates.count, 0))
     response = solve_columns(evaluator.workspace, pose.t, pose.state, units, np.zeros(len(units)))
     return coordinates.collect(response.bodies["alpha"], response.freedoms["udot"]).T
+
+
+# Rosenbrock step
+
+
+@record
+class RosenbrockStep:
+    """The step from a pose up to s = h; d (f,): correction along the law's directions."""
+
+    law: RestLaw
+    h: float
+    d: Array
+
+    def displacement_at(self, s: float) -> Array:
+        """Return the displacement (n,) at some s, up to h."""
+        return np.asarray(self.law.follow(s) + self.correction_at(s))
+
+    def correction_at(self, s: float) -> Array:
+        """Return the part of the displacement from d, (n,)."""
+        if not self.d.any():
+            return np.zeros(len(self.law.T))
+        return self.law.to_displacement(self.law.directions.integrate(s, 2.0 * (s / self.h) ** 2 * self.d, order=3))
+
+    def with_correction(self, rates: Array, displacement: Array, accelerations: Array) -> RosenbrockStep:
+        """Return the step with d, from the rates (n,) of its coordinates after a displacement (n,), and those
+        before.
+        """
+        law = self.law
+        d = law.project(rates - accelerations - law.T @ (law.A @ (law.T_inverse @ displacement)))
+        # an unstable direction that only rounding pushes stays as it is
+        return replace(self, d=np.where(np.abs(d) > law.noise, d, 0.0))
+
+
+def uncorrected_step(law: RestLaw, h: float) -> RosenbrockStep:
+    """Return the step by the linear law alone."""
+    return RosenbrockStep(law, h, np.zeros(len(law.c)))

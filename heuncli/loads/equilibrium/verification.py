@@ -7,6 +7,15 @@ one, which bounds that of the finer one. By accident both may err alike (in one 
 search is made there, and a tenth of the distance of the first two counts, too. Two searches that end in different
 equilibria pass a ridge between them. If the finest two still do, the path depends on less than they resolve, and both
 are reported.
+
+Estimate the error of a rest pose: find neighbouring poses that rounding cannot distinguish from it.
+
+Each is found like the pose itself, by Newton's step from a pose moved by rounding. Others are as far off as rounding of
+the sums pushes a soft direction; or as far across the closures as these are left open, which is far near a dead centre;
+and, where only bending (a quartic potential) and no stiffness holds a direction, as far along it as the accelerations
+are still rounding.
+
+Check independently of its search that a reported rest pose is at rest: accelerations are no more than rounding.
 """
 
 from __future__ import annotations
@@ -15,12 +24,19 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
-from heuncli.base.records import record
-from heuncli.loads.equilibrium.coordinates import evaluate_at_rest
+from heuncli.base.records import record, replace
+from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, rounding_displacement
+from heuncli.loads.equilibrium.pose import Pose, no_rest_problem, no_value_problem
 from heuncli.loads.equilibrium.search import RestPose, RestSearch
+from heuncli.loads.equilibrium.slopes import acceleration_rounding, spring_rounding
 from heuncli.motion.integration.evaluator import Evaluator
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.linearisation.displacements import make_rounded_scene
+from heuncli.motion.linearisation.indifference import ROUNDED_SCENES, Indifference
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.results.results import Array
+from heuncli.results.results import Array, Mask
+
+# Verification
 
 # rad, or relative to the size: distances from a path at which others are tried
 PERTURBATIONS = 10.0 ** np.arange(-7.0, -1.0)
@@ -162,3 +178,168 @@ def is_same_pose(rest_pose: RestPose, stiff_part: Array, indifferent_part: Array
         size(stiff_part) <= max(tolerances.REST_SAME, soft_size, indifferent_size)
         and indifferent_size <= tolerances.REST_SEARCHES_DIFFER
     )
+
+
+# Digits
+
+PERTURBED_POSES = 2  # poses moved by rounding
+REACHES = 10.0 ** np.arange(-8.0, -2.0)  # rad, or relative to the size: tried displacements
+CUBIC_FACTOR = 3.0  # times Newton's step: distance to the rest pose under a purely cubic force
+MAX_ROTATION_RATIO = 10.0  # largest rotation of a motion's direction over its displacement
+NEWTON_STEPS = 6  # Newton's steps with the slopes at the pose itself; their error grows with the distance from it
+
+
+def find_neighbour_poses(
+    evaluator: Evaluator, rest_pose: RestPose, indifference: Indifference
+) -> tuple[list[Array], Mask]:
+    """Return the states (n_state,) of such poses, and which motions (g,) without stiffness are held, or pushed, by
+    bending.
+    """
+    pose, slopes, coordinates = rest_pose.pose, rest_pose.slopes, rest_pose.coordinates
+    displacements = np.array([rounding_displacement(coordinates, pose.state, k) for k in range(PERTURBED_POSES)])
+    states = coordinates.displace(np.repeat(pose.state[None, :], PERTURBED_POSES, axis=0), displacements)
+    perturbed = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
+    newton_steps = np.array([slopes.newton_step(a) for a in coordinates.accelerations(perturbed)])
+    corrected = evaluate_at_rest(evaluator, pose.t, coordinates.displace(perturbed.states, newton_steps), pose.holding)
+    sum_states = coordinates.displace(pose.state[None, :], rounding_in_sums(rest_pose)[None, :])
+    far_states, bends = find_bending_poses(evaluator, rest_pose, indifference)
+    open_states = coordinates.displace(pose.state[None, :], closure_displacement(evaluator, rest_pose)[None, :])
+    return [
+        *corrected.states,
+        *evaluate_at_rest(evaluator, pose.t, sum_states, pose.holding).states,
+        *open_states,
+        *far_states,
+    ], bends
+
+
+def closure_displacement(evaluator: Evaluator, rest_pose: RestPose) -> Array:
+    """Return a displacement (n,) across the closures, each open by its closing tolerance, so that it is largest
+    somewhere.
+    """
+    across = rest_pose.slopes.law.opening_directions
+    if not across.size:
+        return np.zeros(len(across))
+    size = rest_pose.coordinates.weights * np.abs(across).sum(axis=1)
+    return np.asarray(tolerances.CLOSED * evaluator.size * (across @ np.sign(across[int(np.argmax(size))])))
+
+
+def rounding_in_sums(rest_pose: RestPose) -> Array:
+    """Return how far all directions together yield to the rounding in the sums of their accelerations, (n,)."""
+    slopes = rest_pose.slopes
+    push = CUBIC_FACTOR * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * slopes.sum_rounding
+    compliance = np.abs(slopes.directions.solve_compliance(push, slopes.eigenvalue_errors))
+    displacement = np.asarray((slopes.T @ (slopes.V @ compliance)).real)
+    return displacement / max(1.0, rest_pose.coordinates.max_magnitude(displacement))  # at most a radian, or the size
+
+
+def find_bending_poses(
+    evaluator: Evaluator, rest_pose: RestPose, indifference: Indifference
+) -> tuple[list[Array], Mask]:
+    """Return the farthest poses along motions without stiffness at which nothing pushes, where something does farther
+    out.
+
+    Also returns in which motions (g,) it does: by more than in scenes that rounding cannot distinguish from this one.
+    """
+    states, shapes = [], indifference.free_motions
+    bends = np.zeros(shapes.shape[1], dtype=bool)
+    others = (
+        [Runner(make_rounded_scene(evaluator.layout, number)) for number in range(ROUNDED_SCENES)] if len(bends) else []
+    )
+    for k, shape in enumerate(shapes.T):
+        size = rest_pose.coordinates.max_magnitude(shape)
+        for sign in (1.0, -1.0) if size > 0.0 else ():
+            displaced_states, accelerations_there = relax_displaced(
+                evaluator, rest_pose, sign * REACHES[:, None] * shape / size
+            )
+            pushes = [
+                project_on_motions(rest_pose, shapes, b)
+                for b in (
+                    accelerations_there,
+                    *(rest_accelerations(other, rest_pose, displaced_states) for other in others),
+                )
+            ]
+            uncertainty = tolerances.HELD * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
+            # the rotation of the motion's direction adds a part of the push along held directions
+            rotation_effect = (
+                MAX_ROTATION_RATIO
+                * REACHES[:, None]
+                * (np.abs(accelerations_there) @ np.abs(rest_pose.slopes.law.mass) @ np.abs(shapes))
+            )
+            significant = np.flatnonzero((np.abs(pushes[0]) > uncertainty + rotation_effect).any(axis=1))
+            if len(significant):
+                states.append(displaced_states[max(significant[0] - 1, 0)])
+                bends[k] = True
+    return states, bends
+
+
+def project_on_motions(rest_pose: RestPose, shapes: Array, accelerations: Array) -> Array:
+    """Return the components of accelerations (k, n) along motions (n, g), (k, g)."""
+    return np.asarray(accelerations @ rest_pose.slopes.law.mass @ shapes)
+
+
+def rest_accelerations(evaluator: Evaluator, rest_pose: RestPose, states: Array) -> Array:
+    """Return the accelerations of states at rest, (k, n)."""
+    return rest_pose.coordinates.accelerations(
+        evaluate_at_rest(evaluator, rest_pose.pose.t, states, rest_pose.pose.holding)
+    )
+
+
+def relax_displaced(evaluator: Evaluator, rest_pose: RestPose, displacements: Array) -> tuple[Array, Array]:
+    """Displace the pose by (k, n) and let all that is held relax; return the states and their accelerations, (k, n)."""
+    pose, slopes, coordinates = rest_pose.pose, rest_pose.slopes, rest_pose.coordinates
+    states = coordinates.displace(np.repeat(pose.state[None, :], len(displacements), axis=0), displacements)
+    for _ in range(NEWTON_STEPS):
+        evaluation = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
+        states = coordinates.displace(
+            evaluation.states, np.array([slopes.newton_step(a) for a in coordinates.accelerations(evaluation)])
+        )
+    evaluation = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
+    return evaluation.states, coordinates.accelerations(evaluation)
+
+
+# Rest check
+
+CHECKED_POSES = 4  # poses moved by rounding
+HINT = "start nearer to the rest position, or run a motion with dampers until it comes to rest"
+
+
+def require_at_rest(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> None:
+    """Raise SolveError [no-rest-pose] if a coordinate accelerates by more than the rounding of its loads over its mass.
+
+    It must also exceed the difference to poses moved by rounding. Coordinates are relative to what drives turn and
+    shift. What a drive turns about several axes at once has accelerations of its own, which belong to the steady state:
+    turning bodies on ball joints are not checked there.
+    """
+    is_checked = np.ones(coordinates.count, dtype=bool)
+    if evaluator.layout.has_laws:
+        is_checked[:] = False
+        is_checked[coordinates.numbers] = True
+    terms = acceleration_rounding(evaluator, coordinates, pose) + np.abs(
+        spring_rounding(evaluator, coordinates, pose)
+    ).sum(axis=1)
+    if pose.holding.any():
+        # contact forces cancel in the accelerations, too; their size shows with the contacts open
+        terms = terms + acceleration_rounding(
+            evaluator, coordinates, replace(pose, holding=np.zeros_like(pose.holding))
+        )
+    displacements = np.array([rounding_displacement(coordinates, pose.state, k) for k in range(CHECKED_POSES)])
+    perturbed_states = coordinates.displace(np.repeat(pose.state[None, :], CHECKED_POSES, axis=0), displacements)
+    perturbed = evaluate_at_rest(evaluator, pose.t, perturbed_states, pose.holding)
+    change = coordinates.max_magnitude(
+        np.abs(coordinates.accelerations(perturbed) - pose.accelerations).max(axis=0, initial=0.0)
+    )
+    allowed = tolerances.STARTS_MOVING / tolerances.SUM_ROUNDING * terms
+    allowed = allowed + tolerances.PUSHED_BY_ROUNDING * change / coordinates.weights
+    if not (np.isfinite(pose.accelerations).all() and np.isfinite(allowed).all()):
+        raise SolveError(no_value_problem(coordinates, np.stack([pose.accelerations, allowed])))
+    excess = np.abs(pose.accelerations) - allowed
+    if (is_checked & (excess > 0.0)).any():
+        k = int(np.argmax(np.where(is_checked, excess * coordinates.weights, -np.inf)))
+        raise SolveError(no_rest_problem(f"the search ended where {describe_acceleration(coordinates, pose, k)}", HINT))
+
+
+def describe_acceleration(coordinates: Coordinates, pose: Pose, number: int) -> str:
+    """Describe a coordinate that accelerates, and by how much: relative to its parent, where drives move that."""
+    name, is_turn = coordinates.find_owner(number)
+    unit = "rad/s\u00b2" if is_turn else "m/s\u00b2"
+    return f"{name} still accelerates by {abs(float(pose.accelerations[number])):.3g} {unit}"

@@ -8,7 +8,7 @@ sums, by Steiner, if they are the same turned by 180 degrees, so that their shea
     J >= sum J_i: joined parts twist no more than separate ones (their stress functions together are one of the whole)
 
 so that stresses from torsion are on the safe side; so are those from shear, for a shape that is not known. For a mesh
-the outline gives them (scene/shapes/profiles.py), J again from below.
+the outline gives them (scene/shapes/figures.py), J again from below.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from heuncli.base.records import record
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses, torsion_constant
 from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.shapes.composite_solid import CompositeSolid
-from heuncli.scene.shapes.figure_kinds import (
+from heuncli.scene.shapes.figures import (
     CuttingPlanes,
     Figure,
     ProfileFigure,
     RectangleFigure,
     RoundFigure,
     UnknownFigure,
+    find_figure,
 )
-from heuncli.scene.shapes.figures import find_figure
 
 SectionValues = Mapping[str, float]
 

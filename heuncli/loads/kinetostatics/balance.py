@@ -6,6 +6,15 @@ k: applied forces, joints and drives on the body. The residual is relative to th
 inertia loads of its pieces: a rotor that spins about its centre has no others. A body that an instant or an impulse
 reaches by rounding alone has no load of its own: there the residual is relative to the smallest load that rounding of
 the instant's largest one leaves certain.
+
+Magnitudes of the terms that the numbers of a run are sums of: their rounding is relative to these.
+
+The inertia loads of a body's pieces may be large where their resultant vanishes, as in a rotor that spins about its
+centre. Over the mass points m at r from the centre of mass, by Cauchy and Schwarz,
+
+    Σ m |σ × (σ × r)| ≤ |σ| √(m σ·I σ),   Σ m |σ̇ × r| ≤ √(m σ̇·I σ̇)
+
+Their moments are at most that times the radius of gyration.
 """
 
 from __future__ import annotations
@@ -19,8 +28,10 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.foundation import inertia_rows
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
-from heuncli.results.results import Array
-from heuncli.scene.shapes.by_component import cross_components, squared_lengths
+from heuncli.results.results import Array, Block, Magnitudes
+from heuncli.scene.shapes.rotations import cross_components, instants_first, quadratic_form, squared_lengths
+
+# Balance
 
 CHUNK = 100_000  # instants times actions summed together
 
@@ -63,3 +74,78 @@ def balance_residual(
 def stack_vectors(vectors: Sequence[Array]) -> Array:
     """Stack vectors of actions, (n_t, 3) each, by component, (k, 3, n_t)."""
     return np.ascontiguousarray(np.stack(vectors).transpose(0, 2, 1))
+
+
+# Magnitudes
+
+
+def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
+    """Return the largest inertia load or weight of each body, including its pieces', (n_t, n) [N]."""
+    m = np.array([body.mass for body in mechanism.bodies])
+    w, u = states.turning
+    spinning, turning = (_inertia_norm(mechanism, x) for x in (w, u))
+    pieces = np.sqrt(m)[:, None] * (np.sqrt(squared_lengths(w)) * spinning + turning)
+    whole = m[:, None] * np.sqrt(squared_lengths(states.component_rows("a_centre")))
+    weight = m * float(np.sqrt(np.sum(np.square(mechanism.gravity))))
+    return instants_first(np.maximum(np.maximum(pieces, whole), weight[:, None]))
+
+
+def _inertia_norm(mechanism: Mechanism, x: Array) -> Array:
+    """Return √(x·I x) of every body, (n, n_t), x in body axes by component."""
+    inertia = np.array([body.inertia for body in mechanism.bodies])
+    return np.asarray(np.sqrt(np.maximum(quadratic_form(x, inertia), 0.0)))
+
+
+def find_magnitudes(
+    mechanism: Mechanism, states: BodyStates, inertia: Array, actions: Sequence[Action], energy: Block, size: float
+) -> Magnitudes:
+    """Find the magnitudes at these instants; actions: of applied loads and of joints with their drives.
+
+    inertia: the largest inertia load of each body (`inertia_scale`)
+    energy: kinetic, potential, work; empty if not needed
+    """
+    g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))
+    mass = [body.mass for body in mechanism.bodies]
+    load_magnitudes = find_load_magnitudes(states, inertia, actions, size)
+    force = load_magnitudes.by_unit["N"]
+    load_acceleration = 0.0  # acceleration that an applied load alone would give
+    for action in actions:
+        if action.kind == "load" and (action.from_end is None or action.from_end.body != action.to_end.body):
+            action_force = max(_largest(action.force), _largest(action.moment) / size)
+            load_acceleration = max(
+                load_acceleration,
+                *(action_force / mass[end.body] for end, *_ in action.iter_ends() if end.body != GROUND),
+                0.0,
+            )
+    spin, v = _largest(states.omega), max(_largest(states.v_centre), size * _largest(states.omega))
+    a = max(_largest(states.a_centre), size * spin**2, size * _largest(states.alpha))
+    acceleration = max(g, load_acceleration, a)
+    turning = acceleration / _min_gyration(mechanism, size)
+    speed = max(v, float(np.sqrt(size * acceleration)))
+    by_unit = {
+        **load_magnitudes.by_unit,
+        "m/s": speed, "m/s²": acceleration,
+        "rad": 1.0, "rad/s": max(spin, float(np.sqrt(turning))), "rad/s²": turning,
+        "W": force * speed,
+        "J": max([sum(mass) * g * size, *map(_largest, energy.values())]),
+    }  # fmt: skip
+    return load_magnitudes._replace(by_unit=by_unit)
+
+
+def find_load_magnitudes(states: BodyStates, inertia: Array, actions: Sequence[Action], size: float) -> Magnitudes:
+    """Find only the magnitudes that errors of loads depend on: lengths, forces, moments."""
+    action_forces = (max(_largest(action.force), _largest(action.moment) / size) for action in actions)
+    force = max(_largest(inertia), *action_forces, 0.0)
+    return Magnitudes({"m": size, "N": force, "N·m": force * size}, size, _largest(states.x), {})
+
+
+def _min_gyration(mechanism: Mechanism, size: float) -> float:
+    """Return the smallest radius of gyration of a body that is no point mass; the scene's size if there is none [m]."""
+    squares = [float(np.trace(body.inertia)) / (2.0 * body.mass) for body in mechanism.bodies]
+    return min((x**0.5 for x in squares if x > tolerances.POINT_MASS * size**2), default=size)
+
+
+def _largest(values: Array) -> float:
+    """Return the largest magnitude, without indeterminate values."""
+    largest = float(np.abs(values).max(initial=0.0))
+    return largest if largest == largest else float(np.nanmax(np.abs(values), initial=0.0))

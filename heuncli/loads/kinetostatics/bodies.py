@@ -17,15 +17,15 @@ from heuncli.multibody.mechanism.model import GROUND, Joint
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
-from heuncli.scene.shapes.by_component import (
+from heuncli.scene.shapes.rotations import (
     bodies_contiguous,
     cross_components,
+    cross_rows,
     instants_first,
     instants_last,
     rotate_components,
     rotate_components_back,
 )
-from heuncli.scene.shapes.rotations import cross_rows
 
 NO_SPINS: Mapping[int, Array] = MappingProxyType({})
 

@@ -1,20 +1,49 @@
 """The numbers reported for a coupling, besides its load on each body; one entry for each type with numbers of its own.
 
 Each depends on the multipliers of some of its conditions: where one of these is indeterminate, so is the number.
+
+Compute the pressure angle of a cam.
+
+cos a = 1 / |f| |w|        f . w = 1, w the velocity of the follower at the contact, or at its roller's centre,
+                           per unit of its rate; a is the pressure angle
+
+Report further numbers of gears, belts and screws, besides the load that they carry and their loads on each body.
+
+    radial = |F| tan(alpha_n) / cos(beta)    axial = |F| tan(beta)    normal = along the line of action
+    torque = F lead / (2 pi)                 tight, slack = T_0 +- |F| / 2
+
+F: the load carried. In an impulse it is an impulse, and the strands have no pretension.
+
+Compute the total load of a screw with friction, and its efficiency.
+
+    force = N - friction along the axis        torque = N lead / (2 pi) + friction about it
+
+N is the axial component of the flank pressure.
+
+    force rise - torque = -loss / rate       rise = lead / (2 pi), the travel per unit of rotation
+
+Of the two powers, force rise rate INTO what slides and -torque rate INTO what turns, the positive one is the output.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from heuncli.base.records import record
 from heuncli.loads.kinetostatics.actions import Action
+from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.couplings import CouplingPart
+from heuncli.multibody.mechanism.model import GROUND, Joint
 from heuncli.results.results import Array
-from heuncli.scene.file_format.couplings import RollingWheel
+from heuncli.scene.file_format import couplings as c
+from heuncli.scene.file_format.couplings import RollingWheel, Screw
+from heuncli.scene.shapes.rotations import cross_rows
+
+# Coupling numbers
 
 
 @record
@@ -112,7 +141,6 @@ def list_screw_numbers(loads: CouplingLoads) -> list[CouplingNumber]:
     """Return a screw's thrust; with friction, the total thrust and the torque that it takes."""
     if loads.friction is None:
         return list_carried_load(loads)
-    from heuncli.loads.kinetostatics.thread_friction import total_screw_load  # few scenes have it
 
     force, torque = total_screw_load(loads)
     return [
@@ -124,3 +152,87 @@ def list_screw_numbers(loads: CouplingLoads) -> list[CouplingNumber]:
 NUMBERS: dict[str, Callable[[CouplingLoads], list[CouplingNumber]]] = {
     "wheel": list_wheel_numbers, "rope": list_rope_numbers, "screw": list_screw_numbers,
 }  # fmt: skip
+
+
+# Cams
+
+
+def pressure_angle(loads: CouplingLoads, joints: Sequence[Joint], states: BodyStates) -> Array:
+    """Return the angle between the load of a cam and the motion of the follower there, (n_t,) [rad]."""
+    (load,) = loads.parts
+    size = np.sqrt(np.sum(load.f * load.f, axis=1))
+    speed = follower_speed(load.part, joints[load.part.coordinates[1].joint], load.place, states)
+    return np.asarray(np.arccos(np.clip(1.0 / (size * speed), 0.0, 1.0)))
+
+
+def follower_speed(part: CouplingPart, joint: Joint, place: Array, states: BodyStates) -> Array:
+    """Return |w|, (n_t,) [m or 1]: 1 if it slides, else the distance from the axis about which the follower swings."""
+    assert part.cam is not None
+    if not part.cam.swings:
+        return np.ones(len(place))
+    if part.cam.face is None:
+        place = states.point_position(part.b, np.asarray(part.q))
+    axis = states.world_direction(joint.a, joint.axis)
+    arm = cross_rows(axis, place - states.point_position(joint.a, joint.p))
+    return np.asarray(np.sqrt(np.sum(arm * arm, axis=1)))
+
+
+# Drive element numbers
+
+
+def gear_numbers(gear: c.Gear, F: Array, is_impulse: bool) -> dict[str, Array]:
+    """Return the components of a tooth force [N]."""
+    radial = np.abs(F) * (math.tan(gear.pressure_angle) / math.cos(gear.helix))
+    axial = np.abs(F) * abs(math.tan(gear.helix))
+    return {"radial": radial, "axial": axial, "normal": np.sqrt(F * F + radial * radial + axial * axial)}
+
+
+def screw_numbers(screw: c.Screw, F: Array, is_impulse: bool) -> dict[str, Array]:
+    """Return the torque that a thrust takes [N m]."""
+    return {"torque": F * (screw.lead / math.tau)}
+
+
+def belt_numbers(belt: c.Belt, F: Array, is_impulse: bool) -> dict[str, Array]:
+    """Return the pulls of both strands [N]."""
+    pretension = 0.0 if is_impulse else belt.pretension
+    return {"tight": pretension + 0.5 * np.abs(F), "slack": pretension - 0.5 * np.abs(F)}
+
+
+DRIVE_ELEMENT_NUMBERS: dict[str, Callable[..., dict[str, Array]]] = {
+    "gear": gear_numbers,
+    "screw": screw_numbers,
+    "belt": belt_numbers,
+}
+
+
+# Thread friction
+
+
+def total_screw_load(loads: CouplingLoads) -> tuple[Array, Array]:
+    """Return thrust along the axis and the torque about it that it takes, (..., n_t), including friction."""
+    screw, part, friction = loads.coupling.entry, loads.parts[0], loads.friction
+    assert isinstance(screw, Screw)
+    rise = screw.lead / math.tau
+    force, torque = loads.multipliers[0], loads.multipliers[0] * rise
+    if friction is None:
+        return force, torque
+    sense = 1.0 if friction.to_end.body == part.part.b else -1.0  # its opposite acts on the other body
+    axial_friction = np.sum(friction.force * part.f, axis=-1)
+    friction_torque = np.sum(friction.moment * part.m, axis=-1) / rise
+    return force + sense * axial_friction, torque + sense * friction_torque
+
+
+def efficiency(loads: CouplingLoads, zero_thrust: float) -> Array:
+    """Return output power over input power, (n_t,); 1 at rest, because nothing slides, and 0 without a load.
+
+    zero_thrust: a thrust that counts as zero compared with the loads of the scene [N]
+    """
+    screw = loads.coupling.entry
+    assert isinstance(screw, Screw)
+    force, torque = total_screw_load(loads)
+    is_loaded = np.abs(force) > zero_thrust
+    force = force * (screw.lead / math.tau)
+    direction = np.where(torque < force, -1.0, 1.0)  # direction of rotation, because friction takes power
+    powers = np.stack([direction * force, -direction * torque])
+    output, input_power = np.maximum(powers.max(axis=0), 0.0), -powers.min(axis=0)
+    return np.where(is_loaded & (input_power > 0.0), output / np.where(input_power > 0.0, input_power, 1.0), 0.0)

@@ -3,6 +3,12 @@
     s = sum k - sum m x..,   M_s = sum (x - O) x k + couples - sum [(x_s - O) x m x_s.. + I sigma. + sigma x I sigma]
 
 s and M_s act ON the foundation; k is what is applied from outside: weight, force, couple. Heun (1901), no. 25-26.
+
+Momentum and moment of momentum of the bodies: Heun (1901), (16) and (17).
+
+    sum m x_s.        sum m_s x x_s. + sum I sigma       about a fixed point
+
+Their rates are the mass effects.
 """
 
 from __future__ import annotations
@@ -14,13 +20,15 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import record
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.reactions import project_to_plane
 from heuncli.multibody.mechanism.model import GROUND, JointLoad, Mechanism
 from heuncli.results.results import Array, Block, Mask
-from heuncli.scene.shapes.by_component import cross_components, instants_first, rotate_components
-from heuncli.scene.shapes.rotations import cross_rows
+from heuncli.scene.shapes.rotations import cross_components, cross_rows, instants_first, rotate_components
+
+# Foundation
 
 ElementKeys = Mapping[tuple[str, str], str]  # of `foundation.elements`, by block of the spec and name
 BLOCK_OF = {
@@ -186,3 +194,36 @@ def central_axis(s: Array, M: Array, reference: Array, largest: float) -> Block:
         "direction": s / np.sqrt(safe)[:, None],
         "pitch": np.sum(s * M, axis=1) / safe,
     }
+
+
+# Momentum
+
+
+@record
+class Momenta:
+    """Momenta of each body, (n_t, n, 3), world axes: linear [N s]; orbital, spin: moments of momentum about a point [N
+    m s].
+    """
+
+    linear: Array
+    orbital: Array
+    spin: Array
+
+    def sum_bodies(self) -> Block:
+        """Return the sums over all bodies."""
+        parts = {"total": self.linear, "moment_orbital": self.orbital, "moment_spin": self.spin}
+        return {name: part.sum(axis=1) for name, part in parts.items()}
+
+
+def find_momenta(mechanism: Mechanism, states: BodyStates, reference: Array) -> Momenta:
+    """Return momentum and moment of momentum about a point (3,)."""
+    m = np.array([body.mass for body in mechanism.bodies])
+    inertia = np.array([body.inertia for body in mechanism.bodies])
+    w = np.einsum("tnji,tnj->tni", states.R, states.omega)
+    linear = m[:, None] * states.v_centre
+    spin: Array = np.einsum("tnij,njk,tnk->tni", states.R, inertia, w)
+    orbital = cross_rows(states.centre - reference, linear)
+    if mechanism.planar:
+        linear, orbital = project_to_plane(linear, orbital)
+        _, spin = project_to_plane(linear, spin)
+    return Momenta(linear, orbital, spin)

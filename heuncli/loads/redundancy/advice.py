@@ -2,7 +2,7 @@
 
 A less constrained joint holds part of what the original held, so where the number of freedoms stays the same, so does
 the motion. Joints that are driven, loaded, limited by a stop, named in an expression or have a start value keep their
-kind, because they need it. They may give way to the moments that others hold (zero_stiffness.py).
+kind, because they need it. They may give way to the moments that others hold (split.py).
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from heuncli.base.joint_kinds import ABOUT_Z, JOINTS, POINT
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.loads.redundancy.count import count_redundancy
-from heuncli.loads.redundancy.neighbours import find_neighbour_poses
-from heuncli.loads.redundancy.self_stress import find_self_stress
+from heuncli.loads.redundancy.self_stress import find_neighbour_poses, find_self_stress
 from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.mechanism.model import GROUND, Joint, JointLoad
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene

@@ -1,4 +1,7 @@
-"""Count the redundant conditions of the joints, and the remaining freedoms."""
+"""Count the redundant conditions of the joints, and the remaining freedoms.
+
+Count the freedoms of poses where wheels roll: these constrain speeds, but not poses.
+"""
 
 from __future__ import annotations
 
@@ -14,15 +17,18 @@ from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.model import Joint
+from heuncli.multibody.response import jacobian
 from heuncli.multibody.stages import NO_CACHE, Stages
-from heuncli.multibody.tree.frame import remove_loads
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.layout import Layout, find_speed_rows, remove_loads
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression, make_pack
 
 if TYPE_CHECKING:
     from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress
+
+
+# Count
 
 
 class RedundancyCount(NamedTuple):
@@ -72,9 +78,9 @@ def count_without_loads(layout: Layout, drives: tuple[Expression, ...], holding:
 
 def count_self_stresses(runner: Evaluator) -> RedundancyCount:
     """Count the redundancy of a scene with closed chains."""
-    from heuncli.loads.redundancy.neighbours import find_neighbour_poses  # a tree starts faster without them
     from heuncli.loads.redundancy.self_stress import (
         CachedStress,
+        find_neighbour_poses,  # a tree starts faster without them
         find_self_stress,
         find_stress_of_poses,
         make_stress_poses,
@@ -111,9 +117,23 @@ def count_after_yielding(
     """Count the self-stresses left at each pose once joints have given way; also return sentences on these joints."""
     if all(joint.stiffness is None for joint in joints):
         return int(stress.count.min()), ()
-    from heuncli.loads.redundancy.split import minimise_strain
-    from heuncli.loads.redundancy.zero_stiffness import describe_yielding, find_vanishing, make_yield_maps
+    from heuncli.loads.redundancy.split import describe_yielding, find_vanishing, make_yield_maps, minimise_strain
 
     maps = find_vanishing(stress, make_yield_maps(joints, states, stress.length))
     _, remaining = minimise_strain(stress, maps)
     return int(remaining.count.min()) if remaining is not None else 0, describe_yielding(joints, maps)
+
+
+# Poses
+
+
+def count_pose_freedoms(evaluator: Evaluator) -> int:
+    """Return the freedoms of the tree minus the rank of the rows that constrain poses, at the start."""
+    layout = evaluator.layout
+    rank = 0
+    for island in layout.islands:
+        rows = island.rows[~find_speed_rows(layout)[island.rows]]
+        J = jacobian(evaluator.workspace, layout, np.zeros(1), layout.y0[None, :]).block(rows, island.freedoms)[0]
+        J = J * layout.tables["closures"]["measure"][rows][:, None] * layout.measure[island.freedoms]
+        rank += int(np.linalg.matrix_rank(J, tol=tolerances.RANK)) if J.size else 0
+    return layout.tree_freedoms - rank

@@ -3,6 +3,13 @@ instant.
 
 A component in any direction c of a wrench is indeterminate where c . share is; so `axial` may be determinate where x,
 y, z are not.
+
+Handle separating forces of tooth flanks where it is indeterminate which of several meshes carries how much.
+
+The force depends on the magnitude of a multiplier, not on its sign, and is not linear in self-stresses. To be on the
+safe side, the separating force of every mesh that some self-stress reaches counts as one more free load.
+
+Refuse load-dependent joint friction where redundant joints leave the load indeterminate.
 """
 
 from __future__ import annotations
@@ -13,19 +20,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.errors import SolveError
+from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import make_joint_action
-from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
-from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_actions
-from heuncli.loads.kinetostatics.drive_element_numbers import DRIVE_ELEMENT_NUMBERS
-from heuncli.loads.kinetostatics.joint_axes import rotate_shares
-from heuncli.loads.kinetostatics.reactions import JointLoads
-from heuncli.loads.redundancy.self_stress import SelfStress
+from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
+from heuncli.loads.kinetostatics.coupling_numbers import DRIVE_ELEMENT_NUMBERS, list_numbers
+from heuncli.loads.kinetostatics.couplings import (
+    CouplingLoads,
+    find_joints_between,
+    has_separating_forces,
+    list_coupling_actions,
+    transfer_force,
+)
+from heuncli.loads.kinetostatics.reactions import JointLoads, remove_free_components, rotate_shares
+from heuncli.loads.redundancy.self_stress import SelfStress, find_self_stress
+from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.couplings import Coupling
+from heuncli.multibody.mechanism.model import JointLoad, ThreadLoad
+from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block, Mask
 
-if TYPE_CHECKING:  # loaded where a scene has sections
+if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.cuts import Cuts
+
+
+# Indeterminate components
 
 WORLD = ("x", "y", "z")
 
@@ -176,3 +196,90 @@ def list_indeterminate_section_names(is_open: Mapping[str, Mask]) -> list[str]:
     return list_indeterminate_names(
         {name: mask.reshape(-1, 3) if mask.ndim == 3 else mask.ravel() for name, mask in reported.items()}
     )
+
+
+# Indeterminate flanks
+
+
+def add_flank_columns(
+    stress: SelfStress, layout: Layout, joints: Sequence[JointLoads], couplings: Sequence[CouplingLoads]
+) -> SelfStress:
+    """Return the self-stresses with a column for the separating force of every mesh that they reach."""
+    if not has_separating_forces(layout.mechanism):
+        return stress
+    columns = []
+    for own in couplings:
+        for r, part in own.iter_row_parts():
+            unit = np.abs(stress.multipliers[:, r]) / np.where(stress.largest > 0.0, stress.largest, 1.0)
+            if part.separating_force is not None and unit.max(initial=0.0) > tolerances.OPEN_SHARE:
+                columns.append(
+                    _flank_column(
+                        layout, joints, part.separating_force, part.place, find_joints_between(layout, part.part)
+                    )
+                )
+    if not columns:
+        return stress
+    shares = np.concatenate([stress.shares, np.stack(columns, axis=3)], axis=3)
+    ones = np.ones((len(stress.largest), len(columns)))
+    rows = np.zeros((*stress.multipliers.shape[:2], len(columns)))
+    found: SelfStress = replace(
+        stress, shares=shares, largest=np.concatenate([stress.largest, ones], axis=1),
+        multipliers=np.concatenate([stress.multipliers, rows], axis=2),
+    )  # fmt: skip
+    return found
+
+
+def _flank_column(
+    layout: Layout, joints: Sequence[JointLoads], push: Array, place: Array, factors: dict[int, float]
+) -> Array:
+    """Return the shares of a unit separating force in all joints, (n_j, n_t, 6)."""
+    shares = np.zeros((len(joints), len(push), 6))
+    size = np.max(np.sqrt(np.sum(push * push, axis=1)))
+    for k, share in factors.items():
+        shares[k] = np.concatenate(transfer_force(joints[k], share / size * push, place), axis=1)
+    return shares
+
+
+# Friction check
+
+
+def require_determinate_friction(layout: Layout, stress: SelfStress | None, states: BodyStates, times: Array) -> None:
+    """Raise SolveError where a self-stress has a share in the load that causes friction, even if a stiffness splits
+    it.
+    """
+    if stress is None or not stress.count.any():
+        return
+    friction_loads = layout.mechanism.joint_friction
+    is_open = [is_pressure_indeterminate(layout, load, stress, states) for load in friction_loads]
+    instants = np.flatnonzero(np.any(is_open, axis=0))
+    if len(instants):
+        # only on the way to an error
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import indeterminate_friction_problem
+
+        loads = [load for load, mask in zip(friction_loads, is_open, strict=True) if mask[instants[0]]]
+        raise SolveError(indeterminate_friction_problem(layout.mechanism, loads, float(times[instants[0]])))
+
+
+def require_determinate_friction_at_start(scene: PreparedScene, runner: Runner, t: float) -> None:
+    """Raise SolveError for indeterminate friction at the start."""
+    evaluation = runner.evaluate(np.array([t]), scene.layout.y0[None, :])
+    states = make_body_states(scene.layout, evaluation)
+    require_determinate_friction(scene.layout, find_self_stress(runner, evaluation, states), states, evaluation.times)
+
+
+def is_pressure_indeterminate(
+    layout: Layout, load: JointLoad | ThreadLoad, stress: SelfStress, states: BodyStates
+) -> Mask:
+    """Return whether the pressure is indeterminate, (n_t,): a joint's force, with two ends its tilting moment, a
+    thread's force.
+    """
+    mechanism = layout.mechanism
+    if isinstance(load, ThreadLoad):
+        row = layout.rows.index(len(mechanism.joints) + load.coupling)
+        return np.asarray(stress.has_share(stress.multipliers[:, [row]]).any(axis=1))
+    shares = np.moveaxis(stress.shares[load.joint], 2, 0)
+    force, moment = remove_free_components(mechanism.joints[load.joint], states, shares[..., :3], shares[..., 3:])
+    result = stress.has_share(np.moveaxis(force, 0, 2)).any(axis=-1)
+    if load.presses == "ends":
+        result = result | stress.has_share(np.moveaxis(moment, 0, 2), stress.length).any(axis=-1)
+    return np.asarray(result)

@@ -14,8 +14,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.coupling_numbers import list_multiples
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.loads.kinetostatics.foundation import ElementKeys
-from heuncli.loads.kinetostatics.joint_axes import find_joint_axes, rotate_shares
-from heuncli.loads.kinetostatics.reactions import JointLoads
+from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_shares
 from heuncli.loads.redundancy.determinate_sums import find_determinate_sums
 from heuncli.loads.redundancy.indeterminate_components import (
     find_indeterminate_wrench,
@@ -27,8 +26,7 @@ from heuncli.loads.redundancy.indeterminate_components import (
     mask_indeterminate,
     select_coordinate_share,
 )
-from heuncli.loads.redundancy.neighbours import find_neighbour_poses
-from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress, find_self_stress
+from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress, find_neighbour_poses, find_self_stress
 from heuncli.loads.redundancy.split import SelfStressChoice, apply_choices, split_self_stress
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner

@@ -1,4 +1,4 @@
-"""Evaluate whether the conditions on a motion are true.
+"""Evaluate whether the conditions on a motion are true, and end a run where the one that ends it is.
 
 A condition is a program whose branches the kernel holds within a step. The kernel ends a step where they change, as it
 does for the branches of loads (kernel/events.py). Between two changes a condition is constant. So it is evaluated once
@@ -10,14 +10,49 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from heuncli.kernel.choose import expressions as kernel
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.motion.integration.named_points import Jet, point_motion
+from heuncli.multibody.mechanism.model import GROUND, NamedPoint
 from heuncli.multibody.response import evaluate_variables
 from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Pack
 from heuncli.scene.file_format.models import Condition
+from heuncli.scene.shapes.rotations import cross_rows
+
+# Named points
+
+Jet = tuple[float, float, float]  # value, rate, second derivative
+
+
+def point_motion(layout: Layout, point: NamedPoint, bodies: Table) -> list[dict[str, Jet]]:
+    """Return a point's position and velocity components with their derivatives at each instant, by name; bodies (n_t,
+    n_b).
+    """
+    if point.body == GROUND:
+        place = np.tile(point.place, (len(bodies), 1))
+        velocity = acceleration = np.zeros_like(place)
+    else:
+        index = layout.place[point.body]
+        body_rows = bodies[:, index]
+        arm = body_rows["R"] @ (point.place - layout.reference[index])
+        swept = cross_rows(body_rows["omega"], arm)
+        place, velocity = body_rows["r"] + arm, body_rows["v"] + swept
+        acceleration = body_rows["a"] + layout.mechanism.gravity + cross_rows(body_rows["alpha"], arm)
+        acceleration = np.nan_to_num(acceleration + cross_rows(body_rows["omega"], swept))
+    x, v, a = (rows @ point.axes.T for rows in (place, velocity, acceleration))
+    x = x + point.offset
+    return [
+        {name: (float(x[i, k]), float(v[i, k]), float(a[i, k])) for k, name in enumerate("xyz")}
+        | {f"v{name}": (float(v[i, k]), float(a[i, k]), 0.0) for k, name in enumerate("xyz")}
+        for i in range(len(bodies))
+    ]
+
+
+# Conditions
 
 HELD, FREE, TAKEN = (kernel.HOLDING[name] for name in ("held", "free", "taken"))
 Coordinates = Mapping[tuple[str, str], Jet]  # of a joint or point, and a quantity
@@ -113,3 +148,26 @@ def evaluate_coordinates(scene: Evaluator, times: Array, states: Array) -> list[
                 put_coordinate(jets_by_name, name, freedom.quantity, (q, u, a if math.isfinite(a) else 0.0))
         found.append(jets_by_name)
     return found
+
+
+# Ending
+
+
+class EndingCondition:
+    """The condition that ends a run, evaluated where a piece begins and where branches change. Remembers its last
+    value.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        self.conditions = Conditions(layout)
+        self.layout = layout
+        self.number = next(i for i, condition in enumerate(self.conditions.conditions) if condition.ends)
+        self.previous_truth: float | None = None
+
+    def has_become_true(self, t: float, state: Array) -> bool:
+        """Return whether it became true at t, in an integrated state (n',); at the start it may already be true."""
+        branches = self.layout.pack.expressions.branches()
+        now = self.conditions.evaluate_held(t, branches, read_coordinates(self.layout, t, state))[self.number]
+        became = self.previous_truth == 0.0 and now == 1.0 and t > 0.0
+        self.previous_truth = now
+        return became

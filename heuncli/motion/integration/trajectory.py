@@ -11,8 +11,8 @@ import numpy as np
 from heuncli.base.records import record
 from heuncli.kernel.choose import integration
 from heuncli.motion.integration.contacts.impulses import ImpulseEvent
+from heuncli.motion.integration.integrated_scene import NO_SEGMENTS, Segments
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.segments import NO_SEGMENTS, Segments
 from heuncli.results.results import Array, Indices, Mask
 
 

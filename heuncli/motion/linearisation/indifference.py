@@ -3,7 +3,7 @@
     K x = 0,   K = -T' M da/dq T          of displacements T x, at rest in the frame of what moves steadily
 
 Rest poses, their stability and small oscillations all use this one decision. The error of K is measured with scenes and
-poses that rounding cannot distinguish from this one (rounded_scenes.py), each brought to its own rest: what cancels in
+poses that rounding cannot distinguish from this one (displacements.py), each brought to its own rest: what cancels in
 K, between loads or inside a law, differs there by the rounding of its terms, entry by entry. K is eliminated from its
 largest entry down, in all these scenes alike, as long as an entry exceeds their differences: so soft entries are
 compared with the terms of soft motions, and not with those of stiff neighbouring ones.
@@ -16,7 +16,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
-from heuncli.motion.linearisation.displacements import displace
+from heuncli.motion.linearisation.displacements import displace, make_rounded_scene, make_rounded_state
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.motion.linearisation.reduced_equations import (
     ReducedEquations,
@@ -25,7 +25,6 @@ from heuncli.motion.linearisation.reduced_equations import (
     find_massless_spins,
     orthogonal_complement,
 )
-from heuncli.motion.linearisation.rounded_scenes import make_rounded_scene, make_rounded_state
 from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Indices

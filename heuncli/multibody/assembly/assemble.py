@@ -1,11 +1,28 @@
-"""Compute poses and rates at the start that satisfy all joints (manual/format.md, "Where bodies start")."""
+"""Compute poses and rates at the start that satisfy all joints (manual/format.md, "Where bodies start").
+
+Which bodies had to leave their place in the drawing for the joints to close, and how far.
+
+A body has such a place where `near` gives one, or where the scene is drawn in world coordinates: then most joints close
+as drawn, and no held or driven coordinate needs another pose. Other bodies are placed, not moved.
+
+Conditions at the start of one-sided joints: slack ropes, bodies that leave their path, rods free between limits.
+
+A rope shorter than the distance of its points as assembled without it acts as a rod; a longer one is slack and sets no
+condition; one that just reaches, or whose length is not given, is taut: it keeps its rate where the held velocities
+allow it. Where they do not, an impact occurs at once, or it goes slack.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from heuncli.base import tolerances
+from heuncli.base.errors import SolveError
+from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
-from heuncli.multibody.assembly.conditions import JointCondition, joint_conditions
-from heuncli.multibody.assembly.displaced_bodies import describe_displaced_bodies
-from heuncli.multibody.assembly.gaps import mean_arm
+from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint, JointGaps, joint_conditions, mean_arm
 from heuncli.multibody.assembly.poses import PoseAssembly
 from heuncli.multibody.assembly.rates import RateAssembly
 from heuncli.multibody.assembly.start_choices import (
@@ -15,9 +32,98 @@ from heuncli.multibody.assembly.start_choices import (
     format_choices,
 )
 from heuncli.multibody.assembly.walk import AssemblyPoses, PlacementTree
-from heuncli.multibody.mechanism.model import Assembly, Mechanism
+from heuncli.multibody.mechanism.model import GROUND, Assembly, Body, Mechanism
+from heuncli.multibody.mechanism.size import extent_points, scene_size
 from heuncli.multibody.stages import NO_CACHE, Stages
-from heuncli.scene.shapes.rotations import cross_rows
+from heuncli.results.results import Array
+from heuncli.scene.expressions.roller_path import left_normal
+from heuncli.scene.shapes.rotations import cross_rows, vector_from_rotation
+
+# Displaced bodies
+
+MIN_ANGLE = 0.01  # [deg] that is mentioned
+
+
+def describe_displaced_bodies(
+    mechanism: Mechanism,
+    conditions: Sequence[JointCondition],
+    drawn_poses: AssemblyPoses,
+    start: Assembly,
+    lever: float,
+) -> tuple[str, ...]:
+    """Describe the bodies that moved by more than the errors of typed digits, the largest displacement first.
+
+    lever: the size of the joints' levers, which gaps are compared with [m]
+    """
+    in_place = is_drawn_in_place(mechanism, conditions, drawn_poses, lever)
+    displacements = []
+    for i, body in enumerate(mechanism.bodies):
+        counts = in_place or body.near_position is not None, in_place or body.near_rotation is not None
+        if (
+            any(counts)
+            and (distance := _largest_displacement(body, drawn_poses, start, i, counts)) > tolerances.UNMOVED * lever
+        ):
+            displacements.append((distance, i))
+    size = scene_size(mechanism, start) if displacements else 1.0
+    displacements = sorted(
+        ((distance, i) for distance, i in displacements if distance > tolerances.MOVED * size),
+        key=lambda w: (-w[0], w[1]),
+    )
+    return tuple(
+        _format_displacement(mechanism.bodies[i].name, distance, start.rotation[i] @ drawn_poses.R[i].T)
+        for distance, i in displacements
+    )
+
+
+def _format_displacement(name: str, distance: float, rotation: Array) -> str:
+    """Format a body's name, the displacement of the point of it that moved most, and its rotation angle."""
+    angle = float(np.degrees(np.linalg.norm(vector_from_rotation(rotation))))
+    return f"{name} by {distance:.2g} m" + (f" and {angle:.2g} deg" if angle >= MIN_ANGLE else "")
+
+
+def is_drawn_in_place(
+    mechanism: Mechanism, conditions: Sequence[JointCondition], drawn_poses: AssemblyPoses, lever: float
+) -> bool:
+    """Whether the scene is drawn in world coordinates, so that a body's place in the drawing is intended.
+
+    Bodies drawn each about its own origin fit at a joint or two by chance; in a scene drawn in place most joints do,
+    apart from slips. A joint between two origins fits however the bodies are drawn and proves nothing; a robot may have
+    many such.
+    """
+    constraining = [d for d in conditions if d.pose.hold != "none"]
+    if not constraining:
+        return False
+    distance, angle = JointGaps(constraining, [d.pose for d in constraining])(drawn_poses.x, drawn_poses.R)
+    is_open = np.maximum(distance / lever, angle) > tolerances.DRAWN_IN_PLACE
+    kinds = [JOINTS[mechanism.joints[d.joint].kind] for d in constraining]
+    has_prescribed = [
+        d.pose != (kind.hold.gap_type, kind.turn.condition) for d, kind in zip(constraining, kinds, strict=True)
+    ]
+    is_significant = np.array([not _joins_origins(mechanism, d) for d in constraining])
+    return not bool(np.any(is_open & np.array(has_prescribed))) and 2 * int(np.sum(is_open & is_significant)) < int(
+        np.sum(is_significant)
+    )
+
+
+def _joins_origins(mechanism: Mechanism, condition: JointCondition) -> bool:
+    joint = mechanism.joints[condition.joint]
+    return not (np.any(joint.p) or np.any(joint.q))
+
+
+def _largest_displacement(
+    body: Body, drawn_poses: AssemblyPoses, start: Assembly, i: int, counts: tuple[bool, bool]
+) -> float:
+    """Return how far the point of a body that moved most is from its place in the drawing [m]; counts: its shift, its
+    rotation.
+    """
+    rotation_change: Array = start.rotation[i] - drawn_poses.R[i]
+    shift = start.position[i] - drawn_poses.x[i] + rotation_change @ body.center if counts[0] else np.zeros(3)
+    if counts[1]:
+        shift = shift + (np.array(extent_points(body)) - body.center) @ rotation_change.T
+    return float(np.sqrt(np.max(np.sum(np.square(np.atleast_2d(shift)), axis=1))))
+
+
+# Assemble
 
 
 @record
@@ -44,8 +150,6 @@ def assemble_by_stages(mechanism: Mechanism, t0: float, stages: Stages = NO_CACH
     """Assemble a mechanism at t0, with the poses and the rates as stages of their own."""
     conditions, size = joint_conditions(mechanism, t0), mean_arm(mechanism)
     if mechanism.stops or any(joint.restitution is not None for joint in mechanism.joints):
-        from heuncli.multibody.assembly.slack_ropes import assemble_with_ropes  # few scenes have them
-
         return assemble_with_ropes(
             mechanism, conditions, size, lambda asking: _assemble_conditions(mechanism, asking, size, stages)
         )
@@ -100,3 +204,71 @@ def _find_rates(
         displaced_bodies=describe_displaced_bodies(mechanism, conditions, start_poses.drawn_poses, start, size),
         start_motions=describe_resting_centres(mechanism, assembly),
     )
+
+
+# Slack ropes
+
+UNCONSTRAINED = JointConstraint("none", "free")
+Assemble = Callable[[list[JointCondition]], Assembly]
+
+
+def find_one_sided_joints(mechanism: Mechanism) -> tuple[list[int], list[int]]:
+    """Find the joints that are ropes or one-sided paths, and the rods whose length a stop limits."""
+    free = sorted({stop.joint for stop in mechanism.stops if stop.quantity == "length"})
+    ropes = [
+        k
+        for k, joint in enumerate(mechanism.joints)
+        if joint.restitution is not None and joint.travel is None and k not in free
+    ]
+    return ropes, free
+
+
+def assemble_with_ropes(
+    mechanism: Mechanism, conditions: Sequence[JointCondition], size: float, assemble: Assemble
+) -> Assembly:
+    """Assemble the start, with ropes as taut as they are found. Raises SolveError as `assemble` does."""
+    ropes, free = find_one_sided_joints(mechanism)
+    present_conditions = list(conditions)
+    for k in (*ropes, *free):
+        present_conditions[k] = replace(conditions[k], pose=UNCONSTRAINED, rate=UNCONSTRAINED)
+    start = assemble(present_conditions)
+    tolerance = tolerances.OPEN_GAP * size
+    short: set[int] = set()
+    while stretched := {k for k in set(ropes) - short if rope_excess(mechanism, start, k) > tolerance}:
+        short |= stretched
+        for k in stretched:
+            present_conditions[k] = replace(conditions[k], rate=UNCONSTRAINED)
+        start = assemble(present_conditions)
+    taut = [k for k in ropes if abs(rope_excess(mechanism, start, k)) <= tolerance]
+    if not taut:
+        return start
+    taut_conditions = list(present_conditions)
+    for k in taut:
+        taut_conditions[k] = replace(present_conditions[k], rate=conditions[k].rate)
+    try:
+        return assemble(taut_conditions)
+    except SolveError as error:
+        if error.problems[0].code != "rates-do-not-fit":
+            raise
+        return start
+
+
+def rope_excess(mechanism: Mechanism, start: Assembly, k: int) -> float:
+    """Distance of a rope's points less its length [m]; 0 for a rope as long as this distance.
+
+    For a path that pushes to its left: how far its point is to the right of it.
+    """
+    joint = mechanism.joints[k]
+    if joint.length is None and joint.path is None:
+        return 0.0
+    places = [
+        point if body == GROUND else start.position[body] + start.rotation[body] @ point
+        for body, point in ((joint.a, joint.p), (joint.b, joint.q))
+    ]
+    D = places[1] - places[0]
+    if joint.path is not None:
+        offset = D if joint.a == GROUND else D @ start.rotation[joint.a]
+        r, slope, _ = joint.path.evaluate(float(joint.path.find_nearest(offset)))
+        return float((r - offset) @ left_normal(joint.path.normal, slope))
+    assert joint.length is not None
+    return float(np.sqrt(D @ D)) - joint.length

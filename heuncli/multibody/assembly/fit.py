@@ -9,7 +9,7 @@
     (3) polish: least Σθ² from the start of (2), then least Σd², among the poses that are closed
 
 θ turns of attitudes that are not given, d shifts of pivots that are not given, L the scene's size, l the island's own;
-y, C, e as in row_reduction.py.
+y, C, e as in rows.py.
 """
 
 from __future__ import annotations
@@ -22,11 +22,9 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import count_rank
 from heuncli.multibody.assembly.conditions import JointCondition
-from heuncli.multibody.assembly.continuation import iter_continuation
 from heuncli.multibody.assembly.islands import AssemblyIsland
-from heuncli.multibody.assembly.row_reduction import ReducedIsland, least_motion
-from heuncli.multibody.assembly.rows import Rows, pose_rows
-from heuncli.multibody.assembly.walk import AssemblyPoses, place_body
+from heuncli.multibody.assembly.rows import ReducedIsland, Rows, least_motion, pose_rows
+from heuncli.multibody.assembly.walk import AssemblyPoses, iter_continuation, place_body
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import rotation_from_vector, vector_from_rotation
 
@@ -232,7 +230,7 @@ class IslandFit:
         self, drawn_poses: tuple[Array, Array], prescribed: Mapping[int, tuple[bool, bool]], limit: float
     ) -> bool:
         """Return whether it closes as drawn apart from the prescribed coordinates, and all the way to these
-        (continuation.py).
+        (walk.py).
         """
         self.restore_poses(drawn_poses)
         final_conditions, lever, own_prescribed = (

@@ -7,18 +7,24 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.multibody.assembly.conditions import JointCondition
-from heuncli.multibody.assembly.continuation import prescribed_coordinates
-from heuncli.multibody.assembly.errors import does_not_fit, no_length, too_many
+from heuncli.multibody.assembly.conditions import JointCondition, JointGaps
 from heuncli.multibody.assembly.fit import IslandFit
-from heuncli.multibody.assembly.gaps import JointGaps
-from heuncli.multibody.assembly.islands import MAX_BODIES, AssemblyIsland, Islands, settle_islands
+from heuncli.multibody.assembly.islands import (
+    MAX_BODIES,
+    AssemblyIsland,
+    Islands,
+    does_not_fit,
+    no_length,
+    settle_islands,
+    too_many,
+)
 from heuncli.multibody.assembly.walk import (
     AssemblyPoses,
     PlacementTree,
     find_placement_tree,
     place_bodies,
     place_body,
+    prescribed_coordinates,
     start_poses,
 )
 from heuncli.multibody.mechanism.model import GROUND, Mechanism

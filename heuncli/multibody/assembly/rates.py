@@ -19,10 +19,23 @@ from heuncli.base import tolerances
 from heuncli.base.linear_algebra import solve_with_null_space
 from heuncli.base.records import record, replace
 from heuncli.multibody.assembly.conditions import JointCondition
-from heuncli.multibody.assembly.errors import rates_do_not_fit, singular_pose, too_many
-from heuncli.multibody.assembly.islands import MAX_BODIES, AssemblyIsland, Islands, settle_islands
-from heuncli.multibody.assembly.row_reduction import ReducedIsland, least_motion
-from heuncli.multibody.assembly.rows import Rows, acceleration_rows, rate_residuals, rate_rows
+from heuncli.multibody.assembly.islands import (
+    MAX_BODIES,
+    AssemblyIsland,
+    Islands,
+    rates_do_not_fit,
+    settle_islands,
+    singular_pose,
+    too_many,
+)
+from heuncli.multibody.assembly.rows import (
+    ReducedIsland,
+    Rows,
+    acceleration_rows,
+    least_motion,
+    rate_residuals,
+    rate_rows,
+)
 from heuncli.multibody.assembly.walk import AssemblyPoses, find_placement_tree
 from heuncli.multibody.mechanism.model import GROUND, Directed, Mechanism
 from heuncli.results.results import Array

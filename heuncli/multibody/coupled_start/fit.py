@@ -16,8 +16,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import solve_with_null_space
 from heuncli.base.records import record
-from heuncli.multibody.coupled_start.freedoms import FreedomMotion, Freedoms
-from heuncli.multibody.coupled_start.held_values import Rows, held_poses, held_rates
+from heuncli.multibody.coupled_start.freedoms import FreedomMotion, Freedoms, Rows, held_poses, held_rates
 from heuncli.multibody.mechanism.model import Assembly
 from heuncli.multibody.response import MeasuredState
 from heuncli.multibody.tree.prepare import PreparedScene

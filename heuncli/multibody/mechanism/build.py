@@ -12,8 +12,7 @@ import numpy as np
 
 from heuncli.base.joint_kinds import TYPES, JointKind
 from heuncli.base.records import replace
-from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.directions import unit_vector
+from heuncli.multibody.mechanism.couplings import Coupling, unit_vector
 from heuncli.multibody.mechanism.model import (
     GROUND,
     Blow,

@@ -2,6 +2,8 @@
 
 Gears, belts, screws, ropes, cams and wheels are couplings. Their conditions are given here in the numbers that the
 kernel reads (kernel/scene.py, Closure); later code does not depend on their kinds, except to report on them.
+
+Directions as unit vectors.
 """
 
 from __future__ import annotations
@@ -16,6 +18,9 @@ from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import couplings as spec
+from heuncli.scene.file_format.models import Vec
+
+# Couplings
 
 GROUND = -1
 Place = Array | tuple[float, float, float]
@@ -195,3 +200,14 @@ class Coupling:
     def joints(self) -> frozenset[int]:
         """The joints whose coordinates it contains."""
         return frozenset(x.joint for row in self.rows for part in row.parts for x in part.coordinates)
+
+
+# Directions
+
+
+def unit_vector(vector: Vec) -> Array:
+    """Normalize a vector; the spec layer has checked that it is not zero."""
+    v = np.array(vector, dtype=float)
+    v = v / np.abs(v).max()
+    along: Array = v / np.sqrt(v @ v)
+    return along

@@ -1,9 +1,20 @@
-"""Belts and chains: two strands along the lines tangent to both pulleys, in the axes of their carrier.
+"""Belts and chains as strands, and elastic ropes: what pulls along a line.
+
+Belts and chains: two strands along the lines tangent to both pulleys, in the axes of their carrier.
 
     nu . x = (r_1 - r_2) / D, crossed (r_1 + r_2) / D       nu: from the centre to a strand, x: to the other
     T_1 = T_0 + lambda / 2,  T_2 = T_0 - lambda / 2    the first strand is the tight one when the first pulley drives
 
 The belt is inextensible and does not slip. Its own mass, and so its centrifugal force at speed, is left out.
+
+Elastic ropes: their pull as a function of their length and its rate.
+
+    T = k x + c e',   x = S - l0,  k = k0 L / l0,  c = c0 L / l0,  e' = S' - S l0' / l0
+
+S: the length along which the rope runs; l0: its unloaded length, which is L at the start where a law gives it in time.
+
+So EA = k0 L is constant while a rope is drawn in or paid out, and equal strain means equal tension. A rope that only
+pulls is slack while x < 0, and does not push where the damping force exceeds the spring force.
 """
 
 from __future__ import annotations
@@ -16,11 +27,22 @@ from heuncli.base.errors import Finding
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.couplings import Coordinate, CoupledRow
 from heuncli.multibody.mechanism.gearing import GearMember, find_gears, joint_line, mesh_parts
-from heuncli.multibody.mechanism.model import Body, Joint, PairLoad
+from heuncli.multibody.mechanism.model import Body, Joint, PairLoad, RopeLoad
 from heuncli.results.results import Array
-from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.expressions.composition import (
+    add_expressions,
+    apply_step,
+    combine_expressions,
+    limit_below,
+    make_variable,
+    multiply_expressions,
+)
+from heuncli.scene.expressions.programs import LOADS, OPS, Expression
 from heuncli.scene.file_format import couplings as c
+from heuncli.scene.file_format.couplings import Rope
 from heuncli.scene.shapes.rotations import cross_vectors
+
+# Strands
 
 
 @record
@@ -90,3 +112,39 @@ def find_strands(entry: c.Belt, first: GearMember, second: GearMember) -> tuple[
         begin, end = first.point + r1 * nu, first.point + d + (-r2 if entry.crossed else r2) * nu
         both.append(BeltStrand(begin, end, (end - begin) / math.sqrt(float((end - begin) @ (end - begin)))))
     return (both[0], both[1]) if first.sign > 0.0 else (both[1], both[0])
+
+
+# Stretching
+
+
+def rope_load(name: str, entry: Rope, row: CoupledRow, length: float) -> RopeLoad:
+    """Make the load of an elastic rope, along the parts of what would be its condition; length: unloaded [m]."""
+    assert entry.stiffness is not None
+    prefix = f"{LOADS}.{name}"
+    free = Expression.from_number(length) if entry.law is None else entry.law
+    x = combine_expressions(make_variable((prefix, "length")), free, OPS["sub"], f"stretch of rope {name}")
+    pull = multiply_expressions(divide_by_length(entry.stiffness, length, entry.law), x)
+    if entry.damping:
+        rate = make_variable((prefix, "speed"))
+        if entry.law is not None:
+            strained = combine_expressions(make_variable((prefix, "length")), entry.law, OPS["div"], "1 + strain")
+            rate = combine_expressions(
+                rate,
+                multiply_expressions(strained, make_variable((prefix, "drawn"))),
+                OPS["sub"],
+                "rate of the stretch",
+            )
+        pull = add_expressions(pull, multiply_expressions(divide_by_length(entry.damping, length, entry.law), rate))
+    if entry.tension_only:
+        pull = limit_below(pull, 0.0)
+        if entry.damping:
+            pull = multiply_expressions(apply_step(x), pull)
+    value = multiply_expressions(Expression.from_number(-1.0), pull).with_source(f"tension of rope {name}")
+    return RopeLoad(name, row.parts, value, entry.stiffness, length, entry.law, entry.damping, entry.tension_only)
+
+
+def divide_by_length(at_length: float, length: float, law: Expression | None) -> Expression:
+    """Make an expression that varies as 1 / l0 along a law, from its value at one length."""
+    if law is None:
+        return Expression.from_number(at_length)
+    return combine_expressions(Expression.from_number(at_length * length), law, OPS["div"], "per unloaded length")

@@ -19,7 +19,7 @@ from heuncli.base import tolerances
 from heuncli.base.linear_algebra import null_space
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import GROUND, Joint
-from heuncli.multibody.reduction.model import Reduction
+from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.smaller_scene import BodyParts, BodyPlacement, make_smaller_scene
 from heuncli.multibody.reduction.spins import find_constant_spins
 from heuncli.multibody.reduction.state_embedding import make_state_embedding

@@ -24,7 +24,7 @@ from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import Body, BushingLoad, Mechanism, PairLoad, PointLoad, RopeLoad, ThreadLoad
-from heuncli.multibody.reduction.model import Reduction
+from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.state_embedding import rotate_vector
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene

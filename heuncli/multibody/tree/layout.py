@@ -1,19 +1,26 @@
-"""The assembled mechanism laid out for the kernel: its tables, and the data needed to read its solutions."""
+"""The assembled mechanism laid out for the kernel: its tables, and the data needed to read its solutions.
+
+A frame is the part of it that does not depend on the value of any load: it is kept where only loads change.
+"""
 
 from __future__ import annotations
 
 from array import array
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
-from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.base.records import fields, record, replace
+from heuncli.kernel.choose import scene as kernel
+from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.tree.rows import VariableRow, make_kernel_table
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Mask
 from heuncli.scene.expressions.programs import Pack
+
+# Layout
 
 
 @record
@@ -61,8 +68,8 @@ class Contact:
 
 
 @record
-class Layout:
-    """A scene laid out for the kernel, with the data needed to read its solutions.
+class LayoutFrame:
+    """The part of a layout that does not depend on the value of any load: the tree, its rows, the start.
 
     place: index in the tree by body (the order of spanning.links)
     reference (n, 3): each body's joint point in its own axes, tree order
@@ -75,11 +82,10 @@ class Layout:
     energy_group: index of the group of components that is the drives' work (-1: none)
     weights (n_state,): of the components of the state: 1 for angles and rotations, 1 / size for shifts, 0 for
     components that do not control the step size
-    tables: the kernel's structs by name (kernel/scene.py)
-    indices: the indices that the closure rows point into
+    tables: the kernel's structs by name (kernel/scene.py); a frame lacks those of loads, watched values and variables
+    indices: the indices that the closure rows point into; in a frame an array that can be made read-only
     velocity_count: number of generalised velocities of the tree: scalar freedoms, and three rotations for each ball
     column_count: numbers in the columns of all closure rows
-    pack: the programs of all expressions
     work_at: index of the work in the state (-1: it is not computed)
     islands: the groups of closure rows whose loops share bodies
     contacts: the rows that open and close
@@ -88,28 +94,46 @@ class Layout:
     flat: whether the kernel moves it in the plane (kernel/plane.py), without loads across it
     """
 
-    mechanism: Mechanism
     spanning: SpanningTree
     place: dict[int, int]
     reference: Array
     freedoms: tuple[Freedom, ...]
     rows: tuple[int, ...]
     starts: tuple[JointStart, ...]
-    counters: dict[int, int]  # cut joint -> place of its counted angle in the state
+    counters: dict[int, int]
     size: float
     y0: Array
     energy_group: int
     weights: Array
     tables: dict[str, Table]
-    indices: array[int]
-    velocity_count: int  # freedoms of the tree, a ball's three turns among them
+    indices: Array | array[int]
+    velocity_count: int
     column_count: int
+    work_at: int
+    islands: tuple[Island, ...]
+    contacts: tuple[Contact, ...]
+    measure: Array
+    flat: bool
+
+    def relative(self, body: int, point: Array) -> Array:
+        """Return a body's point relative to its joint point, body axes; a ground point is returned unchanged."""
+        return point if body == GROUND else point - self.reference[self.place[body]]
+
+    def in_tree(self, body: int) -> int:
+        """Return a body's index in the tree."""
+        return body if body == GROUND else self.place[body]
+
+
+@record
+class Layout(LayoutFrame):
+    """A scene laid out for the kernel, with the data needed to read its solutions.
+
+    pack: the programs of all expressions
+    """
+
+    mechanism: Mechanism
     pack: Pack
-    work_at: int  # index of the work in the state; -1: it is not integrated
-    islands: tuple[Island, ...] = ()
-    contacts: tuple[Contact, ...] = ()
-    measure: Array = np.zeros(0)
-    flat: bool = False
+    indices: array[int]
 
     @property
     def bodies(self) -> Table:
@@ -186,3 +210,46 @@ def rate_indices(layout: Layout) -> Array:
         if not freedom["driven"]:
             indices[freedom["answer_at"]] = freedom["u_at"]
     return indices
+
+
+# Held speeds
+
+SPEEDS = (kernel.ROLLS, kernel.ROLLS_ASIDE, kernel.BALL_ROLLS)
+
+
+def find_speed_rows(layout: Layout) -> Mask:
+    """Return which rows constrain a speed, (rows,); a wheel's row is the sum of one part."""
+    closures, parts = layout.tables["closures"], layout.tables["parts"]
+    sums = closures["kind"] == kernel.SUM
+    is_speed = np.zeros(len(closures), dtype=bool)
+    is_speed[sums] = np.isin(parts["kind"][closures["part"][sums]], SPEEDS)
+    return is_speed
+
+
+def make_frame(layout: Layout) -> LayoutFrame:
+    """Return the part of a layout that does not depend on loads."""
+    values = {name: getattr(layout, name) for name in LayoutFrame.__annotations__}
+    return LayoutFrame(**values | {"indices": np.array(layout.indices)})
+
+
+def make_layout(frame: LayoutFrame, mechanism: Mechanism, pack: Pack, loads: dict[str, Table]) -> Layout:
+    """Make a layout from a frame; pack: the programs; loads: the tables that a frame does not have."""
+    values = fields(frame) | {"indices": array("i", frame.indices.tobytes()), "tables": frame.tables | loads}
+    return Layout(mechanism=mechanism, pack=pack, **values)
+
+
+def remove_loads(layout: Layout) -> Layout:
+    """Return a layout with the tables of a scene without loads and watched conditions."""
+    return replace(layout, tables=layout.tables | empty_load_tables())
+
+
+@cache
+def empty_load_tables() -> dict[str, Table]:
+    """Return the tables that a frame does not have, for a scene without loads: the time is a variable of all of
+    them.
+    """
+    return {
+        "loads": make_kernel_table(kernel.Load, []),
+        "variables": make_kernel_table(kernel.Variable, [VariableRow()]),
+        "watches": make_kernel_table(kernel.Watch, []),
+    }

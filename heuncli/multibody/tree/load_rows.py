@@ -25,8 +25,7 @@ from heuncli.multibody.mechanism.model import (
     ThreadLoad,
 )
 from heuncli.multibody.stages import NO_CACHE, Stages
-from heuncli.multibody.tree.frame import LayoutFrame, empty_load_tables, make_layout
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.layout import Layout, LayoutFrame, empty_load_tables, make_layout
 from heuncli.multibody.tree.rows import NO_PROGRAM, ZERO, LoadRow, Program, VariableRow, WatchRow, make_kernel_table
 from heuncli.multibody.tree.tables import Table, flat_dtype
 from heuncli.scene.expressions.programs import LOADS, Expression, Pack, Variable

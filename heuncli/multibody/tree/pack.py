@@ -20,12 +20,16 @@ from heuncli.multibody.mechanism.model import (
     RopeLoad,
     Stop,
 )
-from heuncli.multibody.tree.closure_paths import index_rows
-from heuncli.multibody.tree.coupled_rows import add_lift, assembled_length, loaded_bodies, make_part_row, make_sum_row
-from heuncli.multibody.tree.flat import moves_in_plane, remove_direction_tilt, remove_tilt
-from heuncli.multibody.tree.frame import LayoutFrame, make_frame
+from heuncli.multibody.tree.closure_rows import (
+    add_lift,
+    assembled_length,
+    index_rows,
+    loaded_bodies,
+    make_part_row,
+    make_sum_row,
+)
 from heuncli.multibody.tree.islands import add_islands
-from heuncli.multibody.tree.layout import Contact, Freedom, Layout
+from heuncli.multibody.tree.layout import Contact, Freedom, Layout, LayoutFrame, make_frame
 from heuncli.multibody.tree.load_rows import find_used_names, lay_out_loads, make_programs
 from heuncli.multibody.tree.rows import (
     NO_PROGRAM,
@@ -53,7 +57,7 @@ from heuncli.multibody.tree.starts import (
     point_distance,
     to_direction,
 )
-from heuncli.multibody.tree.tables import limits_table, to_sym3
+from heuncli.multibody.tree.tables import limits_table, moves_in_plane, remove_direction_tilt, remove_tilt, to_sym3
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Pack
@@ -569,7 +573,9 @@ class _LayoutBuilder:
             column_count=column_count,
             pack=Pack(),
             work_at=work_at,
+            islands=(),
             contacts=tuple(self.contacts),
+            measure=np.zeros(0),
             flat=self._is_flat() and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return make_frame(add_islands(layout))

@@ -14,9 +14,8 @@ from heuncli.multibody.assembly.assemble import assemble
 from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.mechanism.size import scene_size
 from heuncli.multibody.stages import NO_CACHE, Stages
-from heuncli.multibody.tree.frame import LayoutFrame
 from heuncli.multibody.tree.idle_spins import IdleSpin, find_idle_spins, find_massless_axes
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.layout import Layout, LayoutFrame
 from heuncli.multibody.tree.load_rows import find_used_names, lay_out_loads, make_programs
 from heuncli.multibody.tree.pack import build_frame
 from heuncli.multibody.tree.rows import Program
@@ -56,11 +55,11 @@ def prepare(
     """
     start = assemble(mechanism, t0, stages)
     if any(j.drive is not None and j.drive.adds_to_start for j in mechanism.joints):
-        from heuncli.multibody.tree.driven_starts import prescribe_coordinates  # few scenes have drives by a rate
+        from heuncli.multibody.tree.starts import prescribe_coordinates  # few scenes have drives by a rate
 
         mechanism = prescribe_coordinates(mechanism, start)
     if mechanism.couplings:
-        from heuncli.multibody.tree.couplings_at_start import add_start_couplings  # few scenes have them
+        from heuncli.multibody.tree.rope_routes import add_start_couplings  # few scenes have them
 
         mechanism = add_start_couplings(mechanism, start, t0)
     scene = lay_out_scene(mechanism, start, stages=stages)

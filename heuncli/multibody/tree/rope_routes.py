@@ -3,6 +3,8 @@
 Between two places where a rope is held, its ends and the sheaves on which it does not slip, one tension acts in all
 strands: one condition, whose parts are the strands, the arcs on the sheaves where it slides, and the wound lengths on
 those where it does not (kernel/sheaves.py). Which way round a sheave is meant can only be found from the poses.
+
+Couplings whose conditions depend on the poses at the start: ropes.
 """
 
 from __future__ import annotations
@@ -17,10 +19,13 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import NO_VECTOR, Coordinate, CoupledRow, Coupling, CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism, RopeLoad
+from heuncli.multibody.mechanism.strands import rope_load
 from heuncli.multibody.tree.starts import compute_joint_start
 from heuncli.results.results import Array
 from heuncli.scene.file_format import couplings as spec
+
+# Rope routes
 
 Z = np.array([0.0, 0.0, 1.0])
 SIDES = "left (counter-clockwise about the axis) or right"
@@ -378,3 +383,30 @@ def wound_length(mechanism: Mechanism, start: Assembly, parts: Sequence[Coupling
     """Contribution of the sheaves' rotations at the start to a condition's length."""
     coordinates = [turn for part in parts for turn in part.coordinates]
     return sum(x.ratio * compute_joint_start(mechanism, start, mechanism.joints[x.joint]).angle for x in coordinates)
+
+
+# Couplings at start
+
+
+def add_start_couplings(mechanism: Mechanism, start: Assembly, t0: float) -> Mechanism:
+    """Add the conditions of such couplings, and the loads of elastic ropes, to the mechanism.
+
+    Raises SolveError where they are impossible.
+    """
+    couplings = tuple(
+        BUILDERS[coupling.entry.type](mechanism, start, coupling) if coupling.entry.type in BUILDERS else coupling
+        for coupling in mechanism.couplings
+    )
+    loads = tuple(make_rope_load(coupling, t0) for coupling in couplings if coupling.stretched_row is not None)
+    return replace(mechanism, couplings=couplings, loads=(*mechanism.loads, *loads))
+
+
+def make_rope_load(coupling: Coupling, t0: float) -> RopeLoad:
+    """Make the load of an elastic rope, with its unloaded length as given, or as assembled."""
+    rope, row = coupling.entry, coupling.stretched_row
+    assert isinstance(rope, spec.Rope) and row is not None and row.length is not None
+    length = row.length if rope.law is None else rope.law.value(t0)
+    return rope_load(coupling.name, rope, row, length)
+
+
+BUILDERS = {"rope": route_rope}

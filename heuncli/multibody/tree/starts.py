@@ -1,4 +1,7 @@
-"""The joints in the assembled mechanism: coordinates, rates, reference attitudes, directions."""
+"""The joints in the assembled mechanism: coordinates, rates, reference attitudes, directions.
+
+Drives by a rate, or counted from the assembled start: after assembly their coordinates are known in time.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,12 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, Direction
-from heuncli.base.records import record
+from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import GROUND, Assembly, Joint, Mechanism
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.results.results import Array
+from heuncli.scene.expressions.discontinuities import find_first_not_positive
+from heuncli.scene.expressions.integrals import add_start_value
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.shapes.rotations import (
     cross_rows,
@@ -21,6 +26,8 @@ from heuncli.scene.shapes.rotations import (
     rotation_between,
     rotation_matrix_about,
 )
+
+# Starts
 
 Z = np.array([0.0, 0.0, 1.0])
 
@@ -204,3 +211,55 @@ def body_state(start: Assembly, body: int) -> tuple[Array, Array, Array, Array]:
     if body == GROUND:
         return np.zeros(3), np.eye(3), np.zeros(3), np.zeros(3)
     return start.position[body], start.rotation[body], start.velocity[body], start.angular_velocity[body]
+
+
+# Driven starts
+
+
+def prescribe_coordinates(mechanism: Mechanism, start: Assembly) -> Mechanism:
+    """Make all drives prescribe their coordinates; start: assembled at t = 0."""
+    return replace(
+        mechanism, joints=tuple(_prescribe_coordinate(mechanism, start, joint) for joint in mechanism.joints)
+    )
+
+
+def require_lengths(mechanism: Mechanism, last: float) -> None:
+    """Raise SolveError [drive-length] where the length of a driven rod becomes zero within a run up to `last`."""
+    problems = []
+    for joint in mechanism.joints:
+        drive = joint.drive
+        end_time = (
+            find_first_not_positive(drive.value, last) if drive is not None and drive.quantity == "length" else None
+        )
+        if drive is not None and end_time is not None:
+            message = f"drive {drive.name}: the length of rod {joint.name} reaches 0 at t = {end_time:.4g} s"
+            hint = "end the run earlier, or keep the length above 0"
+            problems.append(Problem("drive-length", message, drive.value.location, hint))
+    if problems:
+        raise SolveError(*problems)
+
+
+def _prescribe_coordinate(mechanism: Mechanism, start: Assembly, joint: Joint) -> Joint:
+    drive = joint.drive
+    if drive is None or not drive.adds_to_start:
+        return joint
+    zero = drive.zero_assembled and drive.quantity == "angle"  # a travel counts from where the points are level
+    value = add_start_value(drive.value, _start_coordinate(mechanism, start, joint))
+    begun_joint: Joint = replace(joint, drive=replace(drive, value=value, from_start=False, zero_assembled=zero))
+    return begun_joint
+
+
+def _start_coordinate(mechanism: Mechanism, start: Assembly, joint: Joint) -> float:
+    """Return the driven coordinate at the start: an angle [rad], a travel or a length [m]; the held value where there
+    is one.
+    """
+    assert joint.drive is not None
+    if joint.drive.quantity == "length":
+        return joint.length if joint.length is not None else point_distance(start, joint)
+    start_values = compute_joint_start(mechanism, start, joint)
+    held, found = (
+        (joint.angle, start_values.angle) if joint.drive.quantity == "angle" else (joint.travel, start_values.travel)
+    )
+    # a held value is measured from the assembled start, too
+    is_relative = joint.to_axis_given or joint.drive.zero_assembled
+    return held if held is not None and not is_relative else found

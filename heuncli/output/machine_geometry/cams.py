@@ -11,8 +11,8 @@ import numpy as np
 
 from heuncli.multibody.mechanism.build import build_joint
 from heuncli.multibody.mechanism.build_couplings import cam_rows
-from heuncli.multibody.mechanism.cam_profiles import Flank, compute_flank
 from heuncli.multibody.mechanism.couplings import CouplingPart
+from heuncli.multibody.tree.cam_flanks import Flank, compute_flank
 from heuncli.output.machine_geometry.discs import Disc
 from heuncli.output.machine_geometry.threads import find_drawn_pose
 from heuncli.results.results import Array

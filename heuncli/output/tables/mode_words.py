@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.motion.linearisation.modes import SceneModes
-from heuncli.motion.linearisation.oscillations import Mode
+from heuncli.motion.linearisation.oscillations import Mode, SceneModes
 from heuncli.study.quantities.digits import choose_style, format_error
 
 STATE_PHRASES = {"rest": "about the rest position", "state": "about the start"}

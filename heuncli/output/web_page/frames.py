@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.motion.integration.segments import find_one_sided_limits
+from heuncli.motion.integration.integrated_scene import find_one_sided_limits
 from heuncli.results.results import Array, Indices, Results
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.queries.study import Study

@@ -22,8 +22,7 @@ from heuncli.base.records import record
 from heuncli.base.spelling import find_similar, suggest
 from heuncli.base.units import RATE, UNITS, Dimension, canonical_symbol, describe, parse_unit, si_expression_hint
 from heuncli.results.results_schema import REPORT_OF
-from heuncli.scene.expressions.calculations import CalculationCache
-from heuncli.scene.expressions.codegen import COMPARISONS, MAX_NODES, CodeGenerator, Part
+from heuncli.scene.expressions.codegen import COMPARISONS, CalculationCache, CodeGenerator, Part
 from heuncli.scene.expressions.dimensions import (
     FACTOR,
     FREE,
@@ -32,26 +31,25 @@ from heuncli.scene.expressions.dimensions import (
     literal_dimension,
     power_dimension,
 )
-from heuncli.scene.expressions.name_hints import LAW_HINT, OTHER_NAMES, REACTIONS, RESULT_BLOCKS
-from heuncli.scene.expressions.point_names import POINT_FORM_HINT, resolve_point
+from heuncli.scene.expressions.names import (
+    ARITY,
+    CONSTANTS,
+    LAW_HINT,
+    LIBRARIES,
+    OTHER_NAMES,
+    POINT_FORM_HINT,
+    REACTIONS,
+    RESERVED,
+    RESULT_BLOCKS,
+    WORDS,
+    resolve_point,
+    tokenize,
+)
 from heuncli.scene.expressions.programs import OWN, POINTS, Expression, TableFunction
-from heuncli.scene.expressions.tokens import tokenize
 
 MAX_LENGTH, MAX_DEPTH = 2000, 48
 MAX_WHOLE_POWER = 64  # whole powers up to this are multiplied out
 
-CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
-UNARY_FUNCTIONS = (
-    "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "step",
-)  # fmt: skip
-ARITY: dict[str, tuple[int, int]] = {
-    **dict.fromkeys(UNARY_FUNCTIONS, (1, 1)),
-    "atan2": (2, 2),
-    **dict.fromkeys(("min", "max", "hypot"), (2, MAX_NODES)),
-    "table": (2, 2),
-}
-WORDS = frozenset({"if", "else", "and", "or", "not"})
-RESERVED = frozenset({"t", *CONSTANTS, *ARITY, *WORDS})
 COORDINATES_BY_TYPE = {  # by joint type, of the joints with one coordinate
     kind.name: (quantity, RATES[quantity])
     for kind in TYPES.values()
@@ -59,7 +57,6 @@ COORDINATES_BY_TYPE = {  # by joint type, of the joints with one coordinate
     if kind.coordinates == (quantity,)
 }
 BINARY = {"+": (1, "add"), "-": (1, "sub"), "*": (2, "mul"), "/": (2, "div")}
-LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # prefixes of functions in other programs
 
 NO_NAMES: Mapping[str, Any] = MappingProxyType({})
 

@@ -1,6 +1,8 @@
 """Validated couplings: the entries of `couplings` and `rolling` in SI with their references resolved.
 
 One class per type; joints and bodies by name. As in scene/file_format/models.py, None marks what the spec leaves out.
+
+Points of bodies, as joints, loads, couplings and sections refer to them.
 """
 
 from __future__ import annotations
@@ -9,7 +11,23 @@ from typing import Literal
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.expressions.programs import Expression, TableFunction
-from heuncli.scene.file_format.ends import End, Vec
+
+# Ends
+
+Vec = tuple[float, float, float]
+
+
+class End(NamedTuple):
+    """A point of a body ("ground" or a body's name), in the body's axes; name is None for a point given by
+    coordinates.
+    """
+
+    body: str
+    point: Vec
+    name: str | None = None
+
+
+# Couplings
 
 
 class Term(NamedTuple):

@@ -10,14 +10,12 @@ from pydantic_core import ValidationError
 from heuncli.base.spelling import match_misspelt_keys
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
-from heuncli.scene.file_format.entries import Entry, fields_of, keys_of
+from heuncli.scene.file_format.entries import Entry, fields_of, keys_of, validate_entry
 from heuncli.scene.file_format.fields import ReadContext
 from heuncli.scene.file_format.foreign_words import FORM_HINTS
-from heuncli.scene.file_format.missing_types import missing_type_errors
-from heuncli.scene.file_format.pydantic_errors import translate_errors, unknown_key_error
+from heuncli.scene.file_format.pydantic_errors import missing_type_errors, translate_errors, unknown_key_error
 from heuncli.scene.file_format.quantity import describe_kind
 from heuncli.scene.file_format.rules.registry import Path_, Violation
-from heuncli.scene.file_format.validation import validate_entry
 
 Report = Callable[[str, Violation], None]
 

@@ -63,8 +63,7 @@ from heuncli.scene.file_format.fields import (
     VelocityInTime,
 )
 from heuncli.scene.file_format.foreign_words import AMBIGUOUS_WORDS
-from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry
-from heuncli.scene.file_format.format_elastic import BushingEntry, JointLoadEntry, MotorEntry, PairEntry
+from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry, RollingEntry
 from heuncli.scene.file_format.format_joints import (
     JOINTS as JOINTS,
 )
@@ -80,6 +79,7 @@ from heuncli.scene.file_format.format_joints import (
 from heuncli.scene.file_format.format_joints import (
     BearingEntry as BearingEntry,
 )
+from heuncli.scene.file_format.format_joints import BushingEntry, JointLoadEntry, MotorEntry, PairEntry
 from heuncli.scene.file_format.format_joints import (
     ConstantVelocityJoint as ConstantVelocityJoint,
 )
@@ -125,7 +125,6 @@ from heuncli.scene.file_format.format_joints import (
 from heuncli.scene.file_format.format_joints import (
     WeldJoint as WeldJoint,
 )
-from heuncli.scene.file_format.format_rolling import RollingEntry
 from heuncli.scene.file_format.format_shapes import Orientation, ShapeEntry
 
 Frame = Literal["world", "body"]

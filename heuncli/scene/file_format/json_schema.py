@@ -3,24 +3,185 @@ manual.
 
 What a schema cannot express is left to `heun validate`: that a name exists, that a unit fits, which keys exclude each
 other. `space: planar` allows vectors of two components and pins without an axis; the schema allows both forms.
+
+Map each model to the chapter of the manual's page on the format whose table describes its keys.
+
+Read the manual's page on the format: unit, default and meaning of each key, by chapter. Impure: reads the page.
+
+The format as pydantic models, made from the classes that read it, for the JSON Schema.
+
+They validate like `validation`, which tests verify: one format, described to pydantic in two ways.
 """
 
 from __future__ import annotations
 
+import re
+import types
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
+from pydantic import BaseModel, ConfigDict, create_model, model_validator
+from pydantic import Field as PydanticField
 from pydantic.json_schema import models_json_schema
 
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_couplings as fc
 from heuncli.scene.file_format import format_shapes as fs
-from heuncli.scene.file_format.chapters import CHAPTERS, INLINE, TOP
-from heuncli.scene.file_format.entries import Entry
-from heuncli.scene.file_format.key_rows import KeyRow, read_rows_by_chapter
-from heuncli.scene.file_format.pydantic_models import make_model
+from heuncli.scene.file_format.entries import Entry, Field, cached_by_model, fields_of
+from heuncli.scene.file_format.foreign_words import TYPE_ALIASES, list_aliases, replace_type_aliases
+from heuncli.scene.file_format.format_couplings import RollingEntry
 from heuncli.scene.file_format.source import read_source
-from heuncli.scene.file_format.type_aliases import TYPE_ALIASES, list_aliases, replace_type_aliases
+
+# Chapters
+
+# by heading: the model whose keys the first table below it lists, or the models by type
+CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
+    "Tables": f.TableEntry,
+    "Bodies": f.BodyEntry,
+    "Shapes": fs.SHAPES,
+    "Orientation": fs.Orientation,
+    "Piece": f.PieceEntry,
+    "Joints": f.JOINTS,
+    "Bearing of joints": f.BearingEntry,
+    "Initial": {"pin": f.Turning, "slide": f.Sliding, "cylinder": f.TurningAndSliding},
+    "Stiffness of joints": f.StiffnessParts,
+    "Drives": f.DriveEntry,
+    **f.LOADS,
+    "Impulses": f.ImpulseEntry,
+    "Stops": f.StopEntry,
+    "Latches": f.LatchEntry,
+    **fc.COUPLINGS,
+    "Rolling": RollingEntry,
+    "Sections": f.SectionEntry,
+    "Properties": f.PropertiesEntry,
+    "Analysis": f.AnalysisEntry,
+    "Conditions": f.ResultConditionEntry,
+    "Expect": f.ExpectEntry,
+    "Cases": f.CaseEntry,
+}
+TOP = "Top level"
+# small mappings that are described in the row of the key that holds them
+INLINE: dict[type[Entry], tuple[str, str]] = {
+    f.GroundEntry: (TOP, "ground"),
+    f.FoundationEntry: (TOP, "foundation"),
+    f.NearEntry: ("Bodies", "near"),
+    f.VelocityInFrame: ("Bodies", "velocity"),
+    f.RateInFrame: ("Bodies", "velocity"),
+    f.CircleEntry: ("Properties", "circle"),
+    f.TubeEntry: ("Properties", "tube"),
+    f.RectangleEntry: ("Properties", "rectangle"),
+}
+
+
+# Key rows
+
+PAGE = Path(__file__).parents[2] / "manual" / "format.md"
+HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
+LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
+
+
+class KeyRow(NamedTuple):
+    """A row of a chapter's table: the keys, the types that have them (empty: all), unit, default and meaning."""
+
+    keys: tuple[str, ...]
+    types: tuple[str, ...]
+    unit: str
+    default: str
+    meaning: str
+
+    @property
+    def description(self) -> str:
+        """Meaning, unit and default in one line."""
+        parts = [strip_markup(self.meaning)]
+        parts += [f"[{strip_markup(self.unit)}]"] if self.unit else []
+        parts += [f"default: {strip_markup(self.default)}"] if self.default not in ("", "required", "none") else []
+        return "; ".join(part for part in parts if part)
+
+
+def read_rows_by_chapter() -> dict[str, list[KeyRow]]:
+    """Read the rows of the key tables, by the heading above each table."""
+    text = PAGE.read_text(encoding="utf-8")
+    _, *parts = HEADING.split(text)
+    return {heading: [*_iter_rows(body)] for heading, body in zip(parts[::2], parts[1::2], strict=True)}
+
+
+def _iter_rows(body: str) -> Iterator[KeyRow]:
+    """Yield the rows of the first key table."""
+    heads: list[str] = []
+    for line in body.splitlines():
+        cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if cells[:1] == ["key"]:
+            heads = cells
+        elif heads and not cells:
+            return
+        elif heads and not set(line) <= set("|-"):
+            row = dict(zip(heads, cells, strict=True))
+            types = () if row.get("of", "all") == "all" else find_code_words(row["of"])
+            yield KeyRow(
+                find_code_words(row["key"]), types, row.get("unit", ""), row.get("default", ""), row.get("meaning", "")
+            )
+
+
+def find_code_words(cell: str) -> tuple[str, ...]:
+    """Return the words in a cell that are marked as code."""
+    return tuple(re.findall(r"`([^`]*)`", cell))
+
+
+def strip_markup(cell: str) -> str:
+    """Return a cell without markup."""
+    return LINK.sub(r"\1", cell).replace("`", "")
+
+
+# Pydantic models
+
+
+class Strict(BaseModel):
+    """A mapping with known keys."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+
+@cached_by_model
+def make_model(entry: type[Entry]) -> type[BaseModel]:
+    """Make the pydantic model of an entry class, with its name, its docstring and its keys."""
+    keys: dict[str, Any] = {
+        name: (replace_entries(field.annotation), to_pydantic_field(field)) for name, field in fields_of(entry).items()
+    }
+    own_validator = vars(entry).get("before")
+    before: dict[str, Any] = (
+        {"before": model_validator(mode="before")(own_validator)} if own_validator is not None else {}
+    )
+    model: type[BaseModel] = create_model(
+        entry.__name__, __base__=Strict, __module__=entry.__module__, __validators__=before, **keys
+    )
+    model.__doc__ = entry.__doc__
+    return model
+
+
+def to_pydantic_field(field: Field) -> Any:
+    """Convert a key's alias and default to a pydantic field."""
+    if field.default_factory is not None:
+        return PydanticField(alias=field.alias, default_factory=field.default_factory)
+    return PydanticField(... if field.is_required else field.default, alias=field.alias)
+
+
+def replace_entries(annotation: Any) -> Any:
+    """Replace entry classes by pydantic models in an annotation."""
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if isinstance(annotation, type) and issubclass(annotation, Entry):
+        return make_model(annotation)
+    if origin is Annotated:
+        return Annotated[replace_entries(parts[0]), *parts[1:]]
+    if origin in (Union, types.UnionType):
+        return Union[tuple(map(replace_entries, parts))]  # noqa: UP007 - of as many as there are
+    if origin is None or origin is Literal:
+        return annotation
+    return origin[tuple(map(replace_entries, parts))]
+
+
+# Json schema
 
 STARTERS = Path(__file__).parents[2] / "starters"
 DRAFT = "http://json-schema.org/draft-07/schema#"

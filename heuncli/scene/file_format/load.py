@@ -13,22 +13,29 @@ from heuncli.base.spelling import reset_effort, suggest
 from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format.cases import CASES, iter_case_problems, list_case_settings
 from heuncli.scene.file_format.document import DocumentReader
 from heuncli.scene.file_format.fields import ReadContext
+from heuncli.scene.file_format.foreign_words import replace_type_aliases
 from heuncli.scene.file_format.format_shapes import MeshShape
 from heuncli.scene.file_format.models import Curve, Spec
-from heuncli.scene.file_format.names import NAMED_BLOCKS, SceneNames, as_mapping
-from heuncli.scene.file_format.overrides import Setting, apply_settings, iter_si_warnings, parse_settings
-from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
-from heuncli.scene.file_format.planar import complete_planar_scene
+from heuncli.scene.file_format.names import NAMED_BLOCKS, SceneNames, as_mapping, complete_planar_scene
+from heuncli.scene.file_format.parameters import (
+    CASES,
+    Parameters,
+    Setting,
+    apply_settings,
+    evaluate_parameters,
+    iter_case_problems,
+    iter_si_warnings,
+    list_case_settings,
+    parse_settings,
+)
 from heuncli.scene.file_format.pydantic_errors import is_primary
 from heuncli.scene.file_format.quantity import ParameterValue, Scope, describe_kind
 from heuncli.scene.file_format.resolve import ResolveInputs, resolve
 from heuncli.scene.file_format.rules.every import RULES, DraftDocument, Rule, Violation, iter_violations
 from heuncli.scene.file_format.semantics import list_instants
 from heuncli.scene.file_format.source import Path_, SourceFile, format_path, read_source
-from heuncli.scene.file_format.type_aliases import replace_type_aliases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -268,9 +275,8 @@ class SpecLoader:
         if not curve_items:
             return {}
         from heuncli.base.units import TIME
-        from heuncli.scene.file_format.measured_curves import build_curve  # as for tables
-        from heuncli.scene.file_format.rules.curves import find_x_quantity
-        from heuncli.scene.file_format.rules.expect import iter_expected_quantities
+        from heuncli.scene.file_format.file_contents import build_curve  # as for tables
+        from heuncli.scene.file_format.rules.expect import find_x_quantity, iter_expected_quantities
 
         instants = list_instants(draft.document) if self.checking else ()
         run = (min(instants), max(instants)) if len(instants) > 1 else None
@@ -304,7 +310,10 @@ class SpecLoader:
         ]
         meshes: dict[str, tuple[TriangleMesh | None, list[TableProblem]]] = {}
         for path, shape in shapes:
-            from heuncli.scene.file_format.surfaces import check_mesh_mass, iter_mesh_warnings  # few scenes have them
+            from heuncli.scene.file_format.file_contents import (  # few scenes have them
+                check_mesh_mass,
+                iter_mesh_warnings,
+            )
 
             if shape.file not in meshes:
                 meshes[shape.file] = self.load_mesh(shape.file)
@@ -318,7 +327,7 @@ class SpecLoader:
 
     def load_mesh(self, file: str) -> tuple[TriangleMesh | None, list[TableProblem]]:
         """Load the mesh of a file, and list what is wrong with it."""
-        from heuncli.scene.file_format.surfaces import read_mesh  # few scenes have them
+        from heuncli.scene.file_format.file_contents import read_mesh  # few scenes have them
 
         return read_mesh(file, self.get_named_files())
 

@@ -19,8 +19,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format.couplings import Coupling, RollingWheel
-from heuncli.scene.file_format.ends import End as End
-from heuncli.scene.file_format.ends import Vec as Vec
+from heuncli.scene.file_format.couplings import End as End
+from heuncli.scene.file_format.couplings import Vec as Vec
 
 if TYPE_CHECKING:
     from heuncli.scene.expressions.paths import Path

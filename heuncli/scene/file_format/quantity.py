@@ -12,14 +12,13 @@ from heuncli.base.number_range import is_in_range, range_error
 from heuncli.base.records import replace
 from heuncli.base.units import Dimension, correct_unit, describe, parse_unit, si_expression_hint, si_unit
 from heuncli.scene.expressions.grammar import (
-    RESERVED,
-    WORDS,
     DependentError,
     Scope,
     compile_expression,
     describe_dimensions,
     require_length,
 )
+from heuncli.scene.expressions.names import RESERVED, WORDS
 from heuncli.scene.expressions.programs import Expression
 
 # A number followed by something that begins like a unit; "2 if t < 1 else 3" is excluded separately.

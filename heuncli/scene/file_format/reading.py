@@ -5,6 +5,10 @@ end or exceed the limit. Devices may never end, so they are refused unread, exce
 
 The files that a command has read are remembered by device and inode, so that the command never overwrites one of them:
 a link, a hard link, another spelling or `/dev/fd/3` is the same file.
+
+Digest of a text, by which results name the spec they belong to.
+
+Imports SHA-256 from Python's own C module, as `random` does, because hashlib loads OpenSSL first, which takes 3 ms.
 """
 
 from __future__ import annotations
@@ -16,6 +20,8 @@ import sys
 from typing import BinaryIO
 
 from heuncli.base.errors import Finding
+
+# Reading
 
 STANDARD_INPUT = "-"
 INPUT_HINT = "give a file, or - for standard input"
@@ -124,3 +130,20 @@ def _too_large_finding(size_text: str, max_size: int) -> Finding:
 
 def _format_megabytes(size: int) -> str:
     return f"{size / 1e6:.6g} MB"
+
+
+# Digest
+
+try:
+    from _sha2 import sha256  # type: ignore[import-not-found]
+except ImportError:
+    try:
+        from _sha256 import sha256  # type: ignore[import-not-found] # before Python 3.12
+    except ImportError:  # Python built without it
+        from hashlib import sha256
+
+
+def digest(content: bytes | bytearray) -> str:
+    """Return the SHA-256 digest in hexadecimal digits."""
+    digits: str = sha256(content).hexdigest()
+    return digits

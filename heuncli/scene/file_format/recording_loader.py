@@ -13,7 +13,7 @@ from typing import Any, cast
 from heuncli.base.errors import SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.scene.expressions.calculations import CalculationCache
+from heuncli.scene.expressions.codegen import CalculationCache
 from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format import format as f

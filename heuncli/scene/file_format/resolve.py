@@ -18,9 +18,7 @@ from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.couplings import Coupling
 from heuncli.scene.file_format.fields import EndEntry
-from heuncli.scene.file_format.format_couplings import CouplingEntry
-from heuncli.scene.file_format.format_rolling import RollingEntry
-from heuncli.scene.file_format.motors import make_rotors
+from heuncli.scene.file_format.format_couplings import CouplingEntry, RollingEntry
 from heuncli.scene.file_format.names import GROUND, UNTIL
 from heuncli.scene.file_format.resolve_couplings import (
     iter_belt_conditions,
@@ -39,6 +37,7 @@ from heuncli.scene.file_format.semantics import (
     find_reduction_end,
     inertia_tensor,
     list_instants,
+    make_rotors,
     orientation_matrix,
 )
 

@@ -18,12 +18,11 @@ from heuncli.scene.expressions.composition import (
 )
 from heuncli.scene.expressions.programs import LOADS, OWN, Expression
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_elastic as fe
+from heuncli.scene.file_format import format_joints as fe
 from heuncli.scene.file_format import models as m
-from heuncli.scene.file_format.motors import make_torque_curve
 from heuncli.scene.file_format.resolve_couplings import ReferenceResolver
 from heuncli.scene.file_format.rotations import IDENTITY
-from heuncli.scene.file_format.semantics import find_point, orientation_matrix
+from heuncli.scene.file_format.semantics import find_point, make_torque_curve, orientation_matrix
 
 
 def resolve_load(resolver: ReferenceResolver, name: str, load: f.LoadEntry) -> m.Force:
@@ -174,7 +173,7 @@ def add_table_areas(laws: tuple[Any, Any, Any]) -> list[Any]:
     """Return the stiffness laws, tables extended by their areas; a table used for several axes is extended once."""
     if not any(isinstance(law, Expression) for law in laws):
         return list(laws)
-    from heuncli.scene.expressions.areas import append_areas  # needs NumPy, which a table has loaded already
+    from heuncli.scene.expressions.curves import append_areas  # needs NumPy, which a table has loaded already
 
     tables_with_areas = {id(law): append_areas(law) for law in laws if isinstance(law, Expression)}
     return [tables_with_areas.get(id(law), law) for law in laws]

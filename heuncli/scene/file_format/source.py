@@ -16,8 +16,7 @@ from yaml import events
 
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.records import record
-from heuncli.scene.file_format.digest import digest
-from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
+from heuncli.scene.file_format.reading import STANDARD_INPUT, digest, read_bytes
 
 MAX_SIZE = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
 MAX_DEPTH = 64

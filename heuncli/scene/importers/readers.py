@@ -13,8 +13,7 @@ from importlib import import_module
 from heuncli.base.errors import Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar
-from heuncli.scene.importers.description import DescribedMachine
-from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.importers.description import DescribedMachine, ImportOptions
 from heuncli.scene.importers.xml_elements import ROOT_HINT, XACRO_HINT, XmlElement
 
 

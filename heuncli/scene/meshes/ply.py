@@ -10,9 +10,16 @@ import numpy as np
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
+from heuncli.scene.meshes.formats import (
+    SAVE_AGAIN_HINT,
+    mesh_file_finding,
+    parse_floats,
+    parse_rows,
+    require_faces,
+    triangulate,
+    triangulate_words,
+)
 from heuncli.scene.meshes.model import IndexArray, TriangleSoup
-from heuncli.scene.meshes.numbers import SAVE_AGAIN_HINT, mesh_file_finding, parse_floats, parse_rows
-from heuncli.scene.meshes.polygons import require_faces, triangulate, triangulate_words
 
 NUMBER_TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",

@@ -8,15 +8,19 @@ import numpy as np
 
 from heuncli.base.errors import Finding
 from heuncli.base.number_range import are_in_range
-from heuncli.scene.meshes.closure import find_edge_neighbours, find_edges, find_open_corners, find_shells
+from heuncli.scene.meshes.closure import (
+    coordinate_resolution,
+    find_edge_neighbours,
+    find_edges,
+    find_open_corners,
+    find_shells,
+    weld_equal_corners,
+    weld_near_corners,
+)
 from heuncli.scene.meshes.crossings import require_no_crossing
-from heuncli.scene.meshes.inward_offset import separate_fans
-from heuncli.scene.meshes.model import TriangleMesh, TriangleSoup, make_tetrahedra, middle_of_extent
-from heuncli.scene.meshes.numbers import mesh_file_finding
-from heuncli.scene.meshes.obj import read_obj
+from heuncli.scene.meshes.formats import mesh_file_finding, read_obj, read_stl
+from heuncli.scene.meshes.model import TriangleMesh, TriangleSoup, make_tetrahedra, middle_of_extent, separate_fans
 from heuncli.scene.meshes.ply import read_ply
-from heuncli.scene.meshes.stl import read_stl
-from heuncli.scene.meshes.welding import coordinate_resolution, weld_equal_corners, weld_near_corners
 
 MAX_TRIANGLES = 2_000_000
 MESH_READERS: dict[str, Callable[[bytes], TriangleSoup]] = {"stl": read_stl, "obj": read_obj, "ply": read_ply}

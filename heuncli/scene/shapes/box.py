@@ -13,8 +13,7 @@ from heuncli.base.records import record
 from heuncli.results.results import Array
 from heuncli.scene.shapes.inertia import assemble_pseudo_inertia
 from heuncli.scene.shapes.outlines import Outline, Planes, sort_polygon_corners
-from heuncli.scene.shapes.quadrature import piecewise_rule
-from heuncli.scene.shapes.solids import ThickSolid
+from heuncli.scene.shapes.solids import ThickSolid, piecewise_rule
 
 CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
 EDGES = np.array([(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 2.0])

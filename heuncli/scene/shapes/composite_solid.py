@@ -70,7 +70,7 @@ def make_point_mass(shape: Shape, density: float) -> Solid:
 
 
 def make_polyhedron(shape: Shape, density: float) -> Solid:
-    from heuncli.scene.meshes.welding import coordinate_resolution  # few scenes have meshes
+    from heuncli.scene.meshes.closure import coordinate_resolution  # few scenes have meshes
     from heuncli.scene.shapes.polyhedron import Polyhedron
 
     surface, scale = require_value(shape.mesh), require_value(shape.scale)

@@ -17,9 +17,8 @@ from heuncli.base.records import record
 from heuncli.results.results import Array
 from heuncli.scene.shapes.inertia import assemble_pseudo_inertia
 from heuncli.scene.shapes.outlines import SIDES, Corners, Flags, Outline, Planes, circle_corners
-from heuncli.scene.shapes.quadrature import Owners, gauss_rule, integrate_adaptively
 from heuncli.scene.shapes.rotations import perpendicular_pair
-from heuncli.scene.shapes.solids import ThickSolid
+from heuncli.scene.shapes.solids import Owners, ThickSolid, gauss_rule, integrate_adaptively
 
 
 def ring_segments(u: Array, r: Array, q: Array) -> tuple[Array, Array, Array, Array]:

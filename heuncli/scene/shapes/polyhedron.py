@@ -22,17 +22,18 @@ from heuncli.base.records import record
 from heuncli.results.results import Array, Indices
 from heuncli.scene.meshes.model import cross_product_rows, middle_of_extent, stable_order, volume_moments
 from heuncli.scene.shapes.inertia import assemble_pseudo_inertia
-from heuncli.scene.shapes.outlines import Outline, Planes
-from heuncli.scene.shapes.rotations import cross_vectors, perpendicular_pair
-from heuncli.scene.shapes.solids import ThickSolid
-from heuncli.scene.shapes.triangle_crossings import (
+from heuncli.scene.shapes.outlines import (
     MAX_CROSSINGS_AT_ONCE,
+    Outline,
+    Planes,
     TriangleCrossings,
     count_planes_below,
     find_crossings,
     intersection_lines,
     number_loops,
 )
+from heuncli.scene.shapes.rotations import cross_vectors, perpendicular_pair
+from heuncli.scene.shapes.solids import ThickSolid
 
 MAX_LEVELS = 100  # with at most this many heights of corners, all are listed as changes of the cross-sections
 DIRECTION_COUNT = 24  # lines that enclose an outline: at most 1 % of its radius outside it

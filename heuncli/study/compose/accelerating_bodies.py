@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.loads.kinetostatics.magnitudes import inertia_scale
+from heuncli.loads.kinetostatics.balance import inertia_scale
 from heuncli.multibody.mechanism.model import GROUND
 from heuncli.results.results import Array
 from heuncli.study.compose.recovery import Recovery

@@ -23,10 +23,8 @@ from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, 
 from heuncli.loads.kinetostatics.coupling_numbers import make_coupling_block
 from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_actions
 from heuncli.loads.kinetostatics.energy import system_vector
-from heuncli.loads.kinetostatics.foundation import foundation_block, make_element_keys
-from heuncli.loads.kinetostatics.joint_axes import find_joint_axes, rotate_block
-from heuncli.loads.kinetostatics.momentum import Momenta, find_momenta
-from heuncli.loads.kinetostatics.reactions import JointLoads
+from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, foundation_block, make_element_keys
+from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_block
 from heuncli.multibody.mechanism.model import GROUND, BushingLoad, JointLoad, PairLoad
 from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results.results_schema import SHARES
@@ -64,7 +62,10 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     if "energy" in reports:
         blocks_by_name["energy"] = recovery.energy
     if "motion" in reports:
-        from heuncli.loads.kinetostatics.attitudes import body_quaternions, rodrigues_vectors  # tables do not show them
+        from heuncli.loads.kinetostatics.coordinates import (  # tables do not show them
+            body_quaternions,
+            rodrigues_vectors,
+        )
 
         attitude_quaternions = body_quaternions(layout, recovered)
         vectors = rodrigues_vectors(attitude_quaternions)
@@ -198,7 +199,7 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
     spec_coupling, names = coupling_loads.coupling.entry, [body.name for body in mechanism.bodies]
     block = make_coupling_block(coupling_loads, names, find_pretension(coupling_loads, recovery.loads))
     if spec_coupling.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.drive_element_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
+        from heuncli.loads.kinetostatics.coupling_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
 
         is_impulse = bool(recovery.solutions.loads.shape[1] < len(layout.tables["loads"]))  # at an impulse no load acts
         block |= {
@@ -209,11 +210,11 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
             if k not in block
         }
     if coupling_loads.friction is not None:
-        from heuncli.loads.kinetostatics.thread_friction import efficiency  # few scenes have it
+        from heuncli.loads.kinetostatics.coupling_numbers import efficiency  # few scenes have it
 
         block["efficiency"] = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
     if spec_coupling.type == "cam":
-        from heuncli.loads.kinetostatics.cams import pressure_angle  # few scenes have them
+        from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
 
         block["pressure_angle"] = pressure_angle(coupling_loads, mechanism.joints, recovery.states)
     return block

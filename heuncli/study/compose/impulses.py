@@ -17,9 +17,8 @@ import numpy as np
 
 from heuncli.base.records import fields, record, replace
 from heuncli.loads.kinetostatics.actions import Action, ActionEnd
-from heuncli.loads.kinetostatics.balance import balance_residual
-from heuncli.loads.kinetostatics.magnitudes import find_magnitudes
-from heuncli.motion.integration.check.matching_impulses import match_impulses
+from heuncli.loads.kinetostatics.balance import balance_residual, find_magnitudes
+from heuncli.motion.integration.check.run_comparison import match_impulses
 from heuncli.motion.integration.contacts.impulses import DRIVES, ImpulseEvent
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
 from heuncli.motion.integration.evaluator import Evaluation

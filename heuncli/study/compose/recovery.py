@@ -19,6 +19,7 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
+from heuncli.loads.kinetostatics.balance import find_load_magnitudes, find_magnitudes, inertia_scale
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.couplings import (
     CouplingLoads,
@@ -27,9 +28,8 @@ from heuncli.loads.kinetostatics.couplings import (
     list_rope_actions,
 )
 from heuncli.loads.kinetostatics.energy import energy_block
-from heuncli.loads.kinetostatics.magnitudes import find_load_magnitudes, find_magnitudes, inertia_scale
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, select_instants
-from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
+from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import PairLoad
@@ -116,8 +116,8 @@ class Recovery:
         layout = self.setup.scene.layout
         if not layout.mechanism.couplings:
             return resolution
-        from heuncli.loads.kinetostatics.flanks import add_separating_forces  # few scenes have gears
-        from heuncli.loads.redundancy.indeterminate_flanks import add_flank_columns
+        from heuncli.loads.kinetostatics.couplings import add_separating_forces  # few scenes have gears
+        from heuncli.loads.redundancy.indeterminate_components import add_flank_columns
 
         couplings = self.find_couplings(resolution)
         remaining_stress, stress = (
@@ -190,7 +190,7 @@ class Recovery:
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
         # hardly any scene needs it
-        from heuncli.motion.integration.diagnosis.coincident_points import separation_velocity
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import separation_velocity
 
         layout, recovered = self.setup.scene.layout, self.solutions
         return [
@@ -208,7 +208,7 @@ class Recovery:
     @cached_property
     def shares(self) -> Shares:
         """The joints' loads by their causes, after the same split; for solutions with causes."""
-        from heuncli.loads.kinetostatics.flanks import add_separating_forces
+        from heuncli.loads.kinetostatics.couplings import add_separating_forces
         from heuncli.loads.kinetostatics.shares import (  # few runs ask for them
             find_cause_columns,
             find_shares,
@@ -305,7 +305,7 @@ def recover(
         require_directions(setup.scene, solutions)
     found = Recovery(setup, solutions, least_norm, state_instants=state_instants)
     if setup.scene.mechanism.joint_friction and found.decided is not None:
-        from heuncli.loads.redundancy.friction_check import require_determinate_friction  # few scenes need it
+        from heuncli.loads.redundancy.indeterminate_components import require_determinate_friction  # few scenes need it
 
         require_determinate_friction(setup.scene.layout, found.decided.found_self_stress, found.states, solutions.times)
     return found

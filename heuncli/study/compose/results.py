@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import KERNEL
-from heuncli.motion.integration.determined_motion import note_fallback_to_integration
+from heuncli.motion.integration.integrated_scene import note_fallback_to_integration
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import IMPULSES
 from heuncli.study.compose.accuracy import Balance, make_accuracy

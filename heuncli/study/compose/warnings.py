@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.motion.integration.contacts.shared_impulses import format_sharing_warning
-from heuncli.motion.integration.diagnosis.off_sheaves import format_slant_warnings
+from heuncli.motion.integration.diagnosis.guide_departures import format_slant_warnings
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery

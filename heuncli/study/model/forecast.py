@@ -12,13 +12,11 @@ import numpy as np
 
 from heuncli.base.errors import LimitError, SolveError
 from heuncli.base.method_rows import find_method
-from heuncli.motion.integration.check.fewer_stages import try_fewer_stages
-from heuncli.motion.integration.check.runs import Runs
+from heuncli.motion.integration.check.runs import Runs, try_fewer_stages
+from heuncli.motion.integration.integrated_scene import find_discontinuities
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.run.errors import EventfulRun, StiffRun
 from heuncli.motion.integration.run.kernel_loop import depends_on_state
-from heuncli.motion.integration.run.request import MotionTask, StoppingRules
-from heuncli.motion.integration.segments import find_discontinuities
+from heuncli.motion.integration.run.request import EventfulRun, MotionTask, StiffRun, StoppingRules
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.study.model.counts_and_lists import format_count
 from heuncli.study.model.method_choice import is_smooth

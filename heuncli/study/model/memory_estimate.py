@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.records import record
-from heuncli.motion.integration.run.step_records import MAX_RECORD_NUMBERS
+from heuncli.motion.integration.run.progress import MAX_RECORD_NUMBERS
 from heuncli.multibody.mechanism.model import BushingLoad
 from heuncli.multibody.response import solution_parts
 from heuncli.results.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share

@@ -1,8 +1,8 @@
 """Choose the method that `auto` begins with, and say why, by what the scene and the tolerance show beforehand.
 
-Driven motions that leave no freedom are followed and not integrated (motion/integration/determined_motion.py). A motion
-that turns out to be stiff, or cut by events at nearly every step, is restarted (motion/integration/run/stiffness.py,
-motion/integration/run/event_frequency.py).
+Driven motions that leave no freedom are followed and not integrated (motion/integration/integrated_scene.py). A motion
+that turns out to be stiff, or cut by events at nearly every step, is restarted (motion/integration/run/supervision.py,
+motion/integration/run/supervision.py).
 """
 
 from __future__ import annotations
@@ -13,10 +13,9 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.method_rows import DEFAULT
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.integrated_scene import find_discontinuities
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.kernel_loop import depends_on_state
-from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array

@@ -13,7 +13,7 @@ from heuncli.loads.redundancy.count import RedundancyCount
 from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.model import BushingLoad, Mechanism, ThreadLoad
-from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Block, Mask
@@ -49,7 +49,7 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
         block["couplings"] = len(mechanism.couplings)
     block["reasons"] = describe_model(scene, block)
     if has_rolling_wheels(mechanism):
-        from heuncli.loads.redundancy.poses import count_pose_freedoms  # few scenes have wheels
+        from heuncli.loads.redundancy.count import count_pose_freedoms  # few scenes have wheels
 
         block["pose_freedoms"] = count_pose_freedoms(runner) - scene.undetermined_count
         block["reasons"].insert(1, describe_pose_freedoms(block))

@@ -9,27 +9,32 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.loads.equilibrium.digits import find_neighbour_poses
 from heuncli.loads.equilibrium.pose import make_bearing_pose
-from heuncli.loads.equilibrium.rest_check import require_at_rest
 from heuncli.loads.equilibrium.search import RestSearch
 from heuncli.loads.equilibrium.slopes import separate_indifferent
-from heuncli.loads.equilibrium.stability import NamedMotion, Stability, find_stability
 from heuncli.loads.equilibrium.steady_states import (
+    NamedMotion,
+    Stability,
     find_moving_drives,
+    find_stability,
     require_common_motion,
     require_constant,
     require_steady,
 )
-from heuncli.loads.equilibrium.verification import VerifiedPose, find_verified_pose, perturbed_states
+from heuncli.loads.equilibrium.verification import (
+    VerifiedPose,
+    find_neighbour_poses,
+    find_verified_pose,
+    perturbed_states,
+    require_at_rest,
+)
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.linearisation.displacements import find_displacement
 from heuncli.motion.linearisation.indifference import find_indifference
 from heuncli.motion.linearisation.smoothness import examine_laws, find_roots
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.held_speeds import find_speed_rows
-from heuncli.multibody.tree.layout import Layout, rate_indices
+from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Status
 from heuncli.study.model.counts_and_lists import MAX_NAMES, format_count, list_some

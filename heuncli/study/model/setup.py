@@ -12,18 +12,15 @@ from heuncli.base.errors import SolveError
 from heuncli.base.method_rows import AUTO
 from heuncli.base.records import record, replace
 from heuncli.loads.redundancy.count import count_redundancy
-from heuncli.motion.integration.determined_motion import NOT_DETERMINED, find_determined_motion
-from heuncli.motion.integration.integrated_scene import integrate_reduced
-from heuncli.motion.integration.methods.drive_determined import DRIVE_DETERMINED
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.integrated_scene import NOT_DETERMINED, find_determined_motion, integrate_reduced
+from heuncli.motion.integration.methods.method import DRIVE_DETERMINED, Method, load_method_by_name
 from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.build import build, make_forms
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.reduction import compose as reduction
-from heuncli.multibody.reduction.model import ReducedScene
+from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block
@@ -114,16 +111,16 @@ def set_up(
     start_time = spec.analysis.times[0] if spec.analysis.type == "state" else 0.0
     prepared = prepare_coupled(mechanism, start_time, stages)
     if any(drive.by_rate for drive in spec.drives.values()):
-        from heuncli.multibody.tree.driven_starts import require_lengths  # few scenes have them
+        from heuncli.multibody.tree.starts import require_lengths  # few scenes have them
 
         require_lengths(prepared.mechanism, max(spec.analysis.times))
     if not reduce:  # a scene declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = make_runner(prepared, stages)
     if scene.mechanism.joint_friction and scene.layout.rows:
-        from heuncli.loads.redundancy import friction_check  # few scenes have such friction
+        from heuncli.loads.redundancy import indeterminate_components  # few scenes have such friction
 
-        friction_check.require_determinate_friction_at_start(scene, runner, start_time)
+        indeterminate_components.require_determinate_friction_at_start(scene, runner, start_time)
     if spec.analysis.type == "rest":
         return set_up_at_rest(Setup(spec, scene, cuts, runner, None, {}, None, selection), left_out, find_rest)
     method_name = method or spec.analysis.method

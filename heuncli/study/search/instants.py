@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.motion.integration.segments import find_one_sided_limits
+from heuncli.motion.integration.integrated_scene import find_one_sided_limits
 from heuncli.results.results import Array
-from heuncli.scene.shapes.by_component import instants_last, squared_lengths
+from heuncli.scene.shapes.rotations import instants_last, squared_lengths
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import replace_non_finite, sort_distinct
 from heuncli.study.solve.history import History, resample

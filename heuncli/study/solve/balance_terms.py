@@ -14,7 +14,7 @@ from heuncli.loads.kinetostatics.foundation import inertia_rows
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import RopeLoad
 from heuncli.results.results import Array
-from heuncli.scene.shapes.by_component import instants_first, instants_last, largest_magnitude, squared_lengths
+from heuncli.scene.shapes.rotations import instants_first, instants_last, largest_magnitude, squared_lengths
 from heuncli.study.model.setup import Setup
 
 

@@ -43,14 +43,14 @@ def find_coupling_numbers(loads: CouplingLoads, joints: Sequence[Joint], states:
         numbers_by_quantity.setdefault("moment" if number.is_moment else "force", []).append(number.values)
     spec_coupling = loads.coupling.entry
     if spec_coupling.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.drive_element_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
+        from heuncli.loads.kinetostatics.coupling_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
 
         for name, values in DRIVE_ELEMENT_NUMBERS[spec_coupling.type](
             spec_coupling, loads.carried_load, is_impulse=False
         ).items():
             numbers_by_quantity.setdefault("moment" if name == "torque" else "force", []).append(values)
     if spec_coupling.type == "cam":
-        from heuncli.loads.kinetostatics.cams import pressure_angle  # few scenes have them
+        from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
 
         numbers_by_quantity["angle"] = [pressure_angle(loads, joints, states)]
     return numbers_by_quantity

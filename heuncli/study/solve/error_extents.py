@@ -9,7 +9,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
-from heuncli.scene.shapes.by_component import instants_last
+from heuncli.scene.shapes.rotations import instants_last
 
 
 class Weights(NamedTuple):

@@ -16,20 +16,18 @@ from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.method_rows import AUTO
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.check.distance import MotionPoints, motion_error
 from heuncli.motion.integration.check.estimate import CheckedRun, evaluate_run, make_checked_run
-from heuncli.motion.integration.check.instants import interleave
+from heuncli.motion.integration.check.run_comparison import MotionPoints, interleave, motion_error
 from heuncli.motion.integration.check.runs import Runs, perturb_start
 from heuncli.motion.integration.check.singular_poses import find_singular_positions
 from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_start
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.methods.registry import load_method_by_name
-from heuncli.motion.integration.run.errors import EventfulRun, StiffRun
+from heuncli.motion.integration.integrated_scene import find_discontinuities
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.interruptions import solve_single_instant
+from heuncli.motion.integration.run.request import EventfulRun, StiffRun
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import find_discontinuities
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
 from heuncli.results.results import Array, ErrorEstimate
@@ -203,7 +201,7 @@ def integrate_with_event_method(runs: Runs, setup: Setup, tolerance: float, by_c
     try:
         return make_checked_run(runs, tolerance, LoadErrors(setup, by_cause))
     except EventfulRun as eventful:
-        from heuncli.motion.integration.check.fewer_stages import try_fewer_stages  # few scenes have so many
+        from heuncli.motion.integration.check.runs import try_fewer_stages  # few scenes have so many
 
         runs.eventful = try_fewer_stages(runs, eventful)
         return restart_run(runs, eventful, method, setup, tolerance, by_cause)
@@ -305,13 +303,13 @@ def require_separate_points(runner: Runner, run: CheckedRun) -> None:
     Also where a bushing passes half a turn.
     """
     if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.motion.integration.check.meeting_points import find_meeting  # few scenes have them
+        from heuncli.motion.integration.check.singular_poses import find_meeting  # few scenes have them
 
         problem = find_meeting(runner, run.run, run.horizon)
         if problem is not None:
             raise SolveError(problem)
     if any(isinstance(load, BushingLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.motion.integration.check.bushing_half_turns import find_half_turn
+        from heuncli.motion.integration.check.singular_poses import find_half_turn
 
         if (problem := find_half_turn(runner, run.run, run.horizon)) is not None:
             raise SolveError(problem)

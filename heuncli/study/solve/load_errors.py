@@ -31,9 +31,8 @@ from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_coupling_actions, list_rope_actions
 from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
-from heuncli.loads.kinetostatics.joint_axes import rotate_joint_loads
-from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
-from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
+from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
+from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.size import extent_points
 from heuncli.results.results import Array, ErrorEstimate, Mask
@@ -148,7 +147,7 @@ class LoadErrors:
         couplings = find_coupling_loads(self.setup.scene.layout, recovered, states)
         coupling_loads_on_bodies = list_coupling_actions(couplings)
         if couplings:
-            from heuncli.loads.kinetostatics.flanks import add_separating_forces  # few scenes have gears
+            from heuncli.loads.kinetostatics.couplings import add_separating_forces  # few scenes have gears
 
             joints = add_separating_forces(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupling_loads_on_bodies]

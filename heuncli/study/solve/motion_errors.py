@@ -14,7 +14,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.energy import system_vector
-from heuncli.loads.kinetostatics.momentum import find_momenta
+from heuncli.loads.kinetostatics.foundation import find_momenta
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 from heuncli.study.solve.error_extents import norms

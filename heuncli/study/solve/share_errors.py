@@ -15,8 +15,7 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
-from heuncli.loads.kinetostatics.joint_axes import rotate_joint_loads
-from heuncli.loads.kinetostatics.reactions import JointLoads
+from heuncli.loads.kinetostatics.reactions import JointLoads, rotate_joint_loads
 from heuncli.loads.kinetostatics.shares import (
     CauseResults,
     Shares,

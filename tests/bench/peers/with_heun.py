@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.motion.integration.methods.registry import load_method_by_name
+from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up

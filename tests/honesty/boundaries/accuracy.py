@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.analyses.work_precision.reference import count_valid_instants
 from heuncli.analyses.work_precision.results import COMPLETED, ChartRow, ChartRun, mark_front
 from heuncli.motion.integration.check.runs import has_shared_steps
-from heuncli.motion.integration.run.pace import find_hopeless_steps
+from heuncli.motion.integration.run.progress import find_hopeless_steps
 from heuncli.output.tables.page import make_page
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.smoothed_friction import make_friction_warning

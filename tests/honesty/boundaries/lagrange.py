@@ -7,7 +7,7 @@ import numpy as np
 from heuncli.analyses.lagrange.coordinates import require_independent
 from heuncli.analyses.lagrange.state_space import drop_rounding
 from heuncli.base.errors import SolveError
-from heuncli.loads.kinetostatics.attitudes import rodrigues_vectors
+from heuncli.loads.kinetostatics.coordinates import rodrigues_vectors
 from tests.honesty.boundaries.part import Part, Row
 
 

@@ -6,8 +6,12 @@ import math
 
 import numpy as np
 
-from heuncli.loads.redundancy.determinate_sums import find_relations, tidy_factors
-from heuncli.loads.redundancy.turning_sums import find_dependent_components, find_factors
+from heuncli.loads.redundancy.determinate_sums import (
+    find_dependent_components,
+    find_factors,
+    find_relations,
+    tidy_factors,
+)
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT
 from tests.shared.scenes import near, solved

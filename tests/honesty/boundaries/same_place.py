@@ -14,7 +14,7 @@ from heuncli.results.results import Results
 from heuncli.scene.file_format.models import Shape
 from heuncli.scene.meshes.reading import read_closed_mesh
 from heuncli.scene.shapes.composite_solid import CompositeSolid, make_composite_solid
-from heuncli.scene.shapes.figure_kinds import RectangleFigure
+from heuncli.scene.shapes.figures import RectangleFigure
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read, verdict
 from tests.shared import triangles

@@ -22,11 +22,10 @@ from heuncli.base.records import record
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.motion.integration.contacts.impulses import schedule_impulses, solve_impulse
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.motion.integration.integrated_scene import integrate_itself
+from heuncli.motion.integration.integrated_scene import integrate_itself, just_before
 from heuncli.motion.integration.methods.method import Method
 from heuncli.motion.integration.run.kernel_loop import MORE, REACHED, KernelLoop, LoopStart
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import just_before
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.response import jacobian
 from heuncli.multibody.tree.layout import Layout

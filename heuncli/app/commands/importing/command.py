@@ -14,11 +14,10 @@ from heuncli.base.files import STDOUT
 from heuncli.base.spelling import reset_effort, suggest
 from heuncli.base.text_safety import escape
 from heuncli.base.units import DENSITY
-from heuncli.scene.file_format.digest import digest
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.quantity import Scope, read_number
-from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
-from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.file_format.reading import STANDARD_INPUT, digest, read_bytes
+from heuncli.scene.importers.description import ImportOptions
 from heuncli.scene.importers.readers import ModelReader, find_reader
 from heuncli.scene.importers.spec_text import format_spec
 from heuncli.scene.importers.xml_elements import MAX_SIZE, parse_xml

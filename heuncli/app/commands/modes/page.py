@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base.joint_kinds import is_length
-from heuncli.motion.linearisation.modes import SceneModes
-from heuncli.motion.linearisation.oscillations import Mode
+from heuncli.motion.linearisation.oscillations import Mode, SceneModes
 from heuncli.output.documents.as_csv import make_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes

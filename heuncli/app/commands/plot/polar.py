@@ -9,7 +9,7 @@ from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_joint_paths, solve_source
 from heuncli.base.errors import Problem
-from heuncli.loads.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.planes import AXIS_LETTERS, list_rotation_paths
 from heuncli.output.figures.polar import make_polar_figure

@@ -15,7 +15,7 @@ from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.base.errors import Problem
 from heuncli.base.records import replace
-from heuncli.loads.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.snapshots import measure
 from heuncli.results.path_words import split_path

@@ -16,10 +16,10 @@ from heuncli.output.client_report.report_data import AS_IT_STANDS, LOADS, Imprin
 from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.snapshots.take_snapshot import is_searched_between_samples, take_run_snapshot
 from heuncli.output.tables.page import make_page
-from heuncli.scene.file_format.digest import digest
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFiles
+from heuncli.scene.file_format.reading import digest
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.memory_estimate import MemoryBudget

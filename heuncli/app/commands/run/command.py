@@ -15,7 +15,7 @@ from heuncli.app.cli.units import TABLES, note_si_format, parse_units
 from heuncli.app.commands.run.request import FORMATS, RunRequest
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
 from heuncli.base.records import replace
-from heuncli.loads.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.snapshots.selection import find_default_reports, parse_choice, select_reports
 from heuncli.output.tables.page import EXPORT_DEFAULT
 from heuncli.scene.file_format.names import ALL_CASES

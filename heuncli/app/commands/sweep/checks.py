@@ -15,7 +15,7 @@ from heuncli.analyses.variants.spec_numbers import SpecNumbers
 from heuncli.app.commands.sweep.axis_arguments import AxisArgument
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.spelling import suggest
-from heuncli.scene.file_format.overrides import parse_path
+from heuncli.scene.file_format.parameters import parse_path
 
 # Codes of problems that do not depend on a value's size, besides those that begin with unknown-.
 NAME_CODES = frozenset({

@@ -1,4 +1,4 @@
-"""Find when the conditions on a motion change, and estimate the error of these instants.
+"""Find when the conditions on a motion and its latches change, and estimate the error of these instants.
 
 The error of an instant follows from that of the motion. The check run, or another neighbouring run, must show the same
 change within an interval d of time. Around the instant, its motion follows from rates and accelerations,
@@ -19,13 +19,16 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.check.matching_impulses import match_impulses
+from heuncli.motion.integration.check.run_comparison import match_impulses
 from heuncli.motion.integration.conditions import Conditions, Coordinates, evaluate_coordinates
 from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 from heuncli.scene.expressions.programs import Expression
+
+# Changes
 
 
 @record
@@ -175,3 +178,42 @@ def no_value_error(value: Expression, t: float) -> SolveError:
 
 
 UNKNOWN = math.nan  # an unknown error
+
+
+# Latch changes
+
+
+def find_latch_changes(layout: Layout, runs: Sequence[Trajectory], before_time: float) -> tuple[ConditionChanges, ...]:
+    """Find when each latch catches and releases in the first of several runs, before an instant."""
+    found = []
+    for i in layout.latches:
+        latch_changes_of_run, *others = (find_latch_changes_in_run(layout.contacts[i].name, run, i) for run in runs)
+        found.append(
+            replace(latch_changes_of_run, error=estimate_latch_errors(latch_changes_of_run, others)).select_before(
+                before_time
+            )
+        )
+    return tuple(found)
+
+
+def find_latch_changes_in_run(name: str, run: Trajectory, contact: int) -> ConditionChanges:
+    """Find when a latch catches and releases in one run; of several changes at one instant, the state after them
+    counts.
+    """
+    is_held = run.holding[:, contact] > 0.0
+    begins = np.concatenate([[0.0], run.ends])[: len(is_held)]
+    is_last = np.append(begins[1:] != begins[:-1], True)
+    begins, is_held = begins[is_last], is_held[is_last]
+    changed = np.flatnonzero(is_held[1:] != is_held[:-1]) + 1
+    return ConditionChanges(name, bool(is_held[0]), begins[changed], is_held[changed], np.zeros(len(changed)))
+
+
+def estimate_latch_errors(changes: ConditionChanges, others: Sequence[ConditionChanges]) -> Array:
+    """Return twice the time by which other runs have each change earlier or later; nan where one lacks it, (n,)."""
+    error = tolerances.EPS * changes.times
+    for other in others:
+        count = len(other.times)
+        for k, t in enumerate(changes.times.tolist()):
+            same = k < count and other.begins == changes.begins
+            error[k] = max(error[k], 2.0 * abs(float(other.times[k]) - t)) if same else math.nan
+    return np.asarray(error)

@@ -21,13 +21,13 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.motion.integration.contacts.shared_impulses import join_names
-from heuncli.motion.integration.diagnosis.fighting_drives import find_fighting_drives
+from heuncli.motion.integration.diagnosis.ambiguous_laws import find_fighting_drives
 from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.integration.integrated_scene import just_after, just_before
 from heuncli.motion.integration.methods.dop853 import DOP853
-from heuncli.motion.integration.run.errors import ClosuresLost
 from heuncli.motion.integration.run.kernel_loop import REACHED, KernelLoop, LoopStart
+from heuncli.motion.integration.run.request import ClosuresLost
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import just_after, just_before
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.islands import loop_bodies

@@ -1,9 +1,8 @@
 """Estimate the error of a motion by further runs.
 
 The estimate is 2 |A - B|. A is the run whose results are reported. B is a check run at 1/30 of A's local tolerance from
-a start moved by rounding. Both are compared at the same instants (motion/integration/check/instants.py). In tests on
-free, open and closed chains, |A - B| is 0.9 to 1.1 times the true error; a coarser check run would give 3 to 100 times
-it.
+a start moved by rounding. Both are compared at the same instants (check/run_comparison.py). In tests on free, open
+and closed chains, |A - B| is 0.9 to 1.1 times the true error; a coarser check run would give 3 to 100 times it.
 
 A method of fixed step has no tolerance: B runs with a quarter of the step, so |A - B| is 1 - 4^-p of A's error, three
 quarters at order 1. A is not repeated, because its step was requested. Where a step is too long for a decaying motion,
@@ -15,15 +14,15 @@ any two runs counts, because rounding may put all of them on one side of the tru
 
 This module is the top of the package. Each package imports those below it:
 
-    check/      runs of one motion (runs.py), compared at the same instants (instants.py, distance.py); what else is
-                searched in a finished run: changes of conditions, singular poses, points that meet, conflicting drives
+    check/      runs of one motion (runs.py), compared at the same instants (run_comparison.py); what else is
+                searched in a finished run: changes of conditions, singular poses, conflicting drives
     run/        one run from its start to its end; runner.py says in which order to read it
     diagnosis/  sentences on why no motion or no acceleration exists; mostly loaded on the way to an error
     contacts/   impulses, and which contacts close, are struck and released
     methods/    Runge-Kutta methods as tables of coefficients
 
 trajectory.py is the result of a run, evaluator.py evaluates states for all of them; integrated_scene.py is the scene
-that is integrated in place of the given one, segments.py the intervals of time without discontinuities.
+that is integrated in place of the given one, and the intervals of time without discontinuities.
 """
 
 from __future__ import annotations
@@ -36,14 +35,20 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.check.distance import angle_error, bounded_motion_error
-from heuncli.motion.integration.check.instants import JoinedStates, choose_instants, find_ends_between, interleave
-from heuncli.motion.integration.check.matching_impulses import is_between_impulses
+from heuncli.motion.integration.check.run_comparison import (
+    JoinedStates,
+    angle_error,
+    bounded_motion_error,
+    choose_instants,
+    find_ends_between,
+    interleave,
+    is_between_impulses,
+)
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.motion.integration.integrated_scene import find_one_sided_limits
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.motion.integration.segments import find_one_sided_limits
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array, ErrorEstimate, Mask
 
@@ -187,7 +192,7 @@ def find_condition_changes(runs: Runs, best: RunComparison) -> tuple[ConditionCh
 
         found = find_changes(runs.runner, best.runs, before_time)
     if layout.latches:
-        from heuncli.motion.integration.check.latch_changes import find_latch_changes
+        from heuncli.motion.integration.check.changes import find_latch_changes
 
         found += find_latch_changes(layout, best.runs, before_time)
     return found

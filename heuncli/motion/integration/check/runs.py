@@ -1,24 +1,36 @@
-"""Runs of one motion at several tolerances: the reported run A, its check runs B, and finer ones (estimate.py)."""
+"""Runs of one motion at several tolerances: the reported run A, its check runs B, and finer ones (estimate.py).
+
+Explain why a run in fixed steps ended early: the step is too long, or no method can pass.
+
+A method with automatic steps is tried: if it passes the instant, the step was too long. The fastest rate of the
+linearised motion at the start tells how long the step may be, where that rate is too fast for it.
+
+Try a method of fewer stages for a run that events interrupt at nearly every step.
+"""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import cache
 
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.errors import HeunError, LimitError, SolveError
-from heuncli.motion.integration.check.distance import MotionPoints
+from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
+from heuncli.motion.integration.check.run_comparison import MotionPoints
 from heuncli.motion.integration.methods.dop853 import DOP853
-from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.run.errors import ClosuresLost, StiffRun
-from heuncli.motion.integration.run.request import MotionTask, StoppingRules
+from heuncli.motion.integration.methods.method import Method, load_method_by_name
+from heuncli.motion.integration.run.request import ClosuresLost, EventfulRun, MotionTask, StiffRun, StoppingRules
 from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.integration.run.supervision import FEW_STAGES
 from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.response import tangent
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
+
+# Runs
 
 RATIO = 30.0  # local tolerance of A over that of B
 FIRST_RATIO = 1.0  # local tolerance of the first run over the requested tolerance
@@ -98,7 +110,6 @@ class Runs:
             return self.run(step)
         except SolveError as error:
             # only on the way to an error
-            from heuncli.motion.integration.check.given_steps import explain_fixed_step_error
 
             raise explain_fixed_step_error(
                 error, self.runner, self.method, step, self.run_with_automatic_steps
@@ -227,3 +238,93 @@ def perturb_start(layout: Layout) -> Array:
         scale = np.concatenate([size, largest * unit[rates - coordinates :]])
         y[coordinates:end] += tolerances.START_ROUNDING * direction[coordinates:end] * scale
     return y
+
+
+# Given steps
+
+STABILITY_LIMIT = (
+    2.0  # stable h |lambda| of explicit fixed-step methods: 2 for Euler's and Heun's, 2.5 for Heun3, 2.8 for RK4
+)
+STEP_MESSAGES = {
+    "not-a-number": "a motion in steps of {step:g} s has no finite acceleration after this instant",
+    "closure-lost": "with steps of {step:g} s closed loops cannot be assembled after this instant",
+    "stages-unsolved": "the equations of a step of {step:g} s cannot be solved: Newton's iteration does not converge",
+}
+
+
+def explain_fixed_step_error(
+    error: SolveError,
+    runner: Runner,
+    method: Method,
+    step: float,
+    run_with_automatic_steps: Callable[[], HeunError | None],
+) -> SolveError:
+    """Return the error to report in place of that of a run in fixed steps [s], which ended at `error.reached`.
+
+    run_with_automatic_steps: returns how the motion fails with automatic steps, None if it reaches its end; called only
+    if needed
+    """
+    problem, t = error.problems[0], error.reached
+    if problem.code not in STEP_MESSAGES or t is None:
+        return error
+    other = run_with_automatic_steps()
+    end = other.reached if isinstance(other, SolveError) and other.reached is not None else None
+    if isinstance(other, SolveError) and (end is None or end <= t + step):
+        return other  # no step would pass, and this error says where and why
+    message = f"at t = {t:.9g} s: {STEP_MESSAGES[problem.code].format(step=step)}"
+    hint = f"{suggest_step(runner, method, step)}, or --method auto, which chooses its own"
+    if other is None:
+        hint += " and reaches the end"
+    elif end is not None:
+        hint += f"; but that stops {other.problems[0].message}"
+        hint += f": {other.problems[0].hint}" if other.problems[0].hint else ""
+    explained = SolveError(Problem(problem.code, message, hint=hint, entry_path="analysis.step"))
+    explained.reached = t
+    return explained
+
+
+def suggest_step(runner: Runner, method: Method, step: float) -> str:
+    """Say which steps to try in place of a step [s]."""
+    rate = 0.0 if method.implicit else fastest_rate(runner)
+    if rate * step > STABILITY_LIMIT:
+        return f"the fastest rate at the start is {rate:.2g} 1/s: use steps of {STABILITY_LIMIT / rate:.1g} s or less"
+    return f"use steps shorter than {step:g} s"
+
+
+def fastest_rate(runner: Runner) -> float:
+    """Return the largest eigenvalue magnitude of the linearised motion at the start [1/s]; 0 if it has none."""
+    integrated_scene = runner.integrated_scene
+    start = integrated_scene.restrict(0.0, runner.layout.y0)
+    linearised = tangent(integrated_scene.workspace, 0.0, start)
+    if not np.isfinite(linearised).all():
+        return 0.0
+    return float(np.abs(np.linalg.eigvals(linearised)).max(initial=0.0))
+
+
+# Fewer stages
+
+MESSAGE = (
+    "events (contact, condition, jump, table point) end {cut} of the first {steps} steps; up to t = {t:.3g} s "
+    "{name} takes {few} evaluations, {method} {many}"
+)
+
+
+def try_fewer_stages(runs: Runs, eventful: EventfulRun) -> bool:
+    """Switch the runs to a method of few stages if it takes fewer evaluations, and record why; return whether it
+    did.
+    """
+    method, jumps = load_method_by_name(FEW_STAGES), [t for t in runs.jumps if t < eventful.end_time]
+    with suppress(SolveError, LimitError):
+        most = eventful.evaluations // (len(method.nodes) - 1)
+        request = MotionTask(
+            [eventful.end_time], eventful.local, method, jumps, deadline=runs.deadline, most_steps=most
+        )
+        trial = runs.runner.run(request, StoppingRules())
+        if trial.evaluations < eventful.evaluations:
+            eventful.reason = MESSAGE.format(
+                cut=eventful.cut, steps=eventful.steps, t=eventful.end_time, name=method.name, few=trial.evaluations,
+                method=runs.method.name, many=eventful.evaluations,
+            )  # fmt: skip
+            runs.method = method
+            return True
+    return False

@@ -21,7 +21,7 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     select_loaded,
 )
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.motion.integration.segments import just_before
+from heuncli.motion.integration.integrated_scene import just_before
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import Columns, solve_impulses
 from heuncli.multibody.response import ImpulseColumns as Answered

@@ -16,7 +16,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import fields, record
-from heuncli.motion.integration.contacts.complementarity import ComplementaritySolution, solve_complementarity
+from heuncli.motion.integration.contacts.resting import ComplementaritySolution, solve_complementarity
 from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts, is_coupled, strike_in_sequence
 from heuncli.motion.integration.contacts.touching import TouchingContacts, scatter
 from heuncli.results.results import Array, Indices, Mask

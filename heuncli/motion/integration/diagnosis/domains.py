@@ -14,9 +14,9 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem
 from heuncli.base.number_range import range_error
 from heuncli.base.records import replace
-from heuncli.motion.integration.diagnosis.path_ends import Moving, cut_path_coordinates, find_left_paths
+from heuncli.motion.integration.conditions import point_motion
+from heuncli.motion.integration.diagnosis.guide_departures import Moving, cut_path_coordinates, find_left_paths
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.motion.integration.named_points import point_motion
 from heuncli.multibody.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad, RopeLoad
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table

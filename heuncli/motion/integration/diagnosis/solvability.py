@@ -127,14 +127,14 @@ def find_undirected(scene: PreparedScene, evaluation: Evaluation, is_motion_star
     """Return the problems of loads that push between coincident points, or will."""
     if not any(isinstance(load, PairLoad) for load in scene.mechanism.loads):
         return []
-    from heuncli.motion.integration.diagnosis.coincident_points import find_undirected_loads  # few scenes have them
+    from heuncli.motion.integration.diagnosis.ambiguous_laws import find_undirected_loads  # few scenes have them
 
     return find_undirected_loads(scene.layout, evaluation, is_motion_start)
 
 
 def unmet_rows_problem(scene: PreparedScene, evaluation: Evaluation, instant: int, wording: ErrorWording) -> Problem:
     """Make the problem of closed chains that the accelerations found do not hold together."""
-    from heuncli.motion.integration.diagnosis.fighting_drives import find_fighting_drives
+    from heuncli.motion.integration.diagnosis.ambiguous_laws import find_fighting_drives
 
     t, residual = float(evaluation.times[instant]), float(evaluation.residual[instant])
     if (problem := find_fighting_drives(scene.mechanism, t, t)) is not None:
@@ -157,11 +157,11 @@ def find_not_finite(scene: PreparedScene, evaluation: Evaluation, instant: int) 
         scene.mechanism, t, length, evaluate_coordinates(scene.layout, evaluation, instant)
     )
     if not problems and any(isinstance(load, BushingLoad) for load in scene.mechanism.loads):
-        from heuncli.motion.integration.diagnosis.turned_bushings import find_half_turned
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import find_half_turned
 
         problems = find_half_turned(scene.mechanism, evaluation, instant)
     if not problems and scene.mechanism.joint_friction:
-        from heuncli.motion.integration.diagnosis.jamming import find_jammed
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import find_jammed
 
         problems = find_jammed(scene.mechanism, evaluation, instant)
     message = f"at t = {t:.9g} s no finite acceleration exists"

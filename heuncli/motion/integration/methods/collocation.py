@@ -7,6 +7,12 @@ polynomial through the f_i misses it by f_0 - sum w_i f_i, w_i = l_i(0), and h f
 fractions, whose digits are the same on every machine. A^-1 = T L T^-1: `back` is T, last row 1 and, of a pair, 1 and 0;
 `real` and `pairs` are L. Hairer, Wanner, Solving ODEs II (1996), IV.5 and IV.8; Hairer, Lubich, Wanner, Geometric
 Numerical Integration (2006), II.1.
+
+SciPy's stiff and switching integrators as independent checks (motion/integration/run/scipy_loop.py); their orders
+vary.
+
+They see loads only at their stages and may miss a pulse between two of them; so may a finer run of the same method.
+Therefore the check run is the kernel's, which bounds the loads within a step.
 """
 
 from __future__ import annotations
@@ -15,6 +21,8 @@ from fractions import Fraction
 
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.methods.method import Method, Row
+
+# Collocation
 
 Matrix = list[list[Fraction]]
 
@@ -190,3 +198,19 @@ GAUSS4 = replace(make_method("Gauss4", 4, GAUSS_2, error_order=0), check=CHECK)
 GAUSS6 = replace(make_method("Gauss6", 6, GAUSS_3, error_order=0), check=CHECK)
 RADAU5 = make_method("Radau5", 5, RADAU_3, error_order=4, sample_fractions=(0.3, 0.75))
 RADAU9 = make_method("Radau9", 9, RADAU_5, error_order=6, sample_fractions=(0.125, 0.4, 0.675))
+
+
+# Scipy methods
+
+
+def scipy_method(name: str, order: int) -> Method:
+    """Make a method from a class of `scipy.integrate`."""
+    return Method(
+        name=f"SciPy-{name}", order=order, nodes=(), stages=(), solution=(), error_order=order, scipy_name=name,
+        check=RADAU9,
+    )  # fmt: skip
+
+
+RADAU = scipy_method("Radau", 5)  # Radau IIA of three stages: Hairer, Wanner, Solving ODEs II, IV.8
+BDF = scipy_method("BDF", 5)  # orders 1 to 5: Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997) 1-22
+LSODA = scipy_method("LSODA", 12)  # Adams to 12, BDF to 5: Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136-148

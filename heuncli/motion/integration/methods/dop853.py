@@ -1,11 +1,22 @@
 """Dormand and Prince 8(5,3), dense output of order 7.
 
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.10, and their code DOP853.
+
+DOP853 with attitudes represented by Rodrigues parameters within a step (kernel/attitudes.py).
+
+Global: kappa and its rate, counted from the attitude as drawn: Heun's no. 20, in Lagrange's form. Re-centred: kappa
+from the start of each step, and the angular velocity.
+
+The chart, not the tolerance, bounds the rotation in a step: for fast rotations a finer run takes the same steps and has
+the same error. So the check run uses quaternions.
 """
 
 from __future__ import annotations
 
-from heuncli.motion.integration.methods.method import Method
+from heuncli.base.records import replace
+from heuncli.motion.integration.methods.method import GLOBAL, RECENTRED, Method
+
+# Dop853
 
 DOP853 = Method(
     name="DOP853",
@@ -225,3 +236,9 @@ DOP853 = Method(
         ),
     ),
 )
+
+
+# Rodrigues
+
+DOP853_GLOBAL = replace(DOP853, name="DOP853-rodrigues", attitude=GLOBAL, check=DOP853)
+DOP853_RECENTRED = replace(DOP853, name="DOP853-recentred", attitude=RECENTRED, check=DOP853)

@@ -1,13 +1,26 @@
-"""An integration method as data: rows of (stage, coefficient) without zeros, and the arrays that the kernel takes."""
+"""An integration method as data: rows of (stage, coefficient) without zeros, and the arrays that the kernel takes.
+
+Load methods by name; the coefficients of each are loaded on demand.
+
+The rows are in heuncli/base/method_rows.py, where the spec reads them, too.
+
+The method for a motion that its drives determine: nothing is integrated (kernel/following.py).
+
+Its interpolation has two rows more than the cubic's.
+"""
 
 from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping
 from functools import cached_property
+from importlib import import_module
 from typing import Any
 
+from heuncli.base.method_rows import AUTO, DEFAULT, find_method
 from heuncli.base.records import record
+
+# Method
 
 Row = tuple[tuple[int, float], ...]
 QUATERNION, GLOBAL, RECENTRED = range(3)  # how attitudes are held within a step (kernel/stepping.py)
@@ -72,3 +85,34 @@ class Method:
             "node": array("d", self.nodes),
             "collocation": self.collocation,
         }
+
+
+# Registry
+
+
+def load_method_by_name(name: str) -> Method:
+    """Return the method of that name, in either case; for `auto`, the default method. Raises KeyError for any other
+    name.
+    """
+    row = find_method(DEFAULT if name.lower() == AUTO else name)
+    if row is None:
+        raise KeyError(name)
+    module, _, attribute = row.coefficients.partition(".")
+    method: Method = getattr(import_module(f"heuncli.motion.integration.methods.{module}"), attribute)
+    return method
+
+
+# Drive determined
+
+DRIVE_DETERMINED = Method(
+    name="none: each instant is solved separately",
+    order=1,
+    nodes=(0.0,),
+    stages=(),
+    solution=((0, 1.0),),
+    extra=(),
+    estimates=(((0, 1.0),),),
+    error_order=1,
+    dense=((), ()),
+    is_determined=True,
+)

@@ -7,14 +7,14 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
+from heuncli.motion.integration.diagnosis.ambiguous_laws import find_jammed_after
 from heuncli.motion.integration.diagnosis.domains import FARTHEST, evaluate_coordinates, find_without_value
-from heuncli.motion.integration.diagnosis.growth import describe_largest_load, find_growing
-from heuncli.motion.integration.diagnosis.jamming import find_jammed_after
-from heuncli.motion.integration.diagnosis.path_ends import Moving, find_left_paths
+from heuncli.motion.integration.diagnosis.fast_motions import describe_largest_load, find_growing
+from heuncli.motion.integration.diagnosis.guide_departures import Moving, find_left_paths
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.motion.integration.run.errors import KERNEL_ERRORS, ClosuresLost
 from heuncli.motion.integration.run.kernel_loop import CHATTERING, HALF_TURN
 from heuncli.motion.integration.run.progress import RunProgress
+from heuncli.motion.integration.run.request import KERNEL_ERRORS, ClosuresLost
 from heuncli.multibody.mechanism.model import BushingLoad
 from heuncli.scene.expressions.programs import Expression
 
@@ -43,7 +43,9 @@ def make_failure_error(progress: RunProgress, code: int) -> SolveError:
     if code == CHATTERING:
         return SolveError(chattering_problem(t, *scene.layout.pack.branches[loop.changed_branch]))
     if code == HALF_TURN:
-        from heuncli.motion.integration.diagnosis.half_turns import half_turn_error  # the global chart alone has them
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import (
+            half_turn_error,  # the global chart alone has them
+        )
 
         is_unreduced = progress.integrated_scene.layout is scene.layout
         return half_turn_error(
@@ -111,7 +113,7 @@ def find_wound_ropes(run_failure: RunFailure) -> list[Problem]:
     """Return the ropes whose strands have been wound up there, which ends the run whatever fails."""
     if not any(coupling.entry.type == "rope" for coupling in run_failure.mechanism.couplings):
         return []
-    from heuncli.motion.integration.diagnosis.off_sheaves import find_wound_up
+    from heuncli.motion.integration.diagnosis.guide_departures import find_wound_up
 
     return find_wound_up(run_failure.scene.layout, run_failure.evaluation)
 
@@ -120,7 +122,7 @@ def find_turned_bushings(run_failure: RunFailure) -> list[Problem]:
     """Return the bushings that end the run by the jump of their moment, whatever fails there."""
     if not any(isinstance(load, BushingLoad) for load in run_failure.mechanism.loads):
         return []
-    from heuncli.motion.integration.diagnosis.turned_bushings import find_half_turned
+    from heuncli.motion.integration.diagnosis.ambiguous_laws import find_half_turned
 
     return find_half_turned(run_failure.mechanism, run_failure.evaluation, 0)
 

@@ -16,8 +16,8 @@ from heuncli.base.records import record, replace
 from heuncli.motion.integration.contacts.impulses import GivenImpulse, ImpulseEvent, schedule_impulses, solve_impulse
 from heuncli.motion.integration.contacts.shared_impulses import format_sharing
 from heuncli.motion.integration.evaluator import Evaluator
+from heuncli.motion.integration.integrated_scene import Segment
 from heuncli.motion.integration.run.progress import RunProgress
-from heuncli.motion.integration.segments import Segment
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array

@@ -20,11 +20,10 @@ from heuncli.base.errors import LimitError, Problem, SolveError, SpecError
 from heuncli.base.method_rows import SMOOTH_ONLY
 from heuncli.base.records import record
 from heuncli.motion.integration.contacts.impulses import find_rate_jumps
-from heuncli.motion.integration.integrated_scene import IntegratedScene
+from heuncli.motion.integration.integrated_scene import IntegratedScene, Segment, Segments, make_segments
 from heuncli.motion.integration.methods.method import Method
-from heuncli.motion.integration.run.limits import check_deadline
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.motion.integration.segments import Segment, Segments, make_segments
+from heuncli.motion.integration.run.supervision import check_deadline
 from heuncli.motion.integration.trajectory import StepRecords, Trajectory
 from heuncli.multibody.response import settle_state, slope
 from heuncli.multibody.tree.layout import Layout

@@ -1,8 +1,8 @@
 """A run from its start to its end: the kernel's steps through one smooth segment of time after the other.
 
 Between two segments, and where contacts close or open within one, the motion is interrupted (run/interruptions.py) and
-continues from the state after it. After each call of the kernel, which takes at most `find_chunk_size` (run/limits.py)
-steps, these are checked: whether the condition that ends the run became true, the limits, whether events end most
+continues from the state after it. After each call of the kernel, which takes at most `find_chunk_size` steps, it is
+checked (run/supervision.py) whether the condition that ends the run became true, the limits, whether events end most
 steps, whether the motion is stiff.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.motion.integration.integrated_scene import IntegratedScene
+from heuncli.motion.integration.integrated_scene import IntegratedScene, Segment, Segments, just_before, make_segments
 from heuncli.motion.integration.run.interruptions import Interruptions
 from heuncli.motion.integration.run.kernel_loop import (
     CHATTERING,
@@ -31,20 +31,16 @@ from heuncli.motion.integration.run.kernel_loop import (
     KernelLoop,
     LoopStart,
 )
-from heuncli.motion.integration.run.limits import find_chunk_size, require_progress, require_time
-from heuncli.motion.integration.run.progress import RunProgress
+from heuncli.motion.integration.run.progress import GrowingRows, RunProgress, StepRecorder
 from heuncli.motion.integration.run.request import MotionTask, StoppingRules
-from heuncli.motion.integration.run.slow_runs import SlowRunWatch
-from heuncli.motion.integration.run.step_records import GrowingRows, StepRecorder
-from heuncli.motion.integration.segments import Segment, Segments, just_before, make_segments
+from heuncli.motion.integration.run.supervision import SlowRunWatch, find_chunk_size, require_progress, require_time
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 
 if TYPE_CHECKING:  # loaded where they are watched
-    from heuncli.motion.integration.run.ending import EndingCondition
-    from heuncli.motion.integration.run.event_frequency import EventWatch
-    from heuncli.motion.integration.run.stiffness import StiffnessWatch
+    from heuncli.motion.integration.conditions import EndingCondition
+    from heuncli.motion.integration.run.supervision import EventWatch, StiffnessWatch
     from heuncli.motion.integration.run.triggers import DueTriggers, Triggers
 
 
@@ -205,7 +201,7 @@ class Stepper:
                 self.events.require_same_frequency(self.pieces.count)
         if code == STIFF:
             if self.stiffness is None:
-                from heuncli.motion.integration.run.stiffness import StiffnessWatch  # few scenes are
+                from heuncli.motion.integration.run.supervision import StiffnessWatch  # few scenes are
 
                 self.stiffness = StiffnessWatch(self.progress)
             self.stiffness.require_not_stiff(segment)
@@ -281,7 +277,7 @@ def make_ending_condition(layout: Layout) -> EndingCondition | None:
     """Return the condition that ends the runs of a scene, if there is one."""
     if not any(condition.ends for condition in layout.mechanism.conditions):
         return None
-    from heuncli.motion.integration.run.ending import EndingCondition  # few scenes have one
+    from heuncli.motion.integration.conditions import EndingCondition  # few scenes have one
 
     return EndingCondition(layout)
 
@@ -301,7 +297,7 @@ def make_event_watch(progress: RunProgress, segments: Segments) -> EventWatch | 
     """Return the watch that counts steps ended by events, if there may be any."""
     if not (progress.kernel.branch_count > 0 or len(progress.scene.layout.contacts) > 0 or len(segments) > 1):
         return None
-    from heuncli.motion.integration.run.event_frequency import EventWatch  # few scenes have any
+    from heuncli.motion.integration.run.supervision import EventWatch  # few scenes have any
 
     return EventWatch(progress)
 

@@ -15,8 +15,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import ABOUT_AXIS, JOINTS, NO_ROTATION
 from heuncli.multibody.mechanism.model import BushingLoad, Joint, JointLoad, PairLoad, PointLoad, ThreadLoad
-from heuncli.multibody.reduction.plane.departure import Departure, height_departures
-from heuncli.multibody.reduction.plane.view import PlaneView
+from heuncli.multibody.reduction.plane.view import Departure, PlaneView, height_departures
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 

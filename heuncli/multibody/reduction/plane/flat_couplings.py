@@ -13,9 +13,8 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart, Place
-from heuncli.multibody.reduction.plane.departure import Departure, height_departures
-from heuncli.multibody.reduction.plane.view import PlaneView
-from heuncli.multibody.reduction.restated_couplings import (
+from heuncli.multibody.reduction.plane.view import Departure, PlaneView, height_departures
+from heuncli.multibody.reduction.smaller_scene import (
     SceneTransform,
     first_direction_body,
     point_body,

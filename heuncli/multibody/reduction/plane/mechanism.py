@@ -37,9 +37,9 @@ from heuncli.multibody.tree.pack import lay_out_like
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.starts import JointStart, body_state
 from heuncli.results.results import Array
+from heuncli.scene.expressions.composition import weighted_sum
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.expressions.sums import weighted_sum
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 ZERO = Expression.from_number(0.0)
@@ -218,7 +218,7 @@ class FlatSceneBuilder:
         if not self.scene.mechanism.couplings:
             return ()
         from heuncli.multibody.reduction.plane.flat_couplings import flat_transform  # few scenes have them
-        from heuncli.multibody.reduction.restated_couplings import transform_couplings
+        from heuncli.multibody.reduction.smaller_scene import transform_couplings
 
         return transform_couplings(self.scene.layout, lambda own: flat_transform(self.plane_view, self.body_axes, own))
 

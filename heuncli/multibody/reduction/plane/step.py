@@ -12,13 +12,11 @@ from itertools import islice
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.multibody.reduction.model import Reduction
-from heuncli.multibody.reduction.plane.departure import Departure
+from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.plane.departures import iter_departures
-from heuncli.multibody.reduction.plane.frame import iter_normals
 from heuncli.multibody.reduction.plane.mechanism import UnrepresentableLoadError, make_flat_scene
 from heuncli.multibody.reduction.plane.plane_states import PlaneStateMap
-from heuncli.multibody.reduction.plane.view import PlaneView, find_neighbours, make_view
+from heuncli.multibody.reduction.plane.view import Departure, PlaneView, find_neighbours, iter_normals, make_view
 from heuncli.multibody.tree.prepare import PreparedScene
 
 MAX_LISTED = 3  # departures from a plane: a scene with more large ones is not expected to be flat

@@ -8,7 +8,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_elastic as fe
+from heuncli.scene.file_format import format_joints as fe
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.rotations import symmetric_eigenvalues
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule

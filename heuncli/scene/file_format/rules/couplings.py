@@ -1,4 +1,7 @@
-"""Rules about couplings: of joints that exist and have the coordinates that are coupled."""
+"""Rules about couplings: of joints that exist and have the coordinates that are coupled.
+
+Rules about friction in threads: one number, of a plausible size, under a name that is free among the loads.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,18 @@ from heuncli.base.joint_kinds import TYPES, format_kind_names
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format_couplings as f
 from heuncli.scene.file_format.format import FrictionEntry
-from heuncli.scene.file_format.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
+from heuncli.scene.file_format.format_couplings import (
+    BeltEntry,
+    DifferentialEntry,
+    GearEntry,
+    RatioEntry,
+    ScrewEntry,
+    ThreadFrictionEntry,
+)
+from heuncli.scene.file_format.rules.bodies import FULL_FRICTION_HINT
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
+
+# Couplings
 
 COUNTS = {"gear": (2,), "belt": (2,), "screw": (1, 2), "differential": (3,)}  # joints of a type
 
@@ -249,3 +262,54 @@ def check_rope_elasticity(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
         message = "a rope that stretches cannot be fixed to a sheave: its strain where it winds on is unknown"
         hint = "use slip: free, leave out the stiffness, or use two ropes, each ending at a point of the rim"
         yield Violation((*path, "stiffness"), message, hint)
+
+
+# Threads
+
+
+@rule("thread-friction")
+def check_thread_friction(draft: DraftDocument) -> Iterator[Violation]:
+    """Thread friction has a coefficient or an efficiency, a mean radius and a speed; no force has the thread's name."""
+    for name, screw in draft.document.couplings.items():
+        if not isinstance(screw, ScrewEntry) or screw.friction is None:
+            continue
+        path = ("couplings", name)
+        for key, message, hint in find_friction_errors(screw.friction):
+            yield Violation((*path, "friction", *([key] if key else [])), message, hint)
+        if name in draft.names.entries["forces"]:
+            message = (
+                f"{name} is also the name of a force, but the thread's friction is listed under it among the loads"
+            )
+            yield Violation(path, message, "give one of them another name", key=True)
+
+
+def find_friction_errors(friction: ThreadFrictionEntry) -> Iterator[tuple[str, str, str]]:
+    """Yield what is wrong with the numbers: the key or an empty text, the message, a hint."""
+    if (friction.coefficient is None) == (friction.efficiency is None):
+        what = (
+            "neither coefficient nor efficiency is"
+            if friction.coefficient is None
+            else "both coefficient and efficiency are"
+        )
+        yield "", f"{what} given", "give coefficient: 0.12 (of the flanks) or efficiency: 0.4 (rotation to thrust)"
+    if friction.coefficient is not None and friction.coefficient < 0.0:
+        yield "coefficient", f"coefficient must not be negative, but is {friction.coefficient:g}", "for example 0.12"
+    if friction.efficiency is not None and not 0.0 < friction.efficiency <= 1.0:
+        yield "efficiency", f"efficiency must be above 0 and at most 1, not {friction.efficiency:g}", "for example 0.4"
+    if friction.efficiency is not None and friction.flank_angle != 0.0:
+        yield "flank_angle", "flank_angle given with an efficiency, which already includes all losses", "leave it out"
+    if not friction.radius > 0.0:
+        yield (
+            "radius",
+            f"radius must be greater than 0, but is {friction.radius:g} m",
+            "half the mean diameter of the thread",
+        )
+    if not 0.0 <= friction.flank_angle <= math.radians(60.0):
+        angle_text = f"{math.degrees(friction.flank_angle):.4g} deg"
+        yield (
+            "flank_angle",
+            f"{angle_text} is not a possible flank angle",
+            "half the thread angle: 15 deg for Tr, 30 deg for M",
+        )
+    if not friction.speed > 0.0:
+        yield "speed", f"speed must be greater than 0, but is {friction.speed:g}", FULL_FRICTION_HINT

@@ -5,18 +5,11 @@ from __future__ import annotations
 from heuncli.scene.file_format.rules import (
     analysis,
     bodies,
-    cams,
     conditions,
     couplings,
-    curves,
     expect,
     joints,
-    latches,
     loads,
-    methods,
-    motors,
-    naming,
-    not_yet,
     paths,
     plane,
     products,
@@ -24,14 +17,12 @@ from heuncli.scene.file_format.rules import (
     rolling,
     sections,
     stops,
-    threads,
 )
 from heuncli.scene.file_format.rules.registry import RULES, DraftDocument, Rule, Violation, iter_violations
 
 MODULES = (
-    naming, references, bodies, products, joints, paths, plane, loads, motors, stops, latches, couplings, threads,
-    rolling, cams, sections,
-    analysis, methods, conditions, expect, curves, not_yet,
+    references, bodies, products, joints, paths, plane, loads, stops, couplings, rolling, sections, analysis,
+    conditions, expect,
 )  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "iter_violations"]

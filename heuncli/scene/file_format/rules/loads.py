@@ -11,7 +11,7 @@ from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_negative
 from heuncli.scene.expressions.programs import Expression, out_of_range_texts
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_elastic as fe
+from heuncli.scene.file_format import format_joints as fe
 from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 from heuncli.scene.file_format.semantics import find_analysis_type, run_duration

@@ -1,17 +1,26 @@
-"""Rules about references: every body, point and joint that is named exists."""
+"""Rules about references: every body, point and joint that is named exists.
+
+Rules about names: their form, and reserved names.
+
+Refuse, with a location, what the format knows but this version does not solve.
+
+One row per feature; to lift a refusal, delete its row.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
-from heuncli.scene.file_format import format_elastic as fe
+from heuncli.scene.file_format import format_joints as fe
 from heuncli.scene.file_format.fields import EndEntry
-from heuncli.scene.file_format.names import GROUND, as_mapping
+from heuncli.scene.file_format.names import GROUND, NAMED_BLOCKS, RESERVED_NAMES, as_mapping, is_name
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import find_reduction_end
+
+# References
 
 
 def iter_ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
@@ -186,3 +195,67 @@ def check_unknown_joint(draft: DraftDocument) -> Iterator[Violation]:
             joint = getattr(entry, key, None)
             if joint is not None and joint not in joints:
                 yield Violation((block, name, key), f"'{joint}' is not a joint", suggest(joint, joints, "joints"))
+
+
+# Naming
+
+
+@rule("bad-name")
+def check_name_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A name is a letter, then letters, digits and _."""
+    hint = "a name starts with a letter and contains only letters, digits and _"
+    for block in NAMED_BLOCKS:
+        for name in draft.names.entries[block]:
+            if not is_name(name):
+                yield Violation((block, name), f"'{name}' is not a valid name", hint, key=True)
+    for body, points in draft.names.points.items():
+        for name in points:
+            if not is_name(name):
+                path = ("ground",) if body == "ground" else ("bodies", body)
+                yield Violation((*path, "points", name), f"'{name}' is not a valid name", hint, key=True)
+
+
+@rule("reserved-name")
+def check_reserved_name(draft: DraftDocument) -> Iterator[Violation]:
+    """Names with a meaning of their own are not used for entries."""
+    for block, reserved in RESERVED_NAMES.items():
+        for name in draft.names.entries[block]:
+            if name in reserved:
+                meaning = (
+                    "the ground"
+                    if name == "ground"
+                    else "a built-in name of expressions"
+                    if block != "forces"
+                    else "a cause in the results"
+                )
+                yield Violation(
+                    (block, name), f"'{name}' is reserved: it is {meaning}", f"call it {name}_1, for example", key=True
+                )
+
+
+# Not yet
+
+PathFinder = Callable[[DraftDocument], Iterable[Path_]]
+
+
+def iter_stop_friction(draft: DraftDocument) -> Iterator[Path_]:
+    """Yield the friction of stops at impacts."""
+    for name, stop in draft.document.stops.items():
+        if stop.friction is not None:
+            yield "stops", name, "friction"
+
+
+NOT_YET: tuple[tuple[str, PathFinder], ...] = (("friction at impacts", iter_stop_friction),)
+
+
+@rule("not-yet", may_be_consequence=False)
+def check_not_yet(draft: DraftDocument) -> Iterator[Violation]:
+    """Refuse the features of the table."""
+    for feature, find_paths in NOT_YET:
+        for path in find_paths(draft):
+            yield Violation(
+                path,
+                f"not available yet: {feature}",
+                "leave it out: planned for a later version",
+                key=path[-1] != "type",
+            )

@@ -1,4 +1,8 @@
-"""Rules about wheels: round about an axle, on a plane of another body, with valid numbers."""
+"""Rules about wheels: round about an axle, on a plane of another body, with valid numbers.
+
+Rules about cams: a disc on a pin, a follower on a slide or pin of the same body, axes that fit, and a periodic
+lift.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +10,13 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base import tolerances
-from heuncli.scene.file_format.format_rolling import AXLES, RollingEntry, find_axle_direction, find_centre
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.format_couplings import AXLES, CamEntry, RollingEntry, find_axle_direction, find_centre
 from heuncli.scene.file_format.names import GROUND
 from heuncli.scene.file_format.rotations import unit_vector
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
+
+# Rolling
 
 
 @rule("wheel-form")
@@ -105,3 +112,145 @@ def check_wheel_planar(path: tuple[str, str], wheel: RollingEntry) -> Iterator[V
     if wheel.slides is not None:
         message = "in a planar model a wheel that slides along its track only keeps its distance"
         yield Violation((*path, "slides"), message, "use a joint of type plane instead", key=True)
+
+
+# Cams
+
+PERIODIC = 2  # a table's kind (scene/expressions/programs.py)
+CONTACTS = {
+    "roller": ("radius", "the radius of the roller"),
+    "flat": ("normal", "the normal of the face, axes of the follower"),
+}
+
+
+def iter_cams(draft: DraftDocument) -> Iterator[tuple[str, CamEntry]]:
+    """Yield every cam with its name."""
+    for name, coupling in draft.document.couplings.items():
+        if isinstance(coupling, CamEntry):
+            yield name, coupling
+
+
+@rule("cam-joints")
+def check_cam_joints(draft: DraftDocument) -> Iterator[Violation]:
+    """A cam couples a pin with a slide or pin whose `from` is the same body; the follower's point is on the
+    follower.
+    """
+    for name, cam in iter_cams(draft):
+        path = ("couplings", name, "of")
+        if len(cam.of) != 2:
+            yield Violation(
+                path, f"expected two joints, found {len(cam.of)}", "of: [the disc's pin, the follower's slide or pin]"
+            )
+            continue
+        joints = [draft.document.joints.get(joint) for joint in cam.of]
+        shaft, follower = joints
+        if shaft is not None and not isinstance(shaft, f.PinJoint):
+            yield Violation((*path, 0), f"{cam.of[0]} is not a pin", "the disc rotates on a pin: of: [shaft, follower]")
+        if follower is not None and not isinstance(follower, f.PinJoint | f.SlideJoint):
+            yield Violation(
+                (*path, 1), f"{cam.of[1]} is neither a pin nor a slide", "a follower moves on a pin or a slide"
+            )
+        if not isinstance(shaft, f.PinJoint) or not isinstance(follower, f.PinJoint | f.SlideJoint):
+            continue
+        if shaft.from_.body != follower.from_.body:
+            message = f"{cam.of[0]} is from {shaft.from_.body}, but {cam.of[1]} from {follower.from_.body}"
+            yield Violation(
+                path,
+                message,
+                "in both joints, from must be the body that carries disc and follower: swap from and to in one",
+            )
+        elif shaft.to.body == follower.to.body:
+            yield Violation(path, f"disc and follower are both {shaft.to.body}", "the follower must be another body")
+        elif not are_aligned(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
+            relation = "parallel" if isinstance(follower, f.PinJoint) else "perpendicular"
+            message = f"the axis of joint {cam.of[1]} is not {relation} to that of joint {cam.of[0]}"
+            yield Violation(path, message, "a follower must move perpendicular to the disc's axis")
+        if cam.at.body != follower.to.body:
+            message = f"the point is on {cam.at.body}, but the follower is {follower.to.body}"
+            yield Violation(("couplings", name, "at"), message, "give the roller's centre, or a point of the face")
+
+
+def are_aligned(first: tuple[float, float, float], second: tuple[float, float, float], parallel: bool) -> bool:
+    """Whether two directions are parallel or, with parallel=False, perpendicular."""
+    size = math.hypot(*first) * math.hypot(*second)
+    inner = sum(x * y for x, y in zip(first, second, strict=True))
+    cross = math.hypot(
+        first[1] * second[2] - first[2] * second[1],
+        first[2] * second[0] - first[0] * second[2],
+        first[0] * second[1] - first[1] * second[0],
+    )
+    return (cross if parallel else abs(inner)) <= tolerances.TYPED_AXES * size
+
+
+@rule("cam-contact")
+def check_cam_contact(draft: DraftDocument) -> Iterator[Violation]:
+    """A roller has a radius, a flat face a normal, a point neither; a follower guided on both sides never lifts."""
+    for name, cam in iter_cams(draft):
+        path = ("couplings", name)
+        for contact, (key, meaning) in CONTACTS.items():
+            is_given = getattr(cam, key) is not None
+            if is_given and contact != cam.contact:
+                yield Violation(
+                    (*path, key), f"a {cam.contact} has no {key}", f"leave it out, or write contact: {contact}"
+                )
+            elif not is_given and contact == cam.contact:
+                yield Violation((*path, "contact"), f"contact: {contact} needs a {key}", f"add {key}: {meaning}")
+        if cam.radius is not None and cam.radius <= 0.0:
+            yield Violation(
+                (*path, "radius"),
+                f"radius must be greater than 0, but is {cam.radius:g}",
+                "without a roller write contact: point",
+            )
+        if cam.normal == (0.0, 0.0, 0.0):
+            yield Violation((*path, "normal"), "normal is [0, 0, 0], which has no direction", "for example [0, 0, 1]")
+        if cam.restitution is not None and not 0.0 <= cam.restitution <= 1.0:
+            yield Violation(
+                (*path, "restitution"),
+                f"restitution {cam.restitution:g} is not between 0 and 1",
+                "0: no rebound, 1: full rebound",
+            )
+        if cam.restitution is not None and cam.two_sided:
+            hint = "leave out one of the two"
+            yield Violation(
+                (*path, "restitution"),
+                "restitution given, but this follower is guided on both sides: it has no impacts",
+                hint,
+            )
+
+
+@rule("cam-lift")
+def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
+    """The lift continues smoothly over a turn: its period is one turn or a whole part of one; or it covers part of a
+    turn.
+    """
+    for name, cam in iter_cams(draft):
+        if cam.lift.kind != PERIODIC:
+            yield from check_partial_lift(draft, name, cam)
+            continue
+        period = cam.lift.numbers[0]
+        turns = math.tau / period if period > 0.0 else 0.0
+        if not (period > 0.0 and abs(turns - round(turns)) <= tolerances.TABLE_ENDS and round(turns) >= 1):
+            message = (
+                f"the period of table {cam.lift.name}, {math.degrees(period):.6g} deg, does not divide one revolution"
+            )
+            yield Violation(
+                ("couplings", name, "lift"), message, "period: 360 deg, or 360 deg divided by a whole number"
+            )
+
+
+def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterator[Violation]:
+    """Yield what is wrong with a lift over part of a turn: at most one turn, and a prescribed start angle lies within
+    it.
+    """
+    first, last = cam.lift.x[0], cam.lift.x[-1]
+    if last - first > math.tau * (1.0 + tolerances.TABLE_ENDS):
+        message = f"table {cam.lift.name} covers {math.degrees(last - first):.6g} deg, more than one revolution"
+        yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
+        return
+    shaft = draft.document.joints.get(cam.of[0]) if cam.of else None
+    start_angle = shaft.initial.angle if isinstance(shaft, f.PinJoint) and shaft.initial is not None else None
+    if start_angle is not None and not first + cam.phase <= start_angle <= last + cam.phase:
+        covered = f"{math.degrees(first + cam.phase):.6g} to {math.degrees(last + cam.phase):.6g} deg"
+        message = f"angle {math.degrees(start_angle):.6g} deg is outside the lift of cam {name}, which covers {covered}"
+        hint = "start the disc within the lift, or give the lift a period"
+        yield Violation(("joints", cam.of[0], "initial", "angle"), message, hint)

@@ -14,15 +14,18 @@ from typing import Any
 
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.description import DescribedEntry, DescribedParameter
-from heuncli.scene.importers.import_options import ImportOptions
+from heuncli.scene.importers.description import (
+    DescribedEntry,
+    DescribedParameter,
+    ImportOptions,
+    explain_motion,
+    format_original_name,
+)
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.holding import HeldJoints
 from heuncli.scene.importers.mjcf.loop_closures import JointEquality, format_polynomial, make_left_out_problem
+from heuncli.scene.importers.mjcf.starts import HeldJoints
 from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, RATE_KEYS, JointTree, TreeJoint
-from heuncli.scene.importers.names import format_original_name
 from heuncli.scene.importers.spec_text import format_decimal, format_number
-from heuncli.scene.importers.usage_comments import explain_motion
 
 UNHELD_HINT = "drives hold independent joints; neither joint of this coupling is independent"
 

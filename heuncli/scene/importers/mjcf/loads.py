@@ -15,11 +15,17 @@ from typing import Any
 
 from heuncli.scene.importers.description import DescribedEntry
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.frames import BodyFrames, to_vec
 from heuncli.scene.importers.mjcf.laws import drawn_coordinate
 from heuncli.scene.importers.mjcf.loop_closures import ClosureBuilder, find_straight_tendon_sites
-from heuncli.scene.importers.mjcf.points import BodyPoints
-from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, RATE_KEYS, JointTree, TreeJoint
+from heuncli.scene.importers.mjcf.tree import (
+    COORDINATE_KEYS,
+    RATE_KEYS,
+    BodyFrames,
+    BodyPoints,
+    JointTree,
+    TreeJoint,
+    to_vec,
+)
 from heuncli.scene.importers.spec_text import format_decimal, format_number
 
 AssignName = Callable[[str], str]

@@ -23,9 +23,7 @@ from heuncli.scene.file_format.models import Matrix, Vec
 from heuncli.scene.importers.attitudes import compose_rotations
 from heuncli.scene.importers.description import LEFT_OUT_CODE, DescribedEntry
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.frames import BodyFrames, exact_rotation_from_quaternion
-from heuncli.scene.importers.mjcf.points import BodyPoints
-from heuncli.scene.importers.mjcf.tree import GROUND, JointTree
+from heuncli.scene.importers.mjcf.tree import GROUND, BodyFrames, BodyPoints, JointTree, exact_rotation_from_quaternion
 from heuncli.scene.importers.spec_text import format_decimal
 
 ROTATION_TOLERANCE = 1e-6  # deviation of a rotation matrix: people write quaternions to about six digits

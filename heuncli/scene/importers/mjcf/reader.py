@@ -12,11 +12,15 @@ import numpy as np
 from heuncli.base.errors import Problem, SourceLocation, SpecError
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Matrix
-from heuncli.scene.importers.description import DescribedBody, DescribedEntry, DescribedMachine
-from heuncli.scene.importers.import_options import ImportOptions
-from heuncli.scene.importers.mjcf.compiled_model import CompiledModel, compile_model
-from heuncli.scene.importers.mjcf.frames import BodyFrames, compute_frames, mass_properties, to_vec
-from heuncli.scene.importers.mjcf.holding import choose_held_joints
+from heuncli.scene.importers.description import (
+    DescribedBody,
+    DescribedEntry,
+    DescribedMachine,
+    ImportOptions,
+    Namer,
+    format_original_name,
+)
+from heuncli.scene.importers.mjcf.compiled_model import CompiledModel, collect_model_files, compile_model
 from heuncli.scene.importers.mjcf.laws import JointLaws, build_joint_laws
 from heuncli.scene.importers.mjcf.loads import (
     iter_gravity_compensation,
@@ -25,13 +29,21 @@ from heuncli.scene.importers.mjcf.loads import (
     iter_tendon_springs,
 )
 from heuncli.scene.importers.mjcf.loop_closures import ClosureBuilder, LoopClosures
-from heuncli.scene.importers.mjcf.named_files import collect_model_files
 from heuncli.scene.importers.mjcf.no_counterpart import find_unsupported
-from heuncli.scene.importers.mjcf.points import BodyPoints
-from heuncli.scene.importers.mjcf.poses import joint_places
-from heuncli.scene.importers.mjcf.starts import StartKeys, find_starts
-from heuncli.scene.importers.mjcf.tree import CARRIER_MASS_RATIO, FREE, GROUND, JointTree, TreeJoint, build_tree
-from heuncli.scene.importers.names import Namer, format_original_name
+from heuncli.scene.importers.mjcf.starts import StartKeys, choose_held_joints, find_starts, joint_places
+from heuncli.scene.importers.mjcf.tree import (
+    CARRIER_MASS_RATIO,
+    FREE,
+    GROUND,
+    BodyFrames,
+    BodyPoints,
+    JointTree,
+    TreeJoint,
+    build_tree,
+    compute_frames,
+    mass_properties,
+    to_vec,
+)
 from heuncli.scene.importers.xml_elements import XmlElement
 
 ZERO_INERTIA: Matrix = (ZERO, ZERO, ZERO)

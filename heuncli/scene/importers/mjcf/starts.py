@@ -1,21 +1,225 @@
-"""Give start poses to the bodies whose pose no drive and no law sets: free ones, those on balls, those placed by a
+"""Where bodies start: which joints drives hold, the poses at given coordinates, and start poses for the rest.
+
+Give start poses to the bodies whose pose no drive and no law sets: free ones, those on balls, those placed by a
 loop.
+
+Compute the poses and rates of all bodies at given MuJoCo coordinates: at their zero, or in a keyframe.
+
+S_B   attitude of a body against that at the zero: R_WB at the coordinates, times R_WB^T at the zero
+S_C = S_P Rot(a, q - q0)         a hinge, a along the world's axes at the zero
+S_C = S_P R_C0 R(q) R_C0^T       a ball, whose coordinates are a quaternion in the axes of the body
+S_C = R(q) R_C0^T                a free body
+sigma_C = sigma_P + S_C a q'     and likewise with the axes of a ball; of a free body in its own axes
+
+Choose the joints that drives hold, so that no coordinate stays free and none is held twice.
+
+In a tree these are all hinges and slides. Where equalities close loops, some coordinates follow from others. Then a
+joint is held if the equalities and the joints chosen before it leave its rate free,
+
+    rank [J; e_1; ...; e_k; e] > rank [J; e_1; ...; e_k]      J: rows of the equalities, e_i q' the rate of joint i
+
+Joints that lead others come first, because the drives of the others need their parameter; then joints with an actuator.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 
+from heuncli.base.linear_algebra import count_rank
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.attitudes import round_number, round_vector
+from heuncli.scene.file_format.models import ZERO, Vec
+from heuncli.scene.file_format.rotations import rotation_about
+from heuncli.scene.importers.attitudes import add_vectors, round_number, round_vector
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.frames import BodyFrames, to_vec
-from heuncli.scene.importers.mjcf.holding import HeldJoints
-from heuncli.scene.importers.mjcf.loop_closures import LoopClosures
-from heuncli.scene.importers.mjcf.poses import BodyPose, compute_poses
-from heuncli.scene.importers.mjcf.tree import COORDINATE_KEYS, FREE, GROUND, JointTree
+from heuncli.scene.importers.mjcf.loop_closures import JointEquality, LoopClosures
+from heuncli.scene.importers.mjcf.tree import (
+    COORDINATE_KEYS,
+    FREE,
+    GROUND,
+    BodyFrames,
+    JointTree,
+    TreeJoint,
+    exact_rotation_from_quaternion,
+    to_vec,
+)
+
+# Poses
+
+
+class BodyPose(NamedTuple):
+    """S: attitude against that at the zero
+    p: the origin [m]
+    sigma: angular velocity [rad/s]
+    v: velocity of the origin [m/s]
+    """
+
+    S: Any
+    p: Any
+    sigma: Any
+    v: Any
+
+
+AT_REST = BodyPose(np.eye(3), np.zeros(3), np.zeros(3), np.zeros(3))
+
+
+def compute_poses(c: CompiledModel, frames: BodyFrames, tree: JointTree, q: Any, qd: Any) -> dict[str, BodyPose]:
+    """Compute the pose of each body of the spec, by its name."""
+    pose_by_body = {GROUND: AT_REST}
+    for step in tree.steps:
+        pose_by_body[step.child] = _compute_child_pose(c, frames, step, pose_by_body[step.parent], q, qd)
+    return pose_by_body
+
+
+def joint_places(c: CompiledModel, frames: BodyFrames, step: TreeJoint) -> tuple[Vec, Vec]:
+    """Return the place of a joint in its parent and in its child body, in axes parallel to the world's at zero [m].
+
+    Bodies of the spec that represent the same body of MuJoCo share its origin.
+    """
+    model, body = c.model, step.body
+    point = ZERO if step.joint is None else frames.transform_direction(body, model.jnt_pos[step.joint])
+    first = step.joint is None or step.joint == int(model.body_jntadr[body])
+    if not first:
+        return point, point
+    return add_vectors(frames.transform_point(int(model.body_parentid[body]), model.body_pos[body]), point), point
+
+
+def _compute_child_pose(
+    c: CompiledModel, frames: BodyFrames, step: TreeJoint, parent: BodyPose, q: Any, qd: Any
+) -> BodyPose:
+    model, R_C0 = c.model, np.array(frames.attitudes[step.body])
+    parent_point, point = (np.array(place) for place in joint_places(c, frames, step))
+    S, sigma, slid, speed = parent.S, parent.sigma, np.zeros(3), np.zeros(3)
+    if step.joint is not None:
+        q_index, rate_index = int(model.jnt_qposadr[step.joint]), int(model.jnt_dofadr[step.joint])
+        axis = np.array(frames.transform_direction(step.body, model.jnt_axis[step.joint]))
+        displacement = float(q[q_index]) - float(model.qpos0[q_index])
+        if step.kind == FREE:
+            S = np.array(exact_rotation_from_quaternion(q[q_index + 3 : q_index + 7])) @ R_C0.T
+            return BodyPose(
+                S,
+                np.array(q[q_index : q_index + 3]),
+                S @ R_C0 @ qd[rate_index + 3 : rate_index + 6],
+                qd[rate_index : rate_index + 3],
+            )
+        if step.kind == "ball":
+            S = parent.S @ R_C0 @ np.array(exact_rotation_from_quaternion(q[q_index : q_index + 4])) @ R_C0.T
+            sigma = parent.sigma + S @ R_C0 @ qd[rate_index : rate_index + 3]
+        elif step.kind == "pin":
+            S = parent.S @ np.array(rotation_about(to_vec(axis), displacement))
+            sigma = parent.sigma + S @ axis * qd[rate_index]
+        else:
+            slid, speed = S @ axis * displacement, S @ axis * qd[rate_index] + np.cross(sigma, S @ axis * displacement)
+    p = parent.p + parent.S @ parent_point + slid - S @ point
+    v = parent.v + np.cross(parent.sigma, parent.S @ parent_point) + speed - np.cross(sigma, S @ point)
+    return BodyPose(S, p, sigma, v)
+
+
+# Holding
+
+# Least part of a unit rate that is independent of the others; the most independent rates are chosen first.
+INDEPENDENCE_THRESHOLDS = (0.1, 1e-3, 1e-6)
+
+
+class HeldJoints(NamedTuple):
+    """joints: numbers of the joints that drives hold, in MuJoCo's order
+    couplings: the couplings that determine other joints
+    """
+
+    joints: tuple[int, ...]
+    couplings: tuple[JointEquality, ...]
+
+
+def choose_held_joints(c: CompiledModel, tree: JointTree, closures: LoopClosures, q: Any) -> HeldJoints:
+    """Choose the held joints. A coupling is dropped if nothing holds its leader; its joint is then treated as any
+    other.
+    """
+    couplings = [*closures.couplings]
+    while True:
+        joints = _choose_for_couplings(c, tree, closures, couplings, q)
+        without_leader = _find_coupling_without_leader(couplings, joints)
+        if without_leader is None:
+            return HeldJoints(joints, tuple(couplings))
+        couplings.remove(without_leader)
+
+
+def _choose_for_couplings(
+    c: CompiledModel, tree: JointTree, closures: LoopClosures, couplings: list[JointEquality], q: Any
+) -> tuple[int, ...]:
+    followers = {coupling.follower for coupling in couplings}
+    movable = [joint for joint, step in tree.step_by_joint.items() if step.kind in COORDINATE_KEYS]
+    joints = [joint for joint in movable if joint not in followers]
+    if not closures.imported_equalities:
+        return tuple(joints)
+    leaders = {coupling.leader for coupling in couplings}
+    actuated = set(_actuated_joints(c))
+    order = sorted(joints, key=lambda joint: (joint not in leaders, joint not in actuated))
+    dofs = [int(c.model.jnt_dofadr[joint]) for joint in order]
+    imported_equalities = closures.imported_equalities | {coupling.equality for coupling in couplings}
+    return tuple(sorted(order[k] for k in _iter_independent(_equality_rows(c, imported_equalities, q), dofs)))
+
+
+def _find_coupling_without_leader(couplings: list[JointEquality], joints: tuple[int, ...]) -> JointEquality | None:
+    """Find the first coupling that leads back to no held joint; None if all do."""
+    determined: set[int | None] = {None, *joints}
+    remaining = couplings
+    while remaining:
+        still_remaining = [coupling for coupling in remaining if coupling.leader not in determined]
+        if len(still_remaining) == len(remaining):
+            return still_remaining[0]
+        determined |= {coupling.follower for coupling in remaining if coupling.leader in determined}
+        remaining = still_remaining
+    return None
+
+
+def _actuated_joints(c: CompiledModel) -> Iterator[int]:
+    """Yield the joints that an actuator moves."""
+    kinds = [int(c.mujoco.mjtTrn.__members__[word]) for word in ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")]
+    for number in range(int(c.model.nu)):
+        if int(c.model.actuator_trntype[number]) in kinds:
+            yield int(c.model.actuator_trnid[number][0])
+
+
+def _equality_rows(c: CompiledModel, equalities: frozenset[int], q: Any) -> Any:
+    """Compute the constraint rows (rows, rates) of the equalities that the spec holds."""
+    mujoco, model = c.mujoco, c.model
+    data = mujoco.MjData(model)
+    data.qpos[:] = q
+    previous = int(model.opt.jacobian)
+    model.opt.jacobian = int(mujoco.mjtJacobian.mjJAC_DENSE)
+    try:
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_tendon(model, data)
+        mujoco.mj_makeConstraint(model, data)
+    finally:
+        model.opt.jacobian = previous
+    J = np.array(data.efc_J).reshape(-1, int(model.nv))[: int(data.ne)]
+    return J[[int(number) in equalities for number in np.array(data.efc_id)[: len(J)]]]
+
+
+def _iter_independent(J: Any, dofs: Iterable[int]) -> Iterator[int]:
+    """Yield the indices in `dofs` of the rates that the rows and the rates before them leave free."""
+    sizes = np.linalg.norm(J, axis=1)
+    rows = J[sizes > 0.0] / sizes[sizes > 0.0, None]
+    _, s, V = np.linalg.svd(rows, full_matrices=False) if len(rows) else (0, np.zeros(0), rows)
+    base = V[: count_rank(s, INDEPENDENCE_THRESHOLDS[-1])]
+    remaining = dict(enumerate(dofs))
+    for threshold in INDEPENDENCE_THRESHOLDS:
+        for index, dof in list(remaining.items()):
+            residual = -base.T @ base[:, dof]
+            residual[dof] += 1.0
+            residual -= base.T @ (base @ residual)
+            size = np.linalg.norm(residual)
+            if size > threshold:
+                yield index
+                base = np.vstack([base, residual / size])
+                del remaining[index]
+
+
+# Starts
 
 DRAWN_TOLERANCE = 1e-15  # rotation against the drawn pose that is only rounding
 

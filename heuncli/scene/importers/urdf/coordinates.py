@@ -11,15 +11,20 @@ from typing import Any
 
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.importers.description import LEFT_OUT_CODE, DescribedEntry, DescribedParameter
-from heuncli.scene.importers.import_options import ImportOptions
-from heuncli.scene.importers.names import Namer, format_original_name
+from heuncli.scene.importers.description import (
+    LEFT_OUT_CODE,
+    DescribedEntry,
+    DescribedParameter,
+    ImportOptions,
+    Namer,
+    explain_motion,
+    format_original_name,
+)
 from heuncli.scene.importers.spec_text import format_decimal, format_number
+from heuncli.scene.importers.urdf.carriers import SpecJoint
 from heuncli.scene.importers.urdf.document import UrdfJoint
 from heuncli.scene.importers.urdf.fields import UrdfFields
-from heuncli.scene.importers.urdf.links import SpecJoint
 from heuncli.scene.importers.urdf.tree import MimicRelation
-from heuncli.scene.importers.usage_comments import explain_motion
 
 
 class JointQuantity(NamedTuple):

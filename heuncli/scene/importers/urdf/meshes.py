@@ -19,8 +19,7 @@ from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 from heuncli.scene.importers.attitudes import rotation_from_roll_pitch_yaw
 from heuncli.scene.importers.urdf.document import UrdfLink, read_pose
 from heuncli.scene.importers.urdf.fields import UrdfFields
-from heuncli.scene.importers.urdf.geometry import GEOMETRY_TAGS
-from heuncli.scene.importers.urdf.masses import LinkMass
+from heuncli.scene.importers.urdf.masses import GEOMETRY_TAGS, LinkMass
 from heuncli.scene.importers.xml_elements import XmlElement
 from heuncli.scene.meshes.model import middle_of_extent, volume_moments
 from heuncli.scene.meshes.reading import read_closed_mesh
