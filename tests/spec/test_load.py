@@ -17,6 +17,7 @@ from heuncli.base.errors import SpecError
 from heuncli.base.records import fields
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import NO_REPORT_SETTINGS
 from heuncli.scene.file_format.rules import references
 
 POINT = "{mass: 1, center: [0, 0, 0], inertia: [0, 0, 0], points: {p: [0, 0, 0], q: [1, 2, 3]}}"
@@ -62,7 +63,12 @@ def test_a_small_scene_with_all_its_defaults(tmp_path: Path) -> None:
     assert found.title == ""
     assert found.path == str(path)
     assert found.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
-    assert (found.space, found.gravity, found.parameters, found.report) == ("auto", (0.0, 0.0, 0.0), {}, None)
+    assert (found.space, found.gravity, found.parameters, found.report) == (
+        "auto",
+        (0.0, 0.0, 0.0),
+        {},
+        NO_REPORT_SETTINGS,
+    )
     unit = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     assert fields(found.bodies["b"]) == fields(m.Body("b", 2.0, (0.0, 0.0, 1.0), unit, {}, *6 * [None], shapes=None))
     assert (found.ground.points, found.foundation.about, found.expect, found.warnings) == ({}, None, (), ())
