@@ -569,9 +569,6 @@ class ReportSettings(NamedTuple):
     results: tuple[str, ...] | None = None
 
 
-NO_REPORT_SETTINGS = ReportSettings()
-
-
 class Spec(NamedTuple):
     """A validated scene.
 
