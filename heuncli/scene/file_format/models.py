@@ -615,3 +615,11 @@ class Spec(NamedTuple):
         while path and path not in self.locations:
             path = path.rpartition(".")[0]
         return self.locations.get(path) or SourceLocation(self.path, 1, 1)
+
+
+def format_case_title(title: str, case: str | None, case_titles: Mapping[str, str]) -> str:
+    """Return the title of a scene; in a load case extended by the title of the case."""
+    if case is None:
+        return title
+    case_title = case_titles.get(case, "")
+    return f"{title} (case {case}{': ' if case_title else ''}{case_title})".strip()

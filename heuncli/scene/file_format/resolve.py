@@ -73,8 +73,9 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
     active_resolver = resolver or Resolver(document, inputs.locations, inputs.curves, inputs.surfaces)
     joints = active_resolver.resolve_entries("joints", "joint")
     motor_rotors = make_rotors(document, joints, inputs.locations)
+    case_titles = {name: case.title or inputs.labels.get(f"cases.{name}", "") for name, case in document.cases.items()}
     return m.Spec(
-        title=format_title(document, inputs.case),
+        title=m.format_case_title(document.head.title, inputs.case, case_titles),
         path=inputs.path,
         sha256=inputs.sha256,
         space=document.head.space,
@@ -98,7 +99,7 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
         report=make_report_settings(document.head.report, inputs.logo),
         foundation=m.Foundation(active_resolver.find_reference_point(document.foundation.about)),
         expect=tuple(active_resolver.resolve_entries("expect", "expect").values()),
-        cases={name: case.title for name, case in document.cases.items()},
+        cases=case_titles,
         case=inputs.case,
         warnings=inputs.warnings,
         locations={**inputs.locations, **motor_rotors.locations} if motor_rotors.locations else inputs.locations,
@@ -114,14 +115,6 @@ def make_report_settings(value: list[f.Report] | f.ReportEntry | None, logo: m.L
         None if value.chapters is None else tuple(value.chapters),
         None if value.results is None else tuple(value.results),
     )  # fmt: skip
-
-
-def format_title(document: f.Document, case: str | None) -> str:
-    """Return the title of a scene; in a load case extended by the title of the case."""
-    if case is None:
-        return document.head.title
-    case_title = document.cases[case].title if case in document.cases else ""
-    return f"{document.head.title} (case {case}{': ' if case_title else ''}{case_title})".strip()
 
 
 class Resolver:

@@ -70,6 +70,7 @@ WORDS: dict[str, str | tuple[str, str]] = {
     "estimate.reactions": "error of the reactions", "estimate.drives": "error of the drives",
     "estimate.foundation": "error of the foundation loads", "estimate.sections": "error of the section loads",
     "estimate.energy": "error of the energy", "model": "model", "status": "status", "title": "title",
+    "labels": "labels",
 }  # fmt: skip
 # Of two words the first holds where the joint or force slides, the second where it turns.
 SLIDING_OR_TURNING = {

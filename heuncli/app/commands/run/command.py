@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from heuncli.app.api import read
 from heuncli.app.cli import memory, timeout
+from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, require_choice
@@ -47,6 +48,7 @@ def main(request: RunRequest) -> int:
     options = replace(make_solver_options(request), axes=axes)
     start = time.perf_counter()
     spec, cases = read(request.spec, parse_overrides(request.set), request.case)
+    spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - start, time_limit=timeout.remaining_time())
     options = replace(
