@@ -131,11 +131,11 @@ def describe_axis(path: str, labels: Labels, unit: str) -> str:
 
 
 def describe_measure(measure: str, labels: Labels) -> str:
-    """Describe a measure, a path with or without a reducer: `max abs joints.main.force`, `energy.kinetic at 0.5 s`."""
-    words, at, instant = measure.strip().partition(" at ")
-    reducer, _, path = words.rpartition(" ")
+    """Describe a measure, a path with or without a reducer: `max abs joints.main.force`, `at 0.5 energy.kinetic`."""
+    *reducer, path = measure.split()
+    words = " ".join(reducer)
+    suffix = f"{words} s" if reducer[:1] == ["at"] else REDUCERS.get(words, words)
     text = describe_path(path, labels)
-    suffix = REDUCERS.get(" ".join(reducer.split()), reducer) or f"at {instant}" * bool(at)
     return f"{text}, {suffix}" if suffix else text
 
 
