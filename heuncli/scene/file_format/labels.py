@@ -22,7 +22,7 @@ from heuncli.scene.file_format.quantity import describe_kind
 
 Path_ = tuple[str | int, ...]
 LABEL = "label"
-MAX_TEXT = 120  # characters: one line of a table
+MAX_TEXT = 80  # characters: they share a line of a table with the name
 # Block of a spec -> block of the results that its entries belong to
 BLOCKS = {
     "parameters": "parameters", "bodies": "bodies", "joints": "joints", "drives": "drives", "forces": "forces",

@@ -147,16 +147,30 @@ def describe_object(kind: str, name: str, labels: Labels) -> str:
     if kind == "couplings" and ".on." in name:
         coupling, _, end = name.partition(".on.")
         return f"{describe_object(kind, coupling, labels)} on {describe_object('bodies', end, labels)}"
-    if dot and first in LABELLED_BLOCKS["causes"]:  # a cause or element whose name alone would be ambiguous
-        return describe_object(first, rest, labels)
-    for block in LABELLED_BLOCKS.get(kind, (kind,)):
-        caption = labels.captions.get(f"{block}.{name}" if name else block)
-        if caption is not None:
-            return caption
+    label = find_label(kind, name, labels)
+    if label:
+        return label
     if kind == "points" and dot:
         owner = describe_object("bodies", first, labels) if first != GROUND else describe_object(GROUND, "", labels)
         return f"{owner} {make_readable(rest)}"
-    return make_readable(name or kind)
+    return make_readable(rest if dot and first in LABELLED_BLOCKS["causes"] else name or kind)
+
+
+def find_label(kind: str, name: str, labels: Labels) -> str:
+    """Return the label of a named thing, or of a block; empty if it has none.
+
+    kind: the block of its path
+    name: its name in that block; one that is ambiguous there begins with its own block, as in `drives.motor`
+    """
+    first, dot, rest = name.partition(".")
+    if kind == "foundation" and dot:
+        kind, name = first, rest
+        first, dot, rest = name.partition(".")
+    own_block = first if dot and first in LABELLED_BLOCKS["causes"] else ""
+    if own_block:
+        kind, name = own_block, rest
+    paths = (f"{block}.{name}" if name else block for block in LABELLED_BLOCKS.get(kind, (kind,)))
+    return next((labels.captions[path] for path in paths if path in labels.captions), "")
 
 
 def make_readable(name: str) -> str:
