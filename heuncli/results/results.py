@@ -162,6 +162,7 @@ class Results:
     certain_sums: list[DeterminateSum] = field(default_factory=list)
     accuracy: Accuracy = field(default_factory=Accuracy)
     work: Work = field(default_factory=Work)
+    labels: dict[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 
     @property

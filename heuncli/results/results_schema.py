@@ -294,6 +294,7 @@ ROWS: tuple[Quantity, ...] = (
         scalar("energy", "1", is_timed=False)),
     *rows("", "kernel, steps, evaluations, seconds", block("work")),
     *rows("", "as in the spec", words("title")),
+    *rows("", "[labels](format.md#labels) by the paths of the results; left out if the spec has none", words("labels")),
 )  # fmt: skip
 
 # The blocks that run over the instants, in their order, and the report each belongs to; the rest always stays.

@@ -62,6 +62,16 @@ def complete_overrides(data: dict[str, Any], incomplete: str) -> Iterator[str]:
         )
 
 
+def complete_labels(data: dict[str, Any], incomplete: str) -> Iterator[str]:
+    """Yield what --label may name."""
+    from heuncli.scene.file_format.labels import BLOCKS
+    from heuncli.scene.file_format.names import SceneNames
+
+    names = SceneNames.from_data(data)
+    yield from (f"{block}.{name}=" for block in BLOCKS for name in names.entries[block])
+    yield from (f"points.{owner}.{point}=" for owner, points in names.points.items() for point in points)
+
+
 def complete_cases(data: dict[str, Any], incomplete: str) -> Iterator[str]:
     """Yield the load cases, and the word for all of them."""
     from heuncli.scene.file_format.names import ALL_CASES, as_mapping
@@ -165,6 +175,7 @@ def _complete_files(ctx: typer.Context, incomplete: str) -> list[str]:
 BY_WORD: dict[str, Callable[[typer.Context, str], list[str]]] = {
     "spec": _complete_files,
     "set": _complete_from_spec(complete_overrides),
+    "label": _complete_from_spec(complete_labels),
     "case": _complete_from_spec(complete_cases),
     "only": _complete_from_spec(complete_only),
     "measure": _complete_from_spec(complete_measures),

@@ -28,6 +28,13 @@ class Option(NamedTuple):
 SET = Option(
     ("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE", completes="set"
 )
+TITLE = Option(("--title",), "Title, in place of that of the spec.", "TEXT")
+LABEL = Option(
+    ("--label",),
+    "Text shown in place of a name, such as joints.main='Main bearing'. May be repeated.",
+    "PATH=TEXT",
+    completes="label",
+)
 CASE = Option(("--case",), "Solve this load case; --set is applied on top.", "NAME", completes="case")
 OUTPUT = Option(("--output", "-o"), "Output file, written atomically.", "FILE")
 QUIET = Option(("--quiet", "-q"), "Suppress warnings on standard error.")

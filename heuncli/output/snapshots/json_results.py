@@ -170,7 +170,7 @@ def _infer_labels(results: Results) -> Labels:
         for name, block in results.forces.items()
         if "angle" in block or "length" in block
     }
-    return Labels(joints, forces, units=Units({}))
+    return Labels(joints, forces, units=Units({}), captions=results.labels)
 
 
 def _find_magnitudes(results: Results, labels: Labels) -> Magnitudes:

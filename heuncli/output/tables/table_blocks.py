@@ -14,6 +14,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.table_plans import MASS_EFFECT, TablePlan
 from heuncli.results.results import Array, Results
 from heuncli.results.results_schema import XYZ
+from heuncli.study.quantities.captions import find_label
 from heuncli.study.quantities.channels import SYMBOLS, Channel, make_energy_sum
 from heuncli.study.quantities.digits import (
     OPEN,
@@ -32,6 +33,7 @@ class RowGroup(NamedTuple):
     """The rows of one joint, force, ...
 
     note: says what it is
+    label: its label in the spec, if it has one
     is_whole_scene: whether it stands for the scene as a whole
     """
 
@@ -39,11 +41,13 @@ class RowGroup(NamedTuple):
     note: str
     rows: tuple[Channel, ...]
     is_whole_scene: bool = False
+    label: str = ""
 
     @property
     def title(self) -> str:
-        """Name and note as one line."""
-        return f"{self.name}  {self.note}".rstrip()
+        """Label, name and note as one line."""
+        name = f"{self.label} ({self.name})" if self.label else self.name
+        return f"{name}  {self.note}".rstrip()
 
 
 class TableBlock(NamedTuple):
@@ -134,7 +138,8 @@ def build_block(plan: TablePlan, results: Results, labels: Labels, channels: Ite
             for row in channel_of_quantity[quantity].numbers
         ]
         label = _make_group_name(plan, name)
-        groups.append(RowGroup(label, plan.note(label, labels), tuple(rows), is_whole_scene=not name))
+        note, text = plan.note(label, labels), find_label(plan.kind, name, labels) if name else ""
+        groups.append(RowGroup(label, note, tuple(rows), is_whole_scene=not name, label=text))
     notes: tuple[str, ...] = ()
     if plan.is_foundation:
         groups, notes = _select_foundation_groups(groups, results)

@@ -30,8 +30,10 @@ from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import Entry, Field, cached_by_model, fields_of
+from heuncli.scene.file_format.fields import TEXT_SCHEMA
 from heuncli.scene.file_format.foreign_words import TYPE_ALIASES, list_aliases, replace_type_aliases
 from heuncli.scene.file_format.format_couplings import RollingEntry
+from heuncli.scene.file_format.labels import EVENTS, POINTS, VALUE_KEYS
 from heuncli.scene.file_format.source import read_source
 
 # Chapters
@@ -60,6 +62,7 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     "Conditions": f.ResultConditionEntry,
     "Expect": f.ExpectEntry,
     "Cases": f.CaseEntry,
+    "Report": f.ReportEntry,
 }
 TOP = "Top level"
 # small mappings that are described in the row of the key that holds them
@@ -210,10 +213,12 @@ def make_spec_schema() -> dict[str, Any]:
     shapes_block = definitions[f.BodyEntry.__name__]["properties"]["shapes"]
     shapes_block.pop("anyOf", None)
     shapes_block |= {"type": "array", "items": {"oneOf": shapes}}
+    label = {**TEXT_SCHEMA, "description": rows["Labels"][0].description}
+    _accept_labels(definitions, label)
     for model, entry in _iter_examples():
         definitions[model.__name__].setdefault("examples", [entry])
     head = definitions.pop("HeadEntry")
-    top_level = head["properties"] | dict(_iter_blocks())
+    top_level = head["properties"] | dict(_iter_blocks(label))
     schema = {
         "$schema": DRAFT, "title": "heun spec", "type": "object", "properties": top_level,
         "required": head["required"], "additionalProperties": False, "definitions": definitions,
@@ -222,6 +227,21 @@ def make_spec_schema() -> dict[str, Any]:
     }  # fmt: skip
     _describe(schema, rows[TOP], "")
     return schema
+
+
+def _accept_labels(definitions: dict[str, Any], label: dict[str, Any]) -> None:
+    """Accept the key `label` where the loader takes it out of the data (labels.py)."""
+    for model in (*f.list_labelled_models(), f.ResultConditionEntry):
+        definitions[model.__name__]["properties"]["label"] = label
+    for model, key in ((f.BodyEntry, POINTS), (f.GroundEntry, POINTS), (f.AnalysisEntry, EVENTS)):
+        block = definitions[model.__name__]["properties"][key]
+        block["additionalProperties"] = _make_labelled_value(block["additionalProperties"], VALUE_KEYS[key], label)
+
+
+def _make_labelled_value(value: dict[str, Any], key: str, label: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a value that may also be given as a mapping with a label."""
+    mapping = {"type": "object", "properties": {key: value, "label": label}, "additionalProperties": False}
+    return {"anyOf": [value, {**mapping, "required": [key]}]}
 
 
 def _accept_type_aliases(definitions: dict[str, Any]) -> None:
@@ -278,10 +298,10 @@ def _make_reference(model: type[Entry]) -> dict[str, Any]:
     return {"$ref": REF.format(model=model.__name__)}
 
 
-def _iter_blocks() -> Iterator[tuple[str, dict[str, Any]]]:
+def _iter_blocks(label: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the keys of the top level that hold entries; a block may be empty."""
     value = {"anyOf": [{"type": "number"}, {"type": "string"}]}
-    yield "parameters", _make_named_block(value)
+    yield "parameters", _make_named_block(_make_labelled_value(value, VALUE_KEYS["parameters"], label))
     for key, models in (*f.ENTRY_BLOCKS.items(), ("tables", f.TableEntry)):
         yield (
             key,

@@ -61,6 +61,8 @@ class ResolveInputs:
     curves: Mapping[int, m.Curve]
     surfaces: Mapping[str, TriangleMesh]
     case: str | None
+    labels: Mapping[str, str]
+    logo: m.Logo | None
 
 
 def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | None = None) -> m.Spec:
@@ -71,8 +73,9 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
     active_resolver = resolver or Resolver(document, inputs.locations, inputs.curves, inputs.surfaces)
     joints = active_resolver.resolve_entries("joints", "joint")
     motor_rotors = make_rotors(document, joints, inputs.locations)
+    case_titles = {name: case.title or inputs.labels.get(f"cases.{name}", "") for name, case in document.cases.items()}
     return m.Spec(
-        title=format_title(document, inputs.case),
+        title=m.format_case_title(document.head.title, inputs.case, case_titles),
         path=inputs.path,
         sha256=inputs.sha256,
         space=document.head.space,
@@ -85,6 +88,7 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
         forces=active_resolver.resolve_entries("forces", "force"),
         impulses=active_resolver.resolve_entries("impulses", "impulse"),
         stops=active_resolver.resolve_entries("stops", "stop"),
+        labels=inputs.labels,
         couplings=active_resolver.resolve_entries("couplings", "coupling")
         | active_resolver.resolve_entries("rolling", "wheel")
         | motor_rotors.couplings,
@@ -92,22 +96,25 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
         sections=active_resolver.resolve_entries("sections", "section"),
         tables=inputs.tables,
         analysis=active_resolver.resolve_single("analysis"),
-        report=tuple(document.head.report) if document.head.report is not None else None,
+        report=make_report_settings(document.head.report, inputs.logo),
         foundation=m.Foundation(active_resolver.find_reference_point(document.foundation.about)),
         expect=tuple(active_resolver.resolve_entries("expect", "expect").values()),
-        cases={name: case.title for name, case in document.cases.items()},
+        cases=case_titles,
         case=inputs.case,
         warnings=inputs.warnings,
         locations={**inputs.locations, **motor_rotors.locations} if motor_rotors.locations else inputs.locations,
     )
 
 
-def format_title(document: f.Document, case: str | None) -> str:
-    """Return the title of a scene; in a load case extended by the title of the case."""
-    if case is None:
-        return document.head.title
-    case_title = document.cases[case].title if case in document.cases else ""
-    return f"{document.head.title} (case {case}{': ' if case_title else ''}{case_title})".strip()
+def make_report_settings(value: list[f.Report] | f.ReportEntry | None, logo: m.Logo | None) -> m.ReportSettings:
+    """Make the settings of the report; a list names the results to compute."""
+    if value is None or isinstance(value, list):
+        return m.ReportSettings(results=None if value is None else tuple(value))
+    return m.ReportSettings(
+        value.company or "", value.project or "", value.author or "", value.revision or "", value.part or "", logo,
+        None if value.chapters is None else tuple(value.chapters),
+        None if value.results is None else tuple(value.results),
+    )  # fmt: skip
 
 
 class Resolver:

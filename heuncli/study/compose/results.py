@@ -78,6 +78,7 @@ def compose(
             "evaluations": run.evaluations if run is not None else 0,
             "seconds": {},
         },
+        labels=dict(setup.spec.labels),
         warnings=(
             *collect_warnings(
                 setup, history, recovery, composed.blocks.get("joints", {}), accuracy["balance_residual"]

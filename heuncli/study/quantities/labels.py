@@ -74,6 +74,7 @@ class Labels:
 
     moment_point: the name of the ground point that M_s is taken about, if it has one
     units: the display units of tables
+    captions: texts for readers in place of names, by paths such as joints.main (captions.py)
     """
 
     joints: Mapping[str, JointInfo] = NO_ENTRIES
@@ -82,6 +83,7 @@ class Labels:
     stops: Mapping[str, StopInfo] = NO_ENTRIES
     moment_point: str | None = None
     units: Units = DEFAULT_UNITS
+    captions: Mapping[str, str] = NO_ENTRIES
 
     def is_rotational(self, block: str, name: str) -> bool:
         """Whether a quantity of `block` is rotational for `name`: this decides between its two units."""
@@ -111,7 +113,8 @@ def distinguish(name: str, words: Collection[str], kind: str = "force") -> str:
 def make_unit_labels(spec: Spec) -> Labels:
     """Make labels that suffice to find units: the kinds of joints and forces, and the bodies that joints connect."""
     joints = {name: JointInfo(joint.kind, joint.a, joint.b) for name, joint in spec.joints.items()}
-    return Labels(joints, {name: _make_force_info(force) for name, force in spec.forces.items()})
+    forces = {name: _make_force_info(force) for name, force in spec.forces.items()}
+    return Labels(joints, forces, captions=spec.labels)
 
 
 def make_labels(spec: Spec) -> Labels:
@@ -125,7 +128,7 @@ def make_labels(spec: Spec) -> Labels:
     moment_point = spec.foundation.about or (0.0, 0.0, 0.0)
     point_name = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(moment_point)), None)
     stops = {name: _make_stop_info(stop) for name, stop in {**spec.stops, **spec.latches}.items()}
-    return Labels(joints, forces, sections, stops, point_name)
+    return Labels(joints, forces, sections, stops, point_name, captions=spec.labels)
 
 
 def _make_stop_info(stop: Stop[str]) -> StopInfo:

@@ -10,6 +10,7 @@ from heuncli.analyses.load_cases.assembly import assemble_load_cases, select_res
 from heuncli.analyses.load_cases.model import LoadCases
 from heuncli.analyses.load_cases.unit_systems import convert_load_cases
 from heuncli.app.cli import memory, timeout
+from heuncli.app.cli.captions import apply_captions
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, print_stderr
@@ -55,6 +56,7 @@ def main(request: ExportRequest) -> int:
     instants = parse(request.at) if request.at is not None else []
     _require_one_case(request.case)
     spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = apply_captions(spec, request)
     require_other_file(request.output, [request.spec])
     body = _select_body(request.body, spec)
     instants = instants or _choose_instant(spec)

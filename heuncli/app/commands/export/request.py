@@ -4,6 +4,7 @@ from typing import Annotated
 
 from heuncli.app.cli.options import (
     CASE,
+    LABEL,
     LEAST_NORM,
     METHOD,
     NO_REDUCE,
@@ -12,6 +13,7 @@ from heuncli.app.cli.options import (
     SPEC,
     STEP,
     TIME_LIMIT,
+    TITLE,
     TOLERANCE,
     Option,
 )
@@ -73,6 +75,8 @@ class ExportRequest(NamedTuple):
     ] = None
     case: Annotated[str | None, CASE] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    title: Annotated[str | None, TITLE] = None
+    label: Annotated[tuple[str, ...], LABEL] = ()
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None
     tolerance: Annotated[float | None, TOLERANCE] = None

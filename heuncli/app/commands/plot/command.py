@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
+from heuncli.app.cli.captions import check_text
 from heuncli.app.cli.figure_files import require_figure_form
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, save
@@ -26,6 +27,8 @@ def main(request: PlotRequest) -> int:
     parse_units(request.units)  # raises UsageError before the work
     draw = import_module(f"heuncli.app.commands.plot.{target.kind}").draw
     figure: Figure = draw(target, request)
+    if request.title is not None:
+        figure = figure._replace(title=check_text("--title", request.title))
     if form is None or request.output is None:
         emit(render_text(figure, request.width), None)
         return 0

@@ -23,8 +23,8 @@ class FigureKind(NamedTuple):
     options: tuple[str, ...]
 
 
-COMMON_OPTIONS = ("words", "output", "width", "time_limit", "quiet")
-SCENE_OPTIONS = ("set", "case")
+COMMON_OPTIONS = ("words", "output", "width", "title", "time_limit", "quiet")
+SCENE_OPTIONS = ("set", "label", "case")
 SOLVER_OPTIONS = (*SCENE_OPTIONS, "method", "step", "tolerance", "no_reduce", "least_norm")
 KINDS = {
     "history": FigureKind("numbers over time", ("x", "measured", "axes", "units", *SOLVER_OPTIONS)),

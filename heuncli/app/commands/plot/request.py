@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from heuncli.app.cli.options import (
+    LABEL,
     LEAST_NORM,
     METHOD,
     NO_REDUCE,
@@ -10,6 +11,7 @@ from heuncli.app.cli.options import (
     SET,
     STEP,
     TIME_LIMIT,
+    TITLE,
     TOLERANCE,
     VIEW,
     WIDTH,
@@ -64,6 +66,8 @@ class PlotRequest(NamedTuple):
     width: Annotated[int | None, WIDTH] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    title: Annotated[str | None, TITLE] = None
+    label: Annotated[tuple[str, ...], LABEL] = ()
     case: Annotated[str | None, Option(("--case",), "Overlay these load cases, or all.", "NAME,...|all")] = None
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from heuncli.app.cli import timeout
+from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_cases, require_choice
@@ -54,15 +55,16 @@ def _load_cases(file: str, name: str, request: PlotRequest) -> Iterator[tuple[st
     """Yield a spec as it is, or in its cases, each with its name."""
     settings = parse_overrides(request.set)
     if request.case is None:
-        yield name, load(file, overrides=settings, checking=False)
+        yield name, apply_captions(load(file, overrides=settings, checking=False), request)
     elif request.case == ALL_CASES:
         cases = load_with_cases(file, settings, checking=False)[1]
         require_cases(cases)
-        for case, spec in cases.items():
+        for case, spec in apply_captions_to_cases(cases, request).items():
             yield f"{name} {case}".lstrip(), spec
     else:
         for case in map(str.strip, request.case.split(",")):
-            yield f"{name} {case}".lstrip(), load(file, overrides=settings, checking=False, case=case)
+            spec = load(file, overrides=settings, checking=False, case=case)
+            yield f"{name} {case}".lstrip(), apply_captions(spec, request)
     require_other_file(request.output, [file])
 
 

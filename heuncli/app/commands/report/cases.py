@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from heuncli.app.cli import memory, timeout
+from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
 from heuncli.app.cli.units import parse_units
@@ -61,6 +62,7 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     text = read_text(request.spec)
     files = DigestedFiles(request.spec)
     spec, cases = load_with_cases(request.spec, settings, not settings, text, files)
+    spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
     chosen = _select_cases(request, cases)
     selected = chosen or {"": spec}
     outcomes: list[Outcome] = []

@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from heuncli.app.cli.options import (
+    LABEL,
     LEAST_NORM,
     METHOD,
     NO_REDUCE,
@@ -11,6 +12,7 @@ from heuncli.app.cli.options import (
     SPEC,
     STEP,
     TIME_LIMIT,
+    TITLE,
     TOLERANCE,
     Option,
 )
@@ -40,6 +42,8 @@ class ReportRequest(NamedTuple):
     ] = None
     units: Annotated[str | None, Option(("--units",), "Units of loads, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    title: Annotated[str | None, TITLE] = None
+    label: Annotated[tuple[str, ...], LABEL] = ()
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None
     tolerance: Annotated[float | None, TOLERANCE] = None

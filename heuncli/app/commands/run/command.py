@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from heuncli.app.api import read
 from heuncli.app.cli import memory, timeout
+from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, require_choice
@@ -47,6 +48,7 @@ def main(request: RunRequest) -> int:
     options = replace(make_solver_options(request), axes=axes)
     start = time.perf_counter()
     spec, cases = read(request.spec, parse_overrides(request.set), request.case)
+    spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - start, time_limit=timeout.remaining_time())
     options = replace(
@@ -65,7 +67,7 @@ def main(request: RunRequest) -> int:
     if paths:
         selection = select_paths(paths, spec)
     else:
-        default = find_default_reports(spec) if form in TABLES or spec.report is not None else EXPORT_DEFAULT
+        default = find_default_reports(spec) if form in TABLES or spec.report.results is not None else EXPORT_DEFAULT
         selection = select_reports(only_selection, spec, default, by_cause=request.by_cause)
     is_export = form not in TABLES and not paths and request.at is None and request.case != ALL_CASES
     options = replace(options, requested_reports=selection.reports, entries=selection.entries, in_parts=is_export)

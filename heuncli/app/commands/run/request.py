@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from heuncli.app.cli.options import (
+    LABEL,
     LEAST_NORM,
     METHOD,
     NO_REDUCE,
@@ -12,6 +13,7 @@ from heuncli.app.cli.options import (
     SPEC,
     STEP,
     TIME_LIMIT,
+    TITLE,
     TOLERANCE,
     Option,
 )
@@ -44,6 +46,8 @@ class RunRequest(NamedTuple):
         ),
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    title: Annotated[str | None, TITLE] = None
+    label: Annotated[tuple[str, ...], LABEL] = ()
     case: Annotated[
         str | None,
         Option(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import PurePath
 
 from heuncli.app.cli import timeout
+from heuncli.app.cli.captions import apply_captions
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, save
@@ -41,6 +42,7 @@ def main(request: ShowRequest) -> int:
         require_other_file(name, [request.spec], option)
     units_shown, frame_count = parse_units(request.units), _parse_frame_count(request.frames)
     spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = apply_captions(spec, request)
     for name, option in outputs:
         require_other_file(name, [request.spec], option)
     _require_few_bodies(spec)

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from heuncli.app.cli.options import (
     CASE,
+    LABEL,
     LEAST_NORM,
     METHOD,
     NO_REDUCE,
@@ -12,6 +13,7 @@ from heuncli.app.cli.options import (
     SPEC,
     STEP,
     TIME_LIMIT,
+    TITLE,
     TOLERANCE,
     Option,
 )
@@ -34,6 +36,8 @@ class ShowRequest(NamedTuple):
     ] = None
     units: Annotated[str | None, Option(("--units",), "Units of the page, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
+    title: Annotated[str | None, TITLE] = None
+    label: Annotated[tuple[str, ...], LABEL] = ()
     case: Annotated[str | None, CASE] = None
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None
