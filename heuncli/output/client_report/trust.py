@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 
+import numpy as np
+
+from heuncli.base.method_rows import find_method
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Facts, Listing, OutputColumn, OutputTable, Part, Sentence, TextCell
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.heading import make_heading
 from heuncli.results.results_schema import XYZ, error_kind_of_path
 from heuncli.study.quantities.digits import format_error
+from heuncli.version import VERSION
 
 INTEGRATED_NOTE = (
     "Every motion is integrated a second time with 1/30 of the tolerance. The stated errors are twice the largest "
@@ -34,7 +39,7 @@ KIND_LABELS = {"reactions": "joints", "drives": "drives", "foundation": "foundat
 MOTION = ("positions of points", "m")
 LOADS = ("N", "N·m")
 CASE_COLUMN = OutputColumn("case", "text")
-NOTHING_OPEN = "No indeterminate loads: rigid-body mechanics determines every reported load."
+DIGEST_DIGITS = 12  # of a digest of 64
 
 
 def make_trust_parts(data: ReportData) -> list[Part]:
@@ -44,7 +49,27 @@ def make_trust_parts(data: ReportData) -> list[Part]:
         if data.has_cases:
             parts.append(Sentence(f"Case {run.case_label}:"))
         parts.append(Facts([line for line in make_heading(run.results) if line[0] not in ("model", "warning")]))
-    return [*parts, _make_error_table(data)]
+    return [*parts, _make_error_table(data), Facts(list(_iter_provenance(data)))]
+
+
+def _iter_provenance(data: ReportData) -> Iterator[tuple[str, str]]:
+    """Yield the files with their digests, the options and the versions."""
+    yield "spec", f"{data.file_name}, SHA-256 {data.spec.sha256[:DIGEST_DIGITS]}"
+    for name, digest in data.digests.items():
+        yield "file", f"{name}, SHA-256 {digest[:DIGEST_DIGITS]}"
+    for text in data.options:
+        yield "option", text
+    yield "solved by", _format_versions(data)
+
+
+def _format_versions(data: ReportData) -> str:
+    """Format the versions of the programs that solved it."""
+    kernels = dict.fromkeys(str(run.results.work.get("kernel", "")) for run in data.runs)
+    parts = [f"heun {VERSION}", *(f"{kernel} kernel" for kernel in kernels if kernel), f"NumPy {np.__version__}"]
+    rows = [find_method(str(run.results.model.get("method", ""))) for run in data.runs]
+    if any(row is not None and row.kind == "SciPy" for row in rows):
+        parts.append(f"SciPy {sys.modules['scipy'].__version__}")
+    return ", ".join(parts)
 
 
 def _explain_errors(run: ReportedRun) -> str:
@@ -97,7 +122,7 @@ def make_open_parts(data: ReportData) -> list[Part]:
             parts.append(Listing(f"Open (indeterminate) components{_format_case(run)}", run.snapshot.open))
         parts += _iter_sums(data, run)
     if not parts:
-        return [Sentence(NOTHING_OPEN)]
+        return []
     splits = dict.fromkeys(run.results.model["split"] for run in data.runs if run.results.model.get("split"))
     return [
         *parts,

@@ -12,7 +12,14 @@ from heuncli.app.commands.report.request import ReportRequest
 from heuncli.base.errors import HeunError, Problem
 from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
-from heuncli.output.client_report.report_data import AS_IT_STANDS, LOADS, Imprint, ReportData, ReportedRun
+from heuncli.output.client_report.report_data import (
+    AS_IT_STANDS,
+    CHAPTER_NAMES,
+    LOADS,
+    Imprint,
+    ReportData,
+    ReportedRun,
+)
 from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.snapshots.take_snapshot import is_searched_between_samples, take_run_snapshot
 from heuncli.output.tables.page import make_page
@@ -34,6 +41,9 @@ from heuncli.study.workflow import solve
 DRAWING_REPORTS = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
 IMPULSES_ONLY = frozenset({"impulses"})
 NO_REPORTS: frozenset[str] = frozenset()
+PNG_BEGIN = b"\x89PNG\r\n\x1a\n"
+SVG_SEARCHED = 4096  # bytes in which an SVG begins
+MAX_LOGO_BYTES = 1_000_000
 OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
 
 
@@ -57,7 +67,8 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     Raises what solving raises: if one case cannot be solved there is no report.
     """
     units_shown, options = parse_units(request.units), make_solver_options(request)
-    settings = parse_overrides(request.set)
+    settings, chapters = parse_overrides(request.set), parse_chapters(request.chapters)
+    imprint = make_imprint(request)
     text = read_text(request.spec)
     files = DigestedFiles(request.spec)
     spec, cases = load_with_cases(request.spec, settings, not settings, text, files)
@@ -74,14 +85,48 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
         print_warnings(
             scene, study.results, request.quiet, f"heun: case {name}" if name else "heun", study.later_warnings
         )
-    imprint = Imprint(request.date or "", request.author or "", request.project or "")
     left_out = [name for name in cases if name not in selected]
     unchecked = [AS_IT_STANDS] if request.case is not None and spec.expect else []
     unchecked += [name for name in left_out if cases[name].expect]
     return ReportData(
         spec, text, files.digests, runs, outcomes, list(_iter_numeric_options(request)), left_out, unchecked,
-        not request.no_reduce, units_shown, imprint,
+        not request.no_reduce, units_shown, imprint, chapters,
     )  # fmt: skip
+
+
+def parse_chapters(words: str | None) -> tuple[str, ...]:
+    """Return the chapters of `--chapters`, in their order; none without it. Raises UsageError."""
+    names = [name.strip() for name in words.split(",")] if words is not None else []
+    for name in names:
+        if name not in CHAPTER_NAMES:
+            hint = suggest(name, CHAPTER_NAMES, "chapters")
+            raise UsageError(Problem("bad-option", f"--chapters {name}: there is no such chapter", hint=hint))
+    return tuple(dict.fromkeys(names))
+
+
+def make_imprint(request: ReportRequest) -> Imprint:
+    """Make the entries of the title block. Raises UsageError."""
+    words = {key: getattr(request, key) or "" for key in Imprint._fields}
+    return Imprint(**words)._replace(logo=read_logo(request.logo) if request.logo else "")
+
+
+def read_logo(path: str) -> str:
+    """Return a PNG or SVG file as a data URI. Raises UsageError."""
+    from base64 import b64encode
+    from pathlib import Path
+
+    try:
+        content = Path(path).read_bytes()
+    except OSError as reason:
+        message = f"--logo {path}: {reason.strerror or reason}"
+        raise UsageError(Problem("bad-option", message, hint="a PNG or SVG file")) from None
+    is_png = content.startswith(PNG_BEGIN)
+    if not is_png and b"<svg" not in content[:SVG_SEARCHED]:
+        raise UsageError(Problem("bad-option", f"--logo {path}: neither PNG nor SVG", hint="a PNG or SVG file"))
+    if len(content) > MAX_LOGO_BYTES:
+        message = f"--logo {path}: {len(content)} bytes, at most {MAX_LOGO_BYTES}"
+        raise UsageError(Problem("bad-option", message, hint="a smaller picture"))
+    return f"data:image/{'png' if is_png else 'svg+xml'};base64,{b64encode(content).decode()}"
 
 
 def _select_cases(request: ReportRequest, cases: Mapping[str, Spec]) -> dict[str, Spec]:

@@ -1,0 +1,44 @@
+"""The chapter of load directions: polar diagrams of the most loaded joints of a machine that turns all around."""
+
+from __future__ import annotations
+
+from heuncli.base.joint_kinds import TYPES
+from heuncli.output.client_report.machine import HALF_WIDTH
+from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.client_report.summary_table import find_crank, find_summary_lines
+from heuncli.output.documents.document import Drawing, Part
+from heuncli.output.figures.courses import FigureSource, is_claimed
+from heuncli.output.figures.polar import make_polar_figure
+from heuncli.output.figures.refusals import NotDrawable
+from heuncli.study.quantities.captions import describe_object
+
+MAX_DIAGRAMS = 2
+HEIGHT = 230.0  # pixels
+
+
+def make_polar_parts(data: ReportData) -> list[Part]:
+    """Make the polar diagrams of the most loaded joints that turn, each in its governing case."""
+    if find_crank(data) is None:
+        return []
+    parts: list[Part] = []
+    for line in find_summary_lines(data):
+        greatest = line.greatest
+        kind, _, rest = (greatest.path if greatest is not None else "").partition(".")
+        name, _, quantity = rest.partition(".")
+        if greatest is None or greatest.is_steady or kind != "joints" or quantity != "force":
+            continue
+        if "angle" not in TYPES[data.labels.joints[name].type].coordinates or not is_claimed(greatest.run.study):
+            continue
+        try:
+            figure = make_polar_figure([FigureSource("", greatest.run.study)], [greatest.path], data.units)
+        except NotDrawable:
+            continue
+        panels = [panel._replace(height=min(panel.height, HEIGHT)) for panel in figure.panels]
+        words = describe_object("joints", name, data.labels)
+        case = f", load case {greatest.run.name}" if greatest.run.name else ""
+        caption = f"{words}: force in world axes{case}; marks: crank angle"
+        figure = figure._replace(title="", words=(), legend=(), notes=(), panels=panels)
+        parts.append(Drawing(figure, caption, HALF_WIDTH, "half"))
+        if len(parts) == MAX_DIAGRAMS:
+            break
+    return parts

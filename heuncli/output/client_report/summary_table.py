@@ -1,0 +1,163 @@
+"""The summary table of the first page: the greatest load of each joint, coupling and force, where and when."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.client_report.extremes import (
+    DASH,
+    MINUS,
+    NOISE,
+    GreatestOfCases,
+    find_greatest_of_cases,
+    find_uncertain_cases,
+)
+from heuncli.output.client_report.load_groups import iter_loaded_objects
+from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import OutputColumn, OutputTable, TextCell, join_names
+from heuncli.output.figures.turning import TURN, find_span, is_monotonic, list_angle_paths
+from heuncli.output.tables.extremes_tables import MARK
+from heuncli.results.results_schema import XYZ
+from heuncli.study.quantities.digits import OPEN
+
+MAX_LINES = 12
+FOUNDATION = "foundation"
+HEADING = "SUMMARY  greatest load of each, and its components there"
+MORE_NOTE = "{} smaller ones: chapter Loads"
+UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"
+
+
+class SummaryLine(NamedTuple):
+    """The greatest load of one object; greatest: None if it is open or unknown in all cases."""
+
+    name: str
+    greatest: GreatestOfCases | None
+    paths: Sequence[str]
+
+    @property
+    def rank(self) -> float:
+        """The size by which lines are chosen, forces before moments [SI]."""
+        return -1.0 if self.greatest is None else abs(self.greatest.value) * self.weight
+
+    @property
+    def weight(self) -> float:
+        """1 for forces; moments count little, as they have no common size with forces."""
+        return 1.0 if self.greatest is not None and self.greatest.ends.unit == "N" else 1e-6
+
+
+def find_summary_lines(data: ReportData) -> list[SummaryLine]:
+    """Find the greatest load of the foundation and of all that carries a load, the largest first."""
+    objects = [(each.name, each.paths) for each in iter_loaded_objects(data)]
+    lines = [_make_line(data, name, paths) for name, paths in objects]
+    lines = [line for line in lines if line.greatest is not None or _is_uncertain(data, line)]
+    lines.sort(key=lambda line: -line.rank)
+    foundation = _make_line(data, FOUNDATION, ["foundation.force"])
+    if foundation.greatest is None:
+        return lines
+    return [*lines[: MAX_LINES - 1], foundation, *lines[MAX_LINES - 1 :]]
+
+
+def _make_line(data: ReportData, name: str, paths: Sequence[str]) -> SummaryLine:
+    found = [each for path in paths if (each := find_greatest_of_cases(data, path, name)) is not None]
+    return SummaryLine(name, max(found, key=lambda each: abs(each.value), default=None), paths)
+
+
+def _is_uncertain(data: ReportData, line: SummaryLine) -> bool:
+    return any(find_uncertain_cases(data, path) for path in line.paths)
+
+
+def find_worst_instant(data: ReportData) -> tuple[ReportedRun, float | None]:
+    """Find the case and the instant of the greatest force; without one the first of the first case."""
+    lines = [line for line in find_summary_lines(data) if line.greatest is not None and line.greatest.ends.unit == "N"]
+    if not lines:
+        return data.runs[0], None
+    inner = [line for line in lines if line.name != FOUNDATION] or lines
+    greatest = max(inner, key=lambda line: line.rank).greatest
+    assert greatest is not None
+    return greatest.run, greatest.extreme.time
+
+
+def make_summary_table(data: ReportData) -> OutputTable | None:
+    """Make the table of at most MAX_LINES lines; None without any load."""
+    lines = find_summary_lines(data)
+    shown = lines[:MAX_LINES]
+    if not any(line.greatest for line in shown):
+        return None
+    crank = find_crank(data)
+    heads = [OutputColumn("", "text"), OutputColumn("greatest load")]
+    heads += [OutputColumn(f"F{axis}") for axis in XYZ]
+    heads += [OutputColumn("instant" if crank is None else "angle, instant")]
+    heads += [OutputColumn("case", "text")] * data.has_cases
+    rows = [_make_row(data, line, crank) for line in shown]
+    kept = [k for k in range(len(heads)) if k < 2 or any(row[k].text not in ("", DASH) for row in rows)]
+    notes = [MORE_NOTE.format(len(lines) - len(shown))] if len(lines) > len(shown) else []
+    for line in shown:
+        cases = list(dict.fromkeys(case for path in line.paths for case in find_uncertain_cases(data, path)))
+        if cases and line.greatest is not None:
+            notes.append(UNCERTAIN_NOTE.format(line.name, join_names(cases)))
+    notes += dict.fromkeys(
+        line.greatest.run.uncertain_instants.note
+        for line in shown
+        if line.greatest is not None and _mark(line.greatest).endswith(MARK)
+    )
+    return OutputTable(HEADING, [heads[k] for k in kept], [[row[k] for k in kept] for row in rows], notes, "page")
+
+
+def _mark(greatest: GreatestOfCases) -> str:
+    """Return the number with its unit, marked if smoothed friction has not reached its full value there."""
+    if greatest.extreme.time is None or greatest.is_steady:
+        return greatest.text
+    kind = greatest.path.partition(".")[0]
+    return greatest.run.uncertain_instants.add_mark(greatest.text, greatest.extreme.time, kind, greatest.ends.unit)
+
+
+def _make_row(data: ReportData, line: SummaryLine, crank: str | None) -> list[TextCell]:
+    """Make the cells of a line."""
+    greatest = line.greatest
+    blank = ["", "", ""]
+    if greatest is None:
+        cells = [line.name, OPEN, *blank, "", *[""] * data.has_cases]
+    else:
+        instant = greatest.instant
+        if instant:
+            instant = f"{instant} s"
+            if crank is not None:
+                instant = f"{_format_angle(greatest.run, crank, greatest.extreme.time)}, {instant}"
+        cells = [line.name, _mark(greatest), *_format_components(greatest), instant]
+        cells += [greatest.run.case_label] * data.has_cases
+    return [TextCell(cell) for cell in cells]
+
+
+def _format_components(greatest: GreatestOfCases) -> list[str]:
+    """Format the components of a force at the instant of its greatest magnitude; of a number without any: blanks."""
+    if f"{greatest.path}.x" not in greatest.run.snapshot.numbers:
+        return ["", "", ""]
+    vector = greatest.run.find_vector(greatest.path, greatest.extreme.time)
+    limit = NOISE * abs(greatest.value)
+    return [
+        OPEN if math.isnan(value) else DASH if abs(value) < limit else greatest.family.style.write(value)
+        for value in vector.tolist()
+    ]
+
+
+def find_crank(data: ReportData) -> str | None:
+    """Find the name of the joint that turns all around, a driven one first; None if none does in all cases."""
+    best, farthest = None, TURN * (1.0 - 1e-9)
+    for path in list_angle_paths(data.spec):
+        name = path.split(".")[1]
+        angles = [np.asarray(run.results.coordinates.get(name, {}).get("angle", [0.0])) for run in data.runs]
+        if all(np.isfinite(own).all() and is_monotonic(own) for own in angles):
+            span = min(find_span(own) for own in angles)
+            if span > farthest:
+                best, farthest = name, span
+    return best
+
+
+def _format_angle(run: ReportedRun, crank: str, time: float | None) -> str:
+    """Format the angle of the turning joint at the instant of an extreme."""
+    angle = float(run.worst_results.coordinates[crank]["angle"][run.find_index(time)])
+    return f"{math.degrees(angle):.0f}°".replace("-", MINUS)
