@@ -29,6 +29,7 @@ from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NO
 
 MAX_NUMBER_COLUMNS = 8  # of cases beside each other; if there are more, their envelope
 MAX_HALF_COLUMNS = 4  # columns of numbers with which a table runs through two columns of a page
+MIN_SPLIT_ROWS = 9  # rows of a table that runs through two columns
 PARTLY_OPEN_MARK = "*"
 BOLD_NOTE = (
     "bold: minimum and maximum over all load cases, for magnitudes only the maximum; not where a case may be open, the "
@@ -62,7 +63,8 @@ def make_cases_table(
             rows += ["  ".join(filter(None, (group.name, group.note))), *group_rows]
     table_notes = [*_iter_notes(layout, groups, rows), *notes]
     table_notes += [f"no load: {join_names(zero_groups)}"] if zero_groups else []
-    return OutputTable(heading, layout.columns if rows else [], rows, table_notes, layout.fill)
+    fill: Fill = "page" if len(rows) < MIN_SPLIT_ROWS else layout.fill
+    return OutputTable(heading, layout.columns if rows else [], rows, table_notes, fill)
 
 
 class _Layout:
@@ -89,9 +91,8 @@ class _Layout:
             return [*heads, *both[0], *both[1]]
         if len(self.data.runs) > 1:
             for run in self.data.runs:
-                heads += [
-                    OutputColumn(f"{run.case_label} {word}" if self.is_ranged else run.case_label) for word in words
-                ]
+                case = run.case_label.replace("_", " ")
+                heads += [OutputColumn(f"{case} {word}" if self.is_ranged else case) for word in words]
             return heads
         for word in words:
             heads += [OutputColumn(word), *(OutputColumn(head) for head in self.position_heads)]
@@ -163,9 +164,9 @@ def _iter_group_rows(
     numbers = list(_iter_formatted(layout.data, group))
     shown = [number for number in numbers if not number.is_noise and number.distinct_texts != {OPEN}]
     counts = Counter(number.row.vector for number in shown if not number.row.is_magnitude)
-    for k, number in enumerate(shown):
+    for number in shown:
         is_vector_length = number.row.is_magnitude and number.row.vector
-        if (is_vector_length and counts[number.row.vector] == 1) or _repeats_one(number, shown[:k]):
+        if (is_vector_length and counts[number.row.vector] == 1) or _repeats_one(number, shown):
             continue
         yield _make_row(layout, number, governing_bounds)
     if open_labels := [number.row.label for number in numbers if number.distinct_texts == {OPEN}]:
@@ -173,10 +174,10 @@ def _iter_group_rows(
         yield [TextCell(", ".join(open_labels)), TextCell(""), TextCell(OPEN), *blank]
 
 
-def _repeats_one(number: FormattedNumber, earlier: Sequence[FormattedNumber]) -> bool:
-    """Return whether a number that belongs to no vector, such as `radial`, equals one before it in all cases."""
+def _repeats_one(number: FormattedNumber, others: Sequence[FormattedNumber]) -> bool:
+    """Return whether a number that belongs to no vector, such as `radial`, equals one of a vector in all cases."""
     return not number.row.vector and any(
-        other.row.vector and other.unit == number.unit and other.texts == number.texts for other in earlier
+        other.row.vector and other.unit == number.unit and other.texts == number.texts for other in others
     )
 
 

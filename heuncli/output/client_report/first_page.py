@@ -32,6 +32,7 @@ def make_first_page(data: ReportData) -> list[Part]:
     summary = make_summary_table(data)
     return [
         Facts(list(_iter_identity(data)), is_block=True),
+        Facts(list(_iter_cases(data))),
         *make_drawing_parts(data),
         *make_verdicts(data),
         *([summary] if summary is not None else []),
@@ -47,6 +48,10 @@ def _iter_identity(data: ReportData) -> Iterator[tuple[str, str]]:
         if text := getattr(imprint, label):
             yield label, text
     yield "model", data.file_name
+
+
+def _iter_cases(data: ReportData) -> Iterator[tuple[str, str]]:
+    """Yield the load cases of the report, and those left out."""
     if data.has_cases:
         yield "load cases", ", ".join(_format_case(run.name, run.title) for run in data.runs)
     if data.omitted_cases:

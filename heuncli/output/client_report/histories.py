@@ -20,7 +20,8 @@ from heuncli.output.drawing.ticks import choose_ends
 from heuncli.output.figures.courses import choose_instants, is_claimed
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
-from heuncli.study.quantities.captions import describe_path
+from heuncli.study.quantities.captions import describe_object, describe_path
+from heuncli.study.quantities.labels import Labels
 
 MAX_PANELS = 6
 MAX_CURVES = 4  # cases in one panel; of more, the governing one
@@ -96,9 +97,9 @@ def _share_panels(lines: Sequence[SummaryLine]) -> list[SharedPanel]:
             continue
         same = next((k for k, panel in enumerate(panels) if _are_alike(panel.greatest, greatest)), None)
         if same is None:
-            panels.append(SharedPanel(greatest, [line.name]))
+            panels.append(SharedPanel(greatest, [line.name, *line.alike]))
         else:
-            panels[same] = panels[same]._replace(names=[*panels[same].names, line.name])
+            panels[same] = panels[same]._replace(names=[*panels[same].names, line.name, *line.alike])
     return panels
 
 
@@ -112,12 +113,21 @@ def _are_alike(first: GreatestOfCases, second: GreatestOfCases) -> bool:
 
 def _make_caption(data: ReportData, panel: SharedPanel) -> str:
     """Make the caption: what is drawn, and what else is alike."""
-    words = describe_path(panel.greatest.path, data.labels)
+    words = describe_load(panel.greatest.path, data.labels)
     names = panel.names[1:]
     if not names:
         return words
     more = f" and {len(names) - MAX_ALIKE} more" if len(names) > MAX_ALIKE else ""
     return f"{words} (alike: {', '.join(names[:MAX_ALIKE])}{more})"
+
+
+def describe_load(path: str, labels: Labels) -> str:
+    """Describe the path of a load in words; of a coupling's load on a body: that body."""
+    kind, name, *rest = path.split(".")
+    if kind == "couplings" and rest[:1] == ["on"]:
+        body = describe_object("bodies", rest[1], labels)
+        return f"{describe_object(kind, name, labels)}, {' '.join(rest[2:])} on {body}"
+    return describe_path(path, labels)
 
 
 def _make_figure(

@@ -108,7 +108,16 @@ def iter_loaded_objects(data: ReportData) -> Iterator[LoadedObject]:
             objects.setdefault((f"{kind}.drive" if quantity == "drive" else kind, name), []).append(path)
     for (kind, name), paths in objects.items():
         words = describe_object(kind.removesuffix(".drive"), name, data.labels)
-        yield LoadedObject(f"{words} (drive)" if kind.endswith(".drive") else words, paths)
+        type_name = "drive" if kind.endswith(".drive") else _name_type(data, kind, name)
+        yield LoadedObject(f"{words} ({type_name})" if type_name and type_name not in words else words, paths)
+
+
+def _name_type(data: ReportData, kind: str, name: str) -> str:
+    """Return the type of a coupling or force in words, which its name may not tell."""
+    if kind == "couplings":
+        return str(getattr(data.spec.couplings.get(name), "type", "")).replace("_", " ")
+    info = data.labels.forces.get(name) if kind == "forces" else None
+    return LOAD_KINDS[info.type].display_name if info is not None else ""
 
 
 def _is_joining_load(data: ReportData, kind: str, name: str, quantity: str, unit: str) -> bool:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from heuncli.output.client_report.cases_table import make_cases_table
 from heuncli.output.client_report.hardpoints import make_hardpoint_table
 from heuncli.output.client_report.load_groups import TOTAL, LoadGroup, drop_components, iter_groups
 from heuncli.output.client_report.report_data import ReportData
-from heuncli.output.documents.document import Part, Sentence
+from heuncli.output.documents.document import OutputTable, Part, Sentence
 from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
 from heuncli.output.tables.table_blocks import describe_chosen_components
 from heuncli.output.tables.table_plans import COUPLINGS, FORCES, FOUNDATION, JOINTS, STOPS, TablePlan
@@ -25,9 +25,25 @@ def make_load_parts(data: ReportData) -> list[Part]:
     hardpoints = make_hardpoint_table(data)
     tables: list[Part] = [hardpoints] if hardpoints is not None else []
     tables += [part for plan in (FOUNDATION, JOINTS, STOPS, COUPLINGS, FORCES) for part in _iter_table(data, plan)]
+    tables = gather_notes(tables)
     if not any(data.runs[0].results.joints) and not data.spec.joints:
         return tables or [Sentence(NO_JOINTS_NOTE)]
     return tables or [Sentence(ONLY_IMPACTS_NOTE)]
+
+
+def gather_notes(parts: Sequence[Part]) -> list[Part]:
+    """Gather the notes that stand below several tables: once, below the last."""
+    notes = [note for part in parts if isinstance(part, OutputTable) for note in part.notes]
+    shared = [note for note in dict.fromkeys(notes) if notes.count(note) > 1]
+    if not shared:
+        return list(parts)
+    own = [
+        part._replace(notes=[note for note in part.notes if note not in shared])
+        if isinstance(part, OutputTable)
+        else part
+        for part in parts
+    ]
+    return [*own, OutputTable("", notes=shared)]
 
 
 def _iter_table(data: ReportData, plan: TablePlan) -> Iterator[Part]:

@@ -18,10 +18,10 @@ from heuncli.output.client_report.extremes import (
     iter_run_extremes,
 )
 from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
-from heuncli.output.client_report.machine import SHEET_WIDTH
+from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable, Part, Sentence, TextCell, join_names
-from heuncli.output.drawing.figure import Panel
+from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.diagrams import BAND_SENTENCE, make_diagrams
 from heuncli.output.tables.table_plans import SECTIONS
@@ -37,8 +37,7 @@ UNCERTAIN_NOTE = "{}: open or unknown{}, where it may be larger"
 LARGEST_NOTE = "bold: section with the highest utilisation"
 GOVERNING_QUANTITIES = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # in order of priority
 MAX_DIAGRAMS = 12
-MAX_PANELS_HEIGHT = 700.0  # pixels of the panels of a bar
-PANEL_GAP = 40.0
+PANEL_HEIGHT = 105.0  # pixels
 NO_STRENGTH = "not given"
 
 
@@ -61,27 +60,39 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
             yield Sentence(f"{name} has no diagram: all output times are past the horizon.")
             continue
         figure = make_diagrams([FigureSource("", run.study)], [name], data.units)
-        figure = figure._replace(title="", words=(), panels=_fit_to_sheet(figure.panels))
+        figure = figure._replace(title="", words=())
         case = f", load case {run.name}" if run.name else ""
         words = describe_object("sections", name, data.labels)
         band = f". {BAND_SENTENCE[0].upper()}{BAND_SENTENCE[1:]}" if len(run.results.time) > 1 else ""
         axes = data.labels.sections[name].first_axis if name in data.labels.sections else ""
-        yield Drawing(
-            figure,
+        caption = (
             f"Section {words}{case}{_format_open_cases(data, name)}: force of the far side on the "
-            f"near side of the cut, N > 0 tension{f', e1 = {axes}' if axes else ''}{band}",
-            SHEET_WIDTH,
+            f"near side of the cut, N > 0 tension{f', e1 = {axes}' if axes else ''}{band}"
         )
+        halves = _split_panels(figure)
+        yield from (Drawing(half, "", HALF_WIDTH, "half") for half in halves)
+        yield Sentence(caption)
     if len(cut_runs) > len(drawn_runs):
         yield Sentence(
             f"{len(cut_runs) - len(drawn_runs)} further sections are not shown: heun plot SPEC sections.NAME"
         )
 
 
-def _fit_to_sheet(panels: Sequence[Panel]) -> list[Panel]:
-    """Return the panels of a bar with heights at which all of them stand on one sheet."""
-    share = min(1.0, MAX_PANELS_HEIGHT / sum(panel.height + PANEL_GAP for panel in panels)) if panels else 1.0
-    return [panel._replace(height=share * panel.height) for panel in panels]
+def _split_panels(figure: Figure) -> list[Figure]:
+    """Split the panels of a bar into two columns: forces at the left, moments at the right, each with the sketch of
+    the bar if there is one.
+    """
+    sketch = [panel for panel in figure.panels if panel.is_bare]
+    panels = [panel._replace(height=min(panel.height, PANEL_HEIGHT)) for panel in figure.panels if not panel.is_bare]
+    middle = (len(panels) + 1) // 2
+    halves = [half for half in (panels[:middle], panels[middle:]) if half]
+    return [
+        figure._replace(
+            panels=[*sketch, *half[:-1], half[-1]._replace(x=half[-1].x._replace(hides_label=False))],
+            notes=figure.notes if k == 0 else (),
+        )
+        for k, half in enumerate(halves)
+    ]
 
 
 def _format_open_cases(data: ReportData, name: str) -> str:

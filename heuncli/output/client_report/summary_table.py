@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -22,21 +23,29 @@ from heuncli.output.documents.document import OutputColumn, OutputTable, TextCel
 from heuncli.output.figures.turning import TURN, find_span, is_monotonic, list_angle_paths
 from heuncli.output.tables.extremes_tables import MARK
 from heuncli.results.results_schema import XYZ
+from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.digits import OPEN
 
 MAX_LINES = 12
 FOUNDATION = "foundation"
 HEADING = "SUMMARY  greatest load of each, and its components there"
 MORE_NOTE = "{} smaller ones: chapter Loads"
+ALIKE_NOTE = "several names: the same greatest load; components and instant of the first"
+MAX_ALIKE = 5  # further names in a line
+DIGITS = re.compile(r"\d+")
 UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"
 
 
 class SummaryLine(NamedTuple):
-    """The greatest load of one object; greatest: None if it is open or unknown in all cases."""
+    """The greatest load of one object; greatest: None if it is open or unknown in all cases.
+
+    alike: names of objects of the same kind, such as small2 beside small1, with the same greatest load
+    """
 
     name: str
     greatest: GreatestOfCases | None
     paths: Sequence[str]
+    alike: Sequence[str] = ()
 
     @property
     def rank(self) -> float:
@@ -54,11 +63,25 @@ def find_summary_lines(data: ReportData) -> list[SummaryLine]:
     objects = [(each.name, each.paths) for each in iter_loaded_objects(data)]
     lines = [_make_line(data, name, paths) for name, paths in objects]
     lines = [line for line in lines if line.greatest is not None or _is_uncertain(data, line)]
+    lines = _join_alike(lines)
     lines.sort(key=lambda line: -line.rank)
     foundation = _make_line(data, FOUNDATION, ["foundation.force"])
     if foundation.greatest is None:
         return lines
     return [*lines[: MAX_LINES - 1], foundation, *lines[MAX_LINES - 1 :]]
+
+
+def _join_alike(lines: Sequence[SummaryLine]) -> list[SummaryLine]:
+    """Join the lines of objects that differ by a number in their names alone, and have the same greatest load."""
+    joined: dict[tuple[str, ...], SummaryLine] = {}
+    for k, line in enumerate(lines):
+        key: tuple[str, ...] = (str(k),)
+        if line.greatest is not None:
+            stem = DIGITS.sub("", line.name)
+            key = (stem, line.greatest.path.partition(".")[0], line.greatest.text.lstrip(MINUS), line.greatest.run.name)
+        first = joined.get(key)
+        joined[key] = line if first is None else first._replace(alike=(*first.alike, line.name))
+    return list(joined.values())
 
 
 def _make_line(data: ReportData, name: str, paths: Sequence[str]) -> SummaryLine:
@@ -95,6 +118,8 @@ def make_summary_table(data: ReportData) -> OutputTable | None:
     rows = [_make_row(data, line, crank) for line in shown]
     kept = [k for k in range(len(heads)) if k < 2 or any(row[k].text not in ("", DASH) for row in rows)]
     notes = [MORE_NOTE.format(len(lines) - len(shown))] if len(lines) > len(shown) else []
+    notes += [ALIKE_NOTE] if any(line.alike for line in shown) else []
+    notes += [f"angle: of {describe_object('joints', crank, data.labels)}"] if crank is not None else []
     for line in shown:
         cases = list(dict.fromkeys(case for path in line.paths for case in find_uncertain_cases(data, path)))
         if cases and line.greatest is not None:
@@ -127,9 +152,14 @@ def _make_row(data: ReportData, line: SummaryLine, crank: str | None) -> list[Te
             instant = f"{instant} s"
             if crank is not None:
                 instant = f"{_format_angle(greatest.run, crank, greatest.extreme.time)}, {instant}"
-        cells = [line.name, _mark(greatest), *_format_components(greatest), instant]
+        cells = [_name_line(line), _mark(greatest), *_format_components(greatest), instant]
         cells += [greatest.run.case_label] * data.has_cases
     return [TextCell(cell) for cell in cells]
+
+
+def _name_line(line: SummaryLine) -> str:
+    """Return the name of an object, and those of others with the same load."""
+    return ", ".join((line.name, *line.alike[:MAX_ALIKE])) + " …" * (len(line.alike) > MAX_ALIKE)
 
 
 def _format_components(greatest: GreatestOfCases) -> list[str]:

@@ -45,11 +45,19 @@ DIGEST_DIGITS = 12  # of a digest of 64
 def make_trust_parts(data: ReportData) -> list[Part]:
     """Make the notes on each run, and the table of stated errors."""
     parts: list[Part] = [Sentence(text) for text in dict.fromkeys(map(_explain_errors, data.runs))]
-    for run in data.runs:
-        if data.has_cases:
-            parts.append(Sentence(f"Case {run.case_label}:"))
-        parts.append(Facts([line for line in make_heading(run.results) if line[0] not in ("model", "warning")]))
+    if data.has_cases:
+        rows = [[TextCell(run.case_label), TextCell("; ".join(text for _, text in _list_run_facts(run)))]
+                for run in data.runs]  # fmt: skip
+        columns = [OutputColumn("case", "text"), OutputColumn("run and accuracy", "text")]
+        parts.append(OutputTable("RUNS", columns, rows, (), "page"))
+    else:
+        parts.append(Facts(_list_run_facts(data.runs[0])))
     return [*parts, _make_error_table(data), Facts(list(_iter_provenance(data)))]
+
+
+def _list_run_facts(run: ReportedRun) -> list[tuple[str, str]]:
+    """Return what is known of a run and its accuracy, without the model and warnings, which stand elsewhere."""
+    return [line for line in make_heading(run.results) if line[0] not in ("model", "warning")]
 
 
 def _iter_provenance(data: ReportData) -> Iterator[tuple[str, str]]:

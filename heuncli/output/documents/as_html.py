@@ -88,13 +88,24 @@ def _render_parts(parts: Iterable[Part], prefix: str = "") -> str:
     """Render the parts; prefix: the number of the chapter that they belong to, before those of its own chapters."""
     texts = []
     number = 0
+    halves: list[str] = []
     for part in filter(has_content, parts):
+        if len(halves) == 2 or (halves and not _is_half(part)):
+            texts.append(make_element("div", "".join(halves), class_="pair"))
+            halves = []
         if isinstance(part, Chapter):
             number += 1
             texts.append(_render_chapter(f"{prefix}{number}", part))
         else:
-            texts.append(RENDERERS[type(part)](part))
+            (halves if _is_half(part) else texts).append(RENDERERS[type(part)](part))
+    if halves:
+        texts.append(make_element("div", "".join(halves), class_="pair"))
     return "\n".join(texts)
+
+
+def _is_half(part: Part) -> bool:
+    """Return whether a part is a figure that stands beside another."""
+    return isinstance(part, Drawing) and part.place == "half"
 
 
 def _render_sentence(part: Sentence) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
 
 PAPERS = {"a4": "A4", "letter": "letter"}  # words of --paper -> names of CSS
 
@@ -42,6 +43,6 @@ def make_page_style(sheet: Sheet) -> str:
 
 
 def quote_css(text: str) -> str:
-    """Quote a text for CSS, with every character but letters, digits and blanks of ASCII as its number."""
-    safe = (c if c.isascii() and (c.isalnum() or c == " ") else f"\\{ord(c):06x}" for c in text)
+    """Quote a text for CSS, with every character but letters and digits of ASCII as its number."""
+    safe = (c if c.isascii() and c.isalnum() else f"\\{ord(c):06x}" for c in escape(text))
     return '"' + "".join(safe) + '"'
