@@ -184,7 +184,7 @@ def _solve_selected(
     """Solve a scene with the options of a Python call, and emit its warnings."""
     from heuncli.app.python.solved_scene import make_solved
 
-    default = frozenset(REPORTS) if scene.report is None else frozenset(scene.report)
+    default = frozenset(REPORTS) if scene.report.results is None else frozenset(scene.report.results)
     what = select_reports(selection, scene, default, by_cause=by_cause)
     options = replace(options, memory_budget=MemoryBudget(*result_memory("table")))
     study = solve_spec(scene, replace(options, requested_reports=what.reports, entries=what.entries))

@@ -126,7 +126,9 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
     from heuncli.study.model.forecast import describe_integration, find_restart_method
 
     with attach_locations(spec):
-        selection = Options(requested_reports=None if spec.report is None else frozenset(spec.report)).selection
+        selection = Options(
+            requested_reports=None if spec.report.results is None else frozenset(spec.report.results)
+        ).selection
         setup = set_up(spec, reduce=reduce, selection=selection, find_rest=False)
         restart = find_restart_method(setup)
         if restart is not None:

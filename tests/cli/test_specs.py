@@ -52,7 +52,7 @@ def path_of(name: str) -> str:
 @cache
 def study_of(name: str) -> Study:
     spec = load(path_of(name))
-    return solve(spec, Options(requested_reports=EVERYTHING | ({"shares", "events"} & set(spec.report or ()))))
+    return solve(spec, Options(requested_reports=EVERYTHING | ({"shares", "events"} & set(spec.report.results or ()))))
 
 
 @each

@@ -62,7 +62,8 @@ def test_a_small_scene_with_all_its_defaults(tmp_path: Path) -> None:
     assert found.title == ""
     assert found.path == str(path)
     assert found.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
-    assert (found.space, found.gravity, found.parameters, found.report) == ("auto", (0.0, 0.0, 0.0), {}, None)
+    assert (found.space, found.gravity, found.parameters) == ("auto", (0.0, 0.0, 0.0), {})
+    assert found.report == m.ReportSettings()
     unit = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     assert fields(found.bodies["b"]) == fields(m.Body("b", 2.0, (0.0, 0.0, 1.0), unit, {}, *6 * [None], shapes=None))
     assert (found.ground.points, found.foundation.about, found.expect, found.warnings) == ({}, None, (), ())
@@ -355,7 +356,7 @@ expect:
   - {{of: points.b.q.velocity.x, at: 1, is: 0}}
   - {{of: model.freedoms, is: 6}}
 """)
-    assert found.report == ("motion", "energy")
+    assert found.report == m.ReportSettings(results=("motion", "energy"))
     first, second, third, fourth, fifth = found.expect
     assert first[:6] == ("bodies.b.position", 0.5, None, (0.0, None, 2.0), 1e-6, None)
     assert second[:6] == ("energy.kinetic", None, "max", 3.25, None, 1e-9)

@@ -65,7 +65,7 @@ def _make_tables(
         else solved
     )
     what = replace(what, reports=what.reports & solved.reports or solved.reports)
-    is_explicit = (requested is not None or spec.report is not None) and "foundation" in what.reports
+    is_explicit = (requested is not None or spec.report.results is not None) and "foundation" in what.reports
     narrowed = _narrow_study(study, what)
     tables = make_tables(
         narrowed, replace(make_labels(spec), units=units), TablesQuery(what, instants, details=is_explicit)

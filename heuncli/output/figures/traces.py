@@ -47,7 +47,7 @@ def make_paths(source: FigureSource, names: Sequence[str]) -> list[PointPath]:
 def make_reported_paths(source: FigureSource) -> list[PointPath]:
     """Make the paths of the points that the spec reports and that move: each path once, and of many the first ones."""
     spec = source.study.spec
-    if "points" not in (spec.report or ()):
+    if "points" not in (spec.report.results or ()):
         return []
     paths: list[PointPath] = []
     for path in make_paths(

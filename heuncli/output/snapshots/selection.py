@@ -30,8 +30,8 @@ class ReportChoice(NamedTuple):
 
 def find_default_reports(spec: Spec) -> frozenset[str]:
     """Return the spec's `report`, or by default all but motion and points; of impacts at time 0 only the impacts."""
-    if spec.report is not None:
-        return frozenset(spec.report)
+    if spec.report.results is not None:
+        return frozenset(spec.report.results)
     return frozenset({IMPULSES}) if spec.analysis.type == "impulse" else TABLE_DEFAULT
 
 

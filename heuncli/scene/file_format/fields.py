@@ -21,6 +21,7 @@ from heuncli.scene.expressions.grammar import NO_NAMES
 from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format.entries import Entry, OneOf, Preprocessor, Tag
 from heuncli.scene.file_format.foreign_words import FORM_HINTS
+from heuncli.scene.file_format.labels import MAX_TEXT, check_plain_text
 from heuncli.scene.file_format.quantity import (
     Scope,
     describe_kind,
@@ -31,6 +32,7 @@ from heuncli.scene.file_format.quantity import (
 )
 
 TABLE_HINT = "for example tables: {NAME: {x: [...], y: [...], interpolation: cubic}}"
+TEXT_SCHEMA = {"type": "string", "minLength": 1, "maxLength": MAX_TEXT}
 HELD_TABLE = 1  # kind of a table (scene/expressions/programs.py) that is constant outside its range
 
 
@@ -183,6 +185,16 @@ class VersionNumber(ValueReader):
         return {"const": 1}
 
 
+class PlainText(ValueReader):
+    """A line of text for readers."""
+
+    def read(self, value: Any, info: Any) -> str:
+        return check_plain_text(value)
+
+    def make_json_schema(self) -> dict[str, Any]:
+        return TEXT_SCHEMA
+
+
 class StrictBoolean:
     """`true` or `false`, and nothing that could be taken for them."""
 
@@ -306,6 +318,7 @@ StrikeInTime = Annotated[Expression, ImpulseCondition()]
 EitherInTime = Annotated[Expression, TimeFunction()]
 Switch = Annotated[bool, StrictBoolean()]
 FormatVersion = Annotated[int, VersionNumber()]
+Text = Annotated[str, PlainText()]
 Expected = Annotated[Any, ExpectedValue()]
 
 Lift = Annotated[Any, SmoothTable(None, u.ANGLE, allows_number=False)]

@@ -7,8 +7,10 @@ Read the mesh files that shapes name into closed surfaces, and check them. Impur
 
 from __future__ import annotations
 
+import zlib
 from array import array
 from collections.abc import Iterator
+from xml.parsers import expat
 
 import numpy as np
 
@@ -20,7 +22,7 @@ from heuncli.base.units import Dimension, describe
 from heuncli.scene.file_format.columns import Columns, iter_rows
 from heuncli.scene.file_format.format import ExpectEntry
 from heuncli.scene.file_format.format_shapes import MeshShape
-from heuncli.scene.file_format.models import Curve
+from heuncli.scene.file_format.models import Curve, Logo
 from heuncli.scene.file_format.named_files import RELATIVE_PATH_HINT, NamedFiles
 from heuncli.scene.file_format.tables import ColumnUnit, TableProblem, has_error, read_file_columns
 from heuncli.scene.meshes.model import TriangleMesh
@@ -175,3 +177,65 @@ def iter_mesh_warnings(shape: MeshShape, surface: TriangleMesh | None, files: Na
     if shape.scale is None and size > LARGE_SIZE:
         message = f"the mesh '{shape.file}' is {size:.4g} m long: without a scale its unit is the metre"
         yield Finding("mesh-size", message, "give scale: 1 mm if it was drawn in millimetres, otherwise scale: 1 m")
+
+
+# Logos
+
+MAX_LOGO_SIZE = 1_000_000  # bytes; it is embedded in every report
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+LOGO_HINT = "a logo is a PNG or SVG file"
+
+
+def read_logo(file: str, files: NamedFiles) -> Logo:
+    """Read the logo of a report. Raises Finding [logo-file]."""
+    try:
+        content = bytes(files.read_content(file))
+    except Finding as error:
+        message = f"the file '{files.path(file)}' cannot be read: {error.message}"
+        raise Finding("logo-file", message, RELATIVE_PATH_HINT) from None
+    if len(content) > MAX_LOGO_SIZE:
+        message = f"the file '{files.path(file)}' has {len(content) / 1e6:.3g} MB; at most 1 MB is embedded"
+        raise Finding("logo-file", message, "save it with fewer pixels, or as SVG")
+    if content.startswith(PNG_SIGNATURE):
+        reason = find_png_fault(content)
+        media_type = "image/png"
+    else:
+        reason = find_svg_fault(content)
+        media_type = "image/svg+xml"
+    if reason is not None:
+        raise Finding("logo-file", f"the file '{files.path(file)}' is no picture: {reason}", LOGO_HINT)
+    return Logo(file, content, media_type)
+
+
+def find_png_fault(content: bytes) -> str | None:
+    """Return why bytes that begin as PNG are no picture: cut off, damaged, or without a size; else None."""
+    position = len(PNG_SIGNATURE)
+    names: list[bytes] = []
+    while position + 12 <= len(content):
+        size = int.from_bytes(content[position : position + 4], "big")
+        chunk, end = content[position + 4 : position + 8 + size], position + 12 + size
+        if end > len(content) or zlib.crc32(chunk) != int.from_bytes(content[end - 4 : end], "big"):
+            return "the PNG is damaged"
+        if not names and (chunk[:4] != b"IHDR" or not all((any(chunk[4:8]), any(chunk[8:12])))):
+            return "the PNG has no size"
+        names.append(chunk[:4])
+        if names[-1] == b"IEND":
+            return None if b"IDAT" in names else "the PNG has no pixels"
+        position = end
+    return "the PNG ends too early"
+
+
+def find_svg_fault(content: bytes) -> str | None:
+    """Return why a file is no SVG that can be embedded, else None. Entities are not accepted: they may be endless."""
+    elements: list[str] = []
+    entities: list[str] = []
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = lambda name, attributes: elements.append(name)
+    parser.EntityDeclHandler = lambda name, *rest: entities.append(name)
+    try:
+        parser.Parse(content, True)
+    except (expat.ExpatError, ValueError) as error:
+        return f"neither PNG nor SVG ({error})"
+    if entities:
+        return "it declares entities"
+    return None if elements[0].rpartition(":")[2] == "svg" else f"its first element is <{elements[0]}>, not <svg>"

@@ -7,6 +7,7 @@ are in `rules`, their meaning is in `resolve`. Only the package `file_format` us
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from heuncli.base.errors import Finding
@@ -55,6 +56,7 @@ from heuncli.scene.file_format.fields import (
     StrikeInTime,
     Switch,
     Tensor,
+    Text,
     Time,
     TruthInTime,
     TurningDamping,
@@ -130,6 +132,9 @@ from heuncli.scene.file_format.format_shapes import Orientation, ShapeEntry
 Frame = Literal["world", "body"]
 Report = Literal[
     "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"
+]  # fmt: skip
+ReportChapter = Literal[
+    "machine", "loads", "sections", "histories", "events", "checks", "accuracy", "open", "model", "spec"
 ]  # fmt: skip
 Points = dict[str, Position]
 
@@ -469,6 +474,19 @@ class CaseEntry(Entry):
     set: dict[str, Any]
 
 
+class ReportEntry(Entry):
+    """What a client's report shows besides the results, and which results to compute."""
+
+    company: Text | None = None
+    project: Text | None = None
+    author: Text | None = None
+    revision: Text | None = None
+    part: Text | None = None
+    logo: Text | None = None
+    chapters: list[ReportChapter] | None = None
+    results: list[Report] | None = None
+
+
 class HeadEntry(Entry):
     """What a spec has beside its blocks of entries."""
 
@@ -476,7 +494,7 @@ class HeadEntry(Entry):
     title: str = ""
     gravity: tuple[Acceleration, Acceleration, Acceleration] = (0.0, 0.0, 0.0)
     space: Literal["auto", "spatial", "planar"] = "auto"
-    report: list[Report] | None = None
+    report: Annotated[Annotated[list[Report], Tag("list")] | Annotated[ReportEntry, Tag("mapping")], FORM] | None = None
 
 
 ENTRY_BLOCKS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # named entries: model, or models by type
@@ -490,6 +508,15 @@ SINGLE_BLOCKS: dict[str, type[Entry]] = {
     "foundation": FoundationEntry,
 }
 BLOCKS_READ_FIRST = ("parameters", "tables")  # the other blocks refer to them
+
+
+@cache
+def list_labelled_models() -> frozenset[type[Entry]]:
+    """List the models whose entries may have the key `label`, which is taken out before they are read."""
+    models = {GroundEntry, TableEntry}
+    for block in ENTRY_BLOCKS.values():
+        models |= {*block.values()} if isinstance(block, Mapping) else {block}
+    return frozenset(models)
 
 
 class Document(NamedTuple):

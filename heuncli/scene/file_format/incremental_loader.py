@@ -20,7 +20,7 @@ from heuncli.scene.file_format.entries import Entry
 from heuncli.scene.file_format.fields import ReadContext
 from heuncli.scene.file_format.load import SpecLoader
 from heuncli.scene.file_format.lookups import Lookup, iter_changed, iter_changed_in_document
-from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.models import Logo, Spec
 from heuncli.scene.file_format.names import SceneNames, as_mapping
 from heuncli.scene.file_format.parameters import Parameters, evaluate_parameters
 from heuncli.scene.file_format.quantity import ParameterValue, Scope
@@ -43,6 +43,7 @@ WHOLE_FIELDS = (
     "foundation",
     "expect",
     "cases",
+    "labels",
     "warnings",
 )  # of a scene
 
@@ -127,6 +128,12 @@ class IncrementalLoader(SpecLoader):
         """Return the mesh of a file; it is read once for all variants."""
         mesh = self.first.first_meshes.get(file)
         return (mesh, []) if mesh is not None else super().load_mesh(file)
+
+    def load_logo(self, document: f.Document) -> Logo | None:
+        """Return the logo of the report; it is read once for all variants."""
+        report, first_logo = document.head.report, self.first.resolved.report.logo
+        is_first = isinstance(report, f.ReportEntry) and first_logo is not None and report.logo == first_logo.name
+        return first_logo if is_first else super().load_logo(document)
 
     def iter_violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
         """Yield the violations of the active rules; apply only the rules whose verdict may have changed."""

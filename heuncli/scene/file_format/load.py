@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from heuncli.base.errors import Problem, SourceLocation, SpecError
+from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.records import replace
 from heuncli.base.spelling import reset_effort, suggest
 from heuncli.scene.expressions.grammar import DimensionedParameter
@@ -17,7 +17,8 @@ from heuncli.scene.file_format.document import DocumentReader
 from heuncli.scene.file_format.fields import ReadContext
 from heuncli.scene.file_format.foreign_words import replace_type_aliases
 from heuncli.scene.file_format.format_shapes import MeshShape
-from heuncli.scene.file_format.models import Curve, Spec
+from heuncli.scene.file_format.labels import LabelSplitter, replace_changed
+from heuncli.scene.file_format.models import Curve, Logo, Spec
 from heuncli.scene.file_format.names import NAMED_BLOCKS, SceneNames, as_mapping, complete_planar_scene
 from heuncli.scene.file_format.parameters import (
     CASES,
@@ -143,6 +144,9 @@ class SpecLoader:
             iter_si_warnings(without_empty, overridden, self.override_locations) if self.override_locations else ()
         )
         problems += unset
+        self.labels = source.labels
+        if self.override_locations:
+            overridden = self.split_set_labels(overridden)
         problems += iter_case_problems(without_empty, source) if CASES in source.data else ()
         self.data = self.complete_data(overridden)
         self.problems += problems
@@ -156,6 +160,16 @@ class SpecLoader:
         """Return the data to read: with heun's words as types; a planar scene is completed to one in space."""
         data = replace_type_aliases(data)
         return complete_planar_scene(data) if data.get("space") == "planar" else data
+
+    def split_set_labels(self, data: dict[str, Any]) -> dict[str, Any]:
+        """Return the data without the labels that settings have put into it."""
+        splitter = LabelSplitter()
+        set_blocks = dict.fromkeys(str(path[0]) for path in self.override_locations)
+        without_labels = splitter.split({block: data[block] for block in set_blocks if block in data})
+        self.labels = {**self.labels, **splitter.labels} if splitter.labels else self.labels
+        for path, finding, is_key in splitter.errors:
+            self.problems.append(Problem(finding.code, finding.message, self.find_location(path, is_key), finding.hint))
+        return replace_changed(data, without_labels)
 
     def find_location(self, path: Path_, key: bool = False) -> SourceLocation:
         """Return the location of the value at a path: in the file or on the command line."""
@@ -193,7 +207,7 @@ class SpecLoader:
         expectations = dict(self.iter_expectations(document))
         draft = DraftDocument(document._replace(expect=expectations), names, frozenset(self.unread), {})
         self.apply_rules(draft, reader.is_consequence)
-        curves, surfaces = self.load_curves(draft), self.load_meshes(document)
+        curves, surfaces, logo = self.load_curves(draft), self.load_meshes(document), self.load_logo(document)
         if self.problems:
             raise SpecError(*sort_problems(self.problems))
         values = {name: value for name, value in parameters.items() if value is not None}
@@ -202,8 +216,9 @@ class SpecLoader:
         source = self.source
         locations = self.collect_locations()
         meaning = ResolveInputs(
-            source.file, source.sha256, values, built_tables, warnings, locations, curves, surfaces, self.case
-        )
+            source.file, source.sha256, values, built_tables, warnings, locations, curves, surfaces, self.case,
+            self.labels, logo,
+        )  # fmt: skip
         return self.resolve_document(draft.document, meaning)
 
     def make_scope(
@@ -330,6 +345,22 @@ class SpecLoader:
         from heuncli.scene.file_format.file_contents import read_mesh  # few scenes have them
 
         return read_mesh(file, self.get_named_files())
+
+    def load_logo(self, document: f.Document) -> Logo | None:
+        """Load the logo of the report; None, and reported, if the file is no picture."""
+        report = document.head.report
+        if not isinstance(report, f.ReportEntry) or report.logo is None:
+            return None
+        from heuncli.scene.file_format.file_contents import read_logo  # few scenes have one
+
+        path = ("report", "logo")
+        if warning := self.get_named_files().find_outside_warning(report.logo):
+            self.warnings.append(Problem(warning.code, warning.message, self.find_location(path), warning.hint))
+        try:
+            return read_logo(report.logo, self.get_named_files())
+        except Finding as finding:
+            self.report(finding.code, Violation(path, finding.message, finding.hint))
+            return None
 
     def get_named_files(self) -> NamedFiles:
         """Return the files that the spec names."""

@@ -21,6 +21,7 @@ from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format.couplings import Coupling, RollingWheel
 from heuncli.scene.file_format.couplings import End as End
 from heuncli.scene.file_format.couplings import Vec as Vec
+from heuncli.scene.file_format.labels import NO_LABELS
 
 if TYPE_CHECKING:
     from heuncli.scene.expressions.paths import Path
@@ -543,9 +544,35 @@ class Expect(NamedTuple):
         return (self.of,) if self.curve is None or self.curve.x_of is None else (self.of, self.curve.x_of)
 
 
+class Logo(NamedTuple):
+    """A picture for the report: its file name, its content, and the media type, image/png or image/svg+xml."""
+
+    name: str
+    content: bytes
+    media_type: str
+
+
+class ReportSettings(NamedTuple):
+    """What the report of a scene shows besides its results; an empty text shows nothing.
+
+    chapters: names of the chapters in their order, or None for all
+    results: the blocks of results to compute, or None for the default
+    """
+
+    company: str = ""
+    project: str = ""
+    author: str = ""
+    revision: str = ""
+    part: str = ""
+    logo: Logo | None = None
+    chapters: tuple[str, ...] | None = None
+    results: tuple[str, ...] | None = None
+
+
 class Spec(NamedTuple):
     """A validated scene.
 
+    labels: texts for readers by paths of the results, such as joints.main or points.crank.pin
     locations: location in the file of every path that later stages may report
     cases: titles of the load cases by name
     case, expect: the load case whose values apply, or None; the expectations that hold in it
@@ -568,7 +595,7 @@ class Spec(NamedTuple):
     sections: Mapping[str, Section]
     tables: Mapping[str, TableFunction]
     analysis: Analysis
-    report: tuple[str, ...] | None
+    report: ReportSettings
     foundation: Foundation
     expect: tuple[Expect, ...]
     warnings: tuple[Problem, ...]
@@ -576,6 +603,7 @@ class Spec(NamedTuple):
     cases: Mapping[str, str] = NO_CASES
     case: str | None = None
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
+    labels: Mapping[str, str] = NO_LABELS
 
     @property
     def rolling(self) -> Mapping[str, RollingWheel]:

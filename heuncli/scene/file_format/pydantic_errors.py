@@ -15,6 +15,7 @@ from heuncli.base.errors import Finding
 from heuncli.base.spelling import find_similar, match_misspelt_keys, suggest
 from heuncli.scene.file_format.entries import Entry, fields_of, keys_of, validate_entry
 from heuncli.scene.file_format.foreign_words import PLANNED_WORDS, TYPE_ALIASES, TYPES
+from heuncli.scene.file_format.format import list_labelled_models
 from heuncli.scene.file_format.hints import (
     find_intended_key,
     find_native_key,
@@ -24,6 +25,7 @@ from heuncli.scene.file_format.hints import (
     unknown_key_hint,
     word_hint,
 )
+from heuncli.scene.file_format.labels import LABEL
 from heuncli.scene.file_format.quantity import DependentError, describe_kind
 from heuncli.scene.file_format.rules.registry import Path_, Violation
 
@@ -230,7 +232,9 @@ def list_known_keys(path: Path_, model: type[Entry]) -> list[str]:
             owner = models[0] if models else None
         else:
             levels -= 1
-    return [*keys_of(owner)] if owner is not None else []
+    if owner is None:
+        return []
+    return [*keys_of(owner), LABEL] if owner in list_labelled_models() else [*keys_of(owner)]
 
 
 # Missing types

@@ -61,6 +61,8 @@ class ResolveInputs:
     curves: Mapping[int, m.Curve]
     surfaces: Mapping[str, TriangleMesh]
     case: str | None
+    labels: Mapping[str, str]
+    logo: m.Logo | None
 
 
 def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | None = None) -> m.Spec:
@@ -85,6 +87,7 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
         forces=active_resolver.resolve_entries("forces", "force"),
         impulses=active_resolver.resolve_entries("impulses", "impulse"),
         stops=active_resolver.resolve_entries("stops", "stop"),
+        labels=inputs.labels,
         couplings=active_resolver.resolve_entries("couplings", "coupling")
         | active_resolver.resolve_entries("rolling", "wheel")
         | motor_rotors.couplings,
@@ -92,7 +95,7 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
         sections=active_resolver.resolve_entries("sections", "section"),
         tables=inputs.tables,
         analysis=active_resolver.resolve_single("analysis"),
-        report=tuple(document.head.report) if document.head.report is not None else None,
+        report=make_report_settings(document.head.report, inputs.logo),
         foundation=m.Foundation(active_resolver.find_reference_point(document.foundation.about)),
         expect=tuple(active_resolver.resolve_entries("expect", "expect").values()),
         cases={name: case.title for name, case in document.cases.items()},
@@ -100,6 +103,17 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
         warnings=inputs.warnings,
         locations={**inputs.locations, **motor_rotors.locations} if motor_rotors.locations else inputs.locations,
     )
+
+
+def make_report_settings(value: list[f.Report] | f.ReportEntry | None, logo: m.Logo | None) -> m.ReportSettings:
+    """Make the settings of the report; a list names the results to compute."""
+    if value is None or isinstance(value, list):
+        return m.ReportSettings(results=None if value is None else tuple(value))
+    return m.ReportSettings(
+        value.company or "", value.project or "", value.author or "", value.revision or "", value.part or "", logo,
+        None if value.chapters is None else tuple(value.chapters),
+        None if value.results is None else tuple(value.results),
+    )  # fmt: skip
 
 
 def format_title(document: f.Document, case: str | None) -> str:

@@ -32,7 +32,7 @@ def is_same(first: Any, second: Any) -> bool:
             (first == second and math.copysign(1.0, first) == math.copysign(1.0, second))
             or (first != first and second != second)
         )
-    if kind in (int, str, bool, set, frozenset):  # sets hold names and numbers of bodies
+    if kind in (int, str, bytes, bool, set, frozenset):  # sets hold names and numbers of bodies
         return bool(first == second)
     if issubclass(kind, tuple) or kind is list:
         return len(first) == len(second) and all(map(is_same, first, second))

@@ -8,14 +8,16 @@ PyYAML's parser supplies the events; data and locations are built here without r
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import yaml
 from yaml import events
 
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
-from heuncli.base.records import record
+from heuncli.base.records import record, replace
+from heuncli.scene.file_format.labels import NO_LABELS, LabelSplitter, iter_moved_paths
+from heuncli.scene.file_format.labels import Path_ as Path_
 from heuncli.scene.file_format.reading import STANDARD_INPUT, digest, read_bytes
 
 MAX_SIZE = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
@@ -26,7 +28,6 @@ TOO_DEEP_HINT = "no spec needs that: is a bracket not closed?"
 SMALLEST_SPEC = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
 
 Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-Path_ = tuple[str | int, ...]
 Mark = tuple[int, int]  # line, column, from 0
 
 INTEGER = re.compile(r"[-+]?[0-9]+\Z")
@@ -49,7 +50,10 @@ INVISIBLE_NAMES = {
 
 @record
 class SourceFile:
-    """Content of a file: plain data, and for every path the location of its value and of its key."""
+    """Content of a file: plain data, and for every path the location of its value and of its key.
+
+    labels: texts for readers by the paths of the results; they are not in the data
+    """
 
     file: str
     sha256: str
@@ -57,6 +61,7 @@ class SourceFile:
     values: dict[Path_, Mark]
     keys: dict[Path_, Mark]
     problems: tuple[Problem, ...] = ()
+    labels: Mapping[str, str] = NO_LABELS
 
     def location(self, path: Path_, prefer_key: bool = False) -> SourceLocation:
         """Return the location of a value, or of its key. For an absent value: the location of the nearest enclosing
@@ -76,7 +81,7 @@ def format_path(path: Path_) -> str:
 
 
 def read_source(path: str, text: str | None) -> SourceFile:
-    """Read and parse a file ("-" is standard input), or parse `text` in its place. Raises SpecError."""
+    """Read and parse a spec ("-" is standard input), or parse `text` in its place. Raises SpecError."""
     file = "<stdin>" if path == STANDARD_INPUT else path
     if text is None:
         text = read_text(path)
@@ -87,7 +92,28 @@ def read_source(path: str, text: str | None) -> SourceFile:
         raise SpecError(
             Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column), "delete it")
         ) from None
-    return parse_source(file, text.removeprefix("\ufeff"), digest(raw))
+    return split_labels(parse_source(file, text.removeprefix("\ufeff"), digest(raw)))
+
+
+def split_labels(source: SourceFile) -> SourceFile:
+    """Return a source whose data hold no labels; what is wrong with one is among its problems."""
+    if type(source.data) is not dict:
+        return source
+    splitter = LabelSplitter()
+    data = splitter.split(source.data)
+    if data is source.data:
+        return source
+    problems = [
+        Problem(finding.code, finding.message, source.location(path, is_key), finding.hint)
+        for path, finding, is_key in splitter.errors
+    ]
+    values, keys = (
+        dict(iter_moved_paths(paths, splitter.unwrapped)) if splitter.unwrapped else paths
+        for paths in (source.values, source.keys)
+    )
+    return replace(
+        source, data=data, values=values, keys=keys, problems=(*source.problems, *problems), labels=splitter.labels
+    )
 
 
 def read_text(path: str) -> str:

@@ -65,7 +65,7 @@ def main(request: RunRequest) -> int:
     if paths:
         selection = select_paths(paths, spec)
     else:
-        default = find_default_reports(spec) if form in TABLES or spec.report is not None else EXPORT_DEFAULT
+        default = find_default_reports(spec) if form in TABLES or spec.report.results is not None else EXPORT_DEFAULT
         selection = select_reports(only_selection, spec, default, by_cause=request.by_cause)
     is_export = form not in TABLES and not paths and request.at is None and request.case != ALL_CASES
     options = replace(options, requested_reports=selection.reports, entries=selection.entries, in_parts=is_export)

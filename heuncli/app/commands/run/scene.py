@@ -65,7 +65,9 @@ def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
             document = make_collectives_document(task.collective, study, task.units)
             facts = make_heading(study.results, request.verbose)
             return study, [*render_document(document._replace(facts=facts), task.form, request.output)]
-        is_explicit = (request.only is not None or spec.report is not None) and "foundation" in selection.reports
+        is_explicit = (
+            request.only is not None or spec.report.results is not None
+        ) and "foundation" in selection.reports
         labels = replace(make_labels(spec), units=task.units)
         if task.form not in TABLES:
             return study, _export(request, task.form, study, labels)
