@@ -63,7 +63,7 @@ def make_cases_table(
             rows += ["  ".join(filter(None, (group.name, group.note))), *group_rows]
     table_notes = [*_iter_notes(layout, groups, rows), *notes]
     table_notes += [f"no load: {join_names(zero_groups)}"] if zero_groups else []
-    fill: Fill = "page" if len(rows) < MIN_SPLIT_ROWS else layout.fill
+    fill: Fill = "half" if len(rows) < MIN_SPLIT_ROWS and layout.fill == "columns" else layout.fill
     return OutputTable(heading, layout.columns if rows else [], rows, table_notes, fill)
 
 

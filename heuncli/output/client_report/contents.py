@@ -9,7 +9,7 @@ from heuncli.output.client_report.events_section import make_event_parts
 from heuncli.output.client_report.first_page import make_first_page
 from heuncli.output.client_report.histories import make_history_parts
 from heuncli.output.client_report.load_table import make_load_parts
-from heuncli.output.client_report.machine import make_model_parts
+from heuncli.output.client_report.machine import make_drawing_parts, make_model_parts
 from heuncli.output.client_report.polar import make_polar_parts
 from heuncli.output.client_report.report_data import CHAPTER_NAMES, ON_REQUEST, ReportData
 from heuncli.output.client_report.sections import make_section_parts
@@ -19,6 +19,7 @@ from heuncli.output.documents.sheet import Sheet
 
 MAX_SPEC_LINES = 2000  # of a spec that is printed
 CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
+    "machine": ("The machine", lambda data: make_drawing_parts(data, is_first_page=False)),
     "loads": ("Loads", make_load_parts),
     "sections": ("Sections", make_section_parts),
     "histories": ("Time histories", make_history_parts),
@@ -27,7 +28,7 @@ CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
     "checks": ("Checks", make_check_parts),
     "open": ("Indeterminate loads", make_open_parts),
     "model": ("The model", make_model_parts),
-    "computed": ("How it was computed", make_trust_parts),
+    "accuracy": ("How it was computed", make_trust_parts),
     "spec": ("Spec", lambda data: make_spec_parts(data)),
 }
 

@@ -82,11 +82,12 @@ def _iter_numbers(data: ReportData, prefix: str, quantities: Sequence[str]) -> I
 
 
 class LoadedObject(NamedTuple):
-    """Something that carries a load between bodies: its words, and the paths of the loads of which the largest
-    counts.
+    """Something that carries a load between bodies: its words, its type where the words do not tell it, and the paths
+    of the loads of which the largest counts.
     """
 
     name: str
+    type: str
     paths: Sequence[str]
 
 
@@ -109,7 +110,7 @@ def iter_loaded_objects(data: ReportData) -> Iterator[LoadedObject]:
     for (kind, name), paths in objects.items():
         words = describe_object(kind.removesuffix(".drive"), name, data.labels)
         type_name = "drive" if kind.endswith(".drive") else _name_type(data, kind, name)
-        yield LoadedObject(f"{words} ({type_name})" if type_name and type_name not in words else words, paths)
+        yield LoadedObject(words, "" if type_name in words else type_name, paths)
 
 
 def _name_type(data: ReportData, kind: str, name: str) -> str:

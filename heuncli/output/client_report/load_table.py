@@ -25,6 +25,7 @@ def make_load_parts(data: ReportData) -> list[Part]:
     hardpoints = make_hardpoint_table(data)
     tables: list[Part] = [hardpoints] if hardpoints is not None else []
     tables += [part for plan in (FOUNDATION, JOINTS, STOPS, COUPLINGS, FORCES) for part in _iter_table(data, plan)]
+    tables.sort(key=lambda table: isinstance(table, OutputTable) and table.fill == "half")
     tables = gather_notes(tables)
     if not any(data.runs[0].results.joints) and not data.spec.joints:
         return tables or [Sentence(NO_JOINTS_NOTE)]

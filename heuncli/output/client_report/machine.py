@@ -27,20 +27,21 @@ BODIES_HEADING = "BODIES  mass and centre of mass at the first instant"
 JOINTS_HEADING = "JOINTS  with their points at the first instant"
 
 
-def make_drawing_parts(data: ReportData) -> list[Part]:
-    """Make the figure of the machine at the instant of the greatest force."""
+def make_drawing_parts(data: ReportData, *, is_first_page: bool = True) -> list[Part]:
+    """Make the figure of the machine at the instant of the greatest force; on the first page it is smaller."""
     run, time = find_worst_instant(data)
     if not is_claimed(run.study):
         return [Sentence(NO_POSITIONS)]
     case = f", load case {run.name}" if run.name else ""
     times = None if time is None or run.study.has_one_instant else np.array([time])
     figure = make_scene_figure(FigureSource("", run.study), data.units, times)
-    figure = figure._replace(
-        title="", words=(), panels=[panel._replace(height=min(panel.height, FIRST_HEIGHT)) for panel in figure.panels]
-    )
+    if is_first_page:
+        panels = [panel._replace(height=min(panel.height, FIRST_HEIGHT)) for panel in figure.panels]
+        figure = figure._replace(panels=panels)
+    figure = figure._replace(title="", words=())
     instant = format_instant(time, run)
     where = f" at the instant of the greatest force, t = {instant} s" if instant else ""
-    return [Drawing(figure, f"The machine{where}{case}", SHEET_WIDTH, "first")]
+    return [Drawing(figure, f"The machine{where}{case}", SHEET_WIDTH, "first" if is_first_page else "")]
 
 
 def make_model_parts(data: ReportData) -> list[Part]:

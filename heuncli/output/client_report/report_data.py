@@ -26,9 +26,9 @@ from heuncli.study.queries.study import Study
 AS_IT_STANDS = "base model"  # the scene without the values of a case
 LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "events"})
 CHAPTER_NAMES = (
-    "loads", "sections", "histories", "polar", "events", "checks", "open", "model", "computed", "spec",
+    "machine", "loads", "sections", "histories", "polar", "events", "checks", "open", "model", "accuracy", "spec",
 )  # fmt: skip
-ON_REQUEST = frozenset({"spec"})  # chapters that are printed only by name
+ON_REQUEST = frozenset({"machine", "spec"})  # chapters that are printed only by name
 AT_WORST = frozenset({"motion", "foundation", "joints", "forces"})  # computed at the instants of extremes
 KINDS_AT_WORST = ("foundation.force", "foundation.moment", "joints.", "forces.", "couplings.", "stops.")
 
@@ -88,7 +88,7 @@ class ReportedRun:
     @property
     def case_label(self) -> str:
         """The name of the case as it is shown."""
-        return self.name or AS_IT_STANDS
+        return self.name.replace("_", " ") or AS_IT_STANDS
 
 
 class Imprint(NamedTuple):

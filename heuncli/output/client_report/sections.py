@@ -83,7 +83,9 @@ def _split_panels(figure: Figure) -> list[Figure]:
     the bar if there is one.
     """
     sketch = [panel for panel in figure.panels if panel.is_bare]
-    panels = [panel._replace(height=min(panel.height, PANEL_HEIGHT)) for panel in figure.panels if not panel.is_bare]
+    panels = [
+        panel._replace(height=min(panel.height, PANEL_HEIGHT), title="") for panel in figure.panels if not panel.is_bare
+    ]
     middle = (len(panels) + 1) // 2
     halves = [half for half in (panels[:middle], panels[middle:]) if half]
     return [

@@ -27,6 +27,7 @@ from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.digits import OPEN
 
 MAX_LINES = 12
+MIN_TURN = 0.75 * TURN  # of a joint that keeps turning
 FOUNDATION = "foundation"
 HEADING = "SUMMARY  greatest load of each, and its components there"
 MORE_NOTE = "{} smaller ones: chapter Loads"
@@ -37,12 +38,15 @@ UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"
 
 
 class SummaryLine(NamedTuple):
-    """The greatest load of one object; greatest: None if it is open or unknown in all cases.
+    """The greatest load of one object.
 
+    type: of a coupling or force, if its name does not tell it
+    greatest: None if it is open or unknown in all cases
     alike: names of objects of the same kind, such as small2 beside small1, with the same greatest load
     """
 
     name: str
+    type: str
     greatest: GreatestOfCases | None
     paths: Sequence[str]
     alike: Sequence[str] = ()
@@ -60,12 +64,11 @@ class SummaryLine(NamedTuple):
 
 def find_summary_lines(data: ReportData) -> list[SummaryLine]:
     """Find the greatest load of the foundation and of all that carries a load, the largest first."""
-    objects = [(each.name, each.paths) for each in iter_loaded_objects(data)]
-    lines = [_make_line(data, name, paths) for name, paths in objects]
+    lines = [_make_line(data, *each) for each in iter_loaded_objects(data)]
     lines = [line for line in lines if line.greatest is not None or _is_uncertain(data, line)]
     lines = _join_alike(lines)
     lines.sort(key=lambda line: -line.rank)
-    foundation = _make_line(data, FOUNDATION, ["foundation.force"])
+    foundation = _make_line(data, FOUNDATION, "", ["foundation.force"])
     if foundation.greatest is None:
         return lines
     return [*lines[: MAX_LINES - 1], foundation, *lines[MAX_LINES - 1 :]]
@@ -84,9 +87,9 @@ def _join_alike(lines: Sequence[SummaryLine]) -> list[SummaryLine]:
     return list(joined.values())
 
 
-def _make_line(data: ReportData, name: str, paths: Sequence[str]) -> SummaryLine:
+def _make_line(data: ReportData, name: str, type_name: str, paths: Sequence[str]) -> SummaryLine:
     found = [each for path in paths if (each := find_greatest_of_cases(data, path, name)) is not None]
-    return SummaryLine(name, max(found, key=lambda each: abs(each.value), default=None), paths)
+    return SummaryLine(name, type_name, max(found, key=lambda each: abs(each.value), default=None), paths)
 
 
 def _is_uncertain(data: ReportData, line: SummaryLine) -> bool:
@@ -145,7 +148,7 @@ def _make_row(data: ReportData, line: SummaryLine, crank: str | None) -> list[Te
     greatest = line.greatest
     blank = ["", "", ""]
     if greatest is None:
-        cells = [line.name, OPEN, *blank, "", *[""] * data.has_cases]
+        cells = [_name_line(line), OPEN, *blank, "", *[""] * data.has_cases]
     else:
         instant = greatest.instant
         if instant:
@@ -158,8 +161,9 @@ def _make_row(data: ReportData, line: SummaryLine, crank: str | None) -> list[Te
 
 
 def _name_line(line: SummaryLine) -> str:
-    """Return the name of an object, and those of others with the same load."""
-    return ", ".join((line.name, *line.alike[:MAX_ALIKE])) + " …" * (len(line.alike) > MAX_ALIKE)
+    """Return the name of an object, those of others with the same load, and its type."""
+    names = ", ".join((line.name, *line.alike[:MAX_ALIKE])) + " …" * (len(line.alike) > MAX_ALIKE)
+    return f"{names} ({line.type})" if line.type else names
 
 
 def _format_components(greatest: GreatestOfCases) -> list[str]:
@@ -175,15 +179,19 @@ def _format_components(greatest: GreatestOfCases) -> list[str]:
 
 
 def find_crank(data: ReportData) -> str | None:
-    """Find the name of the joint that turns all around, a driven one first; None if none does in all cases."""
-    best, farthest = None, TURN * (1.0 - 1e-9)
+    """Find the name of the joint whose angle tells the instants of a machine that keeps turning: the most loaded of
+    those that are driven, or else supported by the ground; None if none turns far enough in all cases.
+    """
+    best, largest = None, -1.0
     for path in list_angle_paths(data.spec):
         name = path.split(".")[1]
         angles = [np.asarray(run.results.coordinates.get(name, {}).get("angle", [0.0])) for run in data.runs]
-        if all(np.isfinite(own).all() and is_monotonic(own) for own in angles):
-            span = min(find_span(own) for own in angles)
-            if span > farthest:
-                best, farthest = name, span
+        if not all(np.isfinite(own).all() and is_monotonic(own) and find_span(own) > MIN_TURN for own in angles):
+            continue
+        greatest = find_greatest_of_cases(data, f"joints.{name}.force", name)
+        force = abs(greatest.value) if greatest is not None else 0.0
+        if force > largest:
+            best, largest = name, force
     return best
 
 

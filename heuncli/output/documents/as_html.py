@@ -35,7 +35,7 @@ from heuncli.output.drawing.shapes import escape_xml as escaped_for_xml
 
 STYLE = Path(__file__).with_name("document.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-FILLS = {"": "", "page": "fills", "columns": "fills columns"}  # of a table -> classes
+FILLS = {"": "", "page": "fills", "columns": "fills columns", "half": "fills"}  # of a table -> classes
 LONG_CELL = 34  # characters; a longer cell may wrap
 VOID_TAGS = ("meta", "br", "img")  # tags without an end tag
 
@@ -104,8 +104,10 @@ def _render_parts(parts: Iterable[Part], prefix: str = "") -> str:
 
 
 def _is_half(part: Part) -> bool:
-    """Return whether a part is a figure that stands beside another."""
-    return isinstance(part, Drawing) and part.place == "half"
+    """Return whether a part is a figure or a table that stands beside another."""
+    return (isinstance(part, Drawing) and part.place == "half") or (
+        isinstance(part, OutputTable) and part.fill == "half"
+    )
 
 
 def _render_sentence(part: Sentence) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 MAX_NAMES = 8  # of a list in a sentence
 Kind = Literal["number", "text", "instant", "path", "verdict"]  # of a column; numbers are aligned at their points
 Mood = Literal["plain", "good", "bad", "unsure"]
-Fill = Literal["", "page", "columns"]  # of a table on paper
+Fill = Literal["", "page", "columns", "half"]  # of a table on paper
 
 
 class NumberCell(NamedTuple):
@@ -86,7 +86,8 @@ class OutputTable(NamedTuple):
     """A heading, columns, rows of cells, and notes below. A row that is a single string is a title over the rows after
     it. What stands after two blanks in a heading or title explains it. For CSV the rows may be made one by one.
 
-    fill: on paper it takes the whole width, or runs through two columns; by default it is as wide as its cells
+    fill: on paper it takes the whole width, runs through two columns, or stands in one beside another part; by default
+    it is as wide as its cells
     """
 
     heading: str

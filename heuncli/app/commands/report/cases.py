@@ -9,7 +9,7 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
 from heuncli.app.cli.units import parse_units
 from heuncli.app.commands.report.request import ReportRequest
-from heuncli.base.errors import HeunError, Problem
+from heuncli.base.errors import Finding, HeunError, Problem
 from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
 from heuncli.output.client_report.report_data import (
@@ -23,10 +23,11 @@ from heuncli.output.client_report.report_data import (
 from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.snapshots.take_snapshot import is_searched_between_samples, take_run_snapshot
 from heuncli.output.tables.page import make_page
+from heuncli.scene.file_format.file_contents import read_logo
 from heuncli.scene.file_format.load import load_with_cases
-from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.models import Logo, ReportSettings, Spec
 from heuncli.scene.file_format.named_files import NamedFiles
-from heuncli.scene.file_format.reading import digest
+from heuncli.scene.file_format.reading import STANDARD_INPUT, digest
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.memory_estimate import MemoryBudget
@@ -41,9 +42,7 @@ from heuncli.study.workflow import solve
 DRAWING_REPORTS = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
 IMPULSES_ONLY = frozenset({"impulses"})
 NO_REPORTS: frozenset[str] = frozenset()
-PNG_BEGIN = b"\x89PNG\r\n\x1a\n"
-SVG_SEARCHED = 4096  # bytes in which an SVG begins
-MAX_LOGO_BYTES = 1_000_000
+IMPRINT_KEYS = ("company", "project", "part", "revision", "author")
 OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
 
 
@@ -68,10 +67,10 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     """
     units_shown, options = parse_units(request.units), make_solver_options(request)
     settings, chapters = parse_overrides(request.set), parse_chapters(request.chapters)
-    imprint = make_imprint(request)
     text = read_text(request.spec)
     files = DigestedFiles(request.spec)
     spec, cases = load_with_cases(request.spec, settings, not settings, text, files)
+    imprint = make_imprint(request, spec.report)
     chosen = _select_cases(request, cases)
     selected = chosen or {"": spec}
     outcomes: list[Outcome] = []
@@ -90,7 +89,7 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     unchecked += [name for name in left_out if cases[name].expect]
     return ReportData(
         spec, text, files.digests, runs, outcomes, list(_iter_numeric_options(request)), left_out, unchecked,
-        not request.no_reduce, units_shown, imprint, chapters,
+        not request.no_reduce, units_shown, imprint, chapters or spec.report.chapters or (),
     )  # fmt: skip
 
 
@@ -104,29 +103,23 @@ def parse_chapters(words: str | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def make_imprint(request: ReportRequest) -> Imprint:
-    """Make the entries of the title block. Raises UsageError."""
-    words = {key: getattr(request, key) or "" for key in Imprint._fields}
-    return Imprint(**words)._replace(logo=read_logo(request.logo) if request.logo else "")
+def make_imprint(request: ReportRequest, settings: ReportSettings) -> Imprint:
+    """Make the entries of the title block: the options, else what the spec says. Raises UsageError."""
+    words = {key: getattr(request, key) or getattr(settings, key) for key in IMPRINT_KEYS}
+    logo = settings.logo
+    if request.logo is not None:
+        try:
+            logo = read_logo(request.logo, NamedFiles(STANDARD_INPUT))
+        except Finding as error:
+            raise UsageError(Problem("bad-option", f"--logo: {error.message}", hint=error.hint)) from None
+    return Imprint(**words, date=request.date or "", logo="" if logo is None else _embed(logo))
 
 
-def read_logo(path: str) -> str:
-    """Return a PNG or SVG file as a data URI. Raises UsageError."""
-    from base64 import b64encode
-    from pathlib import Path
+def _embed(logo: Logo) -> str:
+    """Return a picture as a data URI."""
+    from base64 import b64encode  # where there is a logo
 
-    try:
-        content = Path(path).read_bytes()
-    except OSError as reason:
-        message = f"--logo {path}: {reason.strerror or reason}"
-        raise UsageError(Problem("bad-option", message, hint="a PNG or SVG file")) from None
-    is_png = content.startswith(PNG_BEGIN)
-    if not is_png and b"<svg" not in content[:SVG_SEARCHED]:
-        raise UsageError(Problem("bad-option", f"--logo {path}: neither PNG nor SVG", hint="a PNG or SVG file"))
-    if len(content) > MAX_LOGO_BYTES:
-        message = f"--logo {path}: {len(content)} bytes, at most {MAX_LOGO_BYTES}"
-        raise UsageError(Problem("bad-option", message, hint="a smaller picture"))
-    return f"data:image/{'png' if is_png else 'svg+xml'};base64,{b64encode(content).decode()}"
+    return f"data:{logo.media_type};base64,{b64encode(logo.content).decode()}"
 
 
 def _select_cases(request: ReportRequest, cases: Mapping[str, Spec]) -> dict[str, Spec]:
