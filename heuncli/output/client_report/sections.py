@@ -37,7 +37,7 @@ UNCERTAIN_NOTE = "{}: open or unknown{}, where it may be larger"
 LARGEST_NOTE = "bold: section with the highest utilisation"
 GOVERNING_QUANTITIES = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # in order of priority
 MAX_DIAGRAMS = 12
-PANEL_HEIGHT = 105.0  # pixels
+PANEL_HEIGHT = 90.0  # pixels
 NO_STRENGTH = "not given"
 
 

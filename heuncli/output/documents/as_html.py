@@ -36,6 +36,7 @@ from heuncli.output.drawing.shapes import escape_xml as escaped_for_xml
 STYLE = Path(__file__).with_name("document.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 FILLS = {"": "", "page": "fills", "columns": "fills columns", "half": "fills"}  # of a table -> classes
+MAX_WHOLE_ROWS = 20  # of a table that is kept on one page
 LONG_CELL = 34  # characters; a longer cell may wrap
 VOID_TAGS = ("meta", "br", "img")  # tags without an end tag
 
@@ -147,10 +148,17 @@ def render_table(part: OutputTable) -> str:
         table = make_element("thead", make_element("tr", "".join(heads))) + "\n" + make_element("tbody", body)
         label = part.heading.partition("  ")[0]
         table = make_element("table", table, aria_label=label)
-        table = make_element("div", table, class_=f"wide {FILLS[part.fill]}".rstrip())
+        table = make_element(
+            "div", table, class_=" ".join(filter(None, ("wide", FILLS[part.fill], _choose_break(part))))
+        )
     caption = make_element("h3", _render_heading(part.heading)) if part.heading else ""
     notes = "".join(make_element("li", escape_text(note)) for note in part.notes)
     return make_element("div", caption + "\n" + table + (make_element("ul", notes, class_="notes") if notes else ""))
+
+
+def _choose_break(part: OutputTable) -> str:
+    """Return the class of a table that is kept on one page."""
+    return "whole" if len(part.rows) <= MAX_WHOLE_ROWS * (2 if part.fill == "columns" else 1) else ""
 
 
 def _render_heading(text: str) -> str:
