@@ -28,7 +28,7 @@ MAX_CURVES = 4  # cases in one panel; of more, the governing one
 MAX_ALIKE = 4  # names in a title
 ALIKE = 0.01  # of their greatest value: loads whose extremes agree to it share a panel
 MAX_SEARCH_INSTANTS = 400  # of the search's instants in a curve
-HEIGHT = 150.0  # pixels
+HEIGHT = 125.0  # pixels
 MARGIN = 0.12  # above a curve, for its words
 
 

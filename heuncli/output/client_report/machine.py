@@ -14,6 +14,7 @@ from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.scenes import make_scene_figure
 from heuncli.output.machine_geometry.poses import Poses, extract_poses
+from heuncli.output.tables.plurals import format_count
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
@@ -50,8 +51,9 @@ def make_model_parts(data: ReportData) -> list[Part]:
     poses = extract_poses(run.worst_results)
     tables = [_make_body_table(data, poses), _make_joint_table(data, poses), _make_force_table(data)]
     model = run.results.model
-    counts = [f"{model['freedoms']} degrees of freedom"] if "freedoms" in model else []
-    counts += [f"{model['redundant']} redundant constraints"] if model.get("redundant") else []
+    counts = [format_count(int(model["freedoms"]), "degree of freedom")] if "freedoms" in model else []
+    redundant = model.get("redundant")
+    counts += [format_count(redundant, "redundant constraint")] if isinstance(redundant, int) and redundant else []
     space = "Planar model" if "planar" in str(model.get("space", "")) else "Model in space"
     return [Sentence(f"{', '.join([space, *counts])}."), *(table for table in tables if table is not None)]
 

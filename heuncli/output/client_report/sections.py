@@ -21,7 +21,7 @@ from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
 from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable, Part, Sentence, TextCell, join_names
-from heuncli.output.drawing.figure import Figure
+from heuncli.output.drawing.figure import Figure, Panel, Spot
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.diagrams import BAND_SENTENCE, make_diagrams
 from heuncli.output.tables.table_plans import SECTIONS
@@ -83,9 +83,7 @@ def _split_panels(figure: Figure) -> list[Figure]:
     the bar if there is one.
     """
     sketch = [panel for panel in figure.panels if panel.is_bare]
-    panels = [
-        panel._replace(height=min(panel.height, PANEL_HEIGHT), title="") for panel in figure.panels if not panel.is_bare
-    ]
+    panels = [_shorten_panel(panel) for panel in figure.panels if not panel.is_bare]
     middle = (len(panels) + 1) // 2
     halves = [half for half in (panels[:middle], panels[middle:]) if half]
     return [
@@ -95,6 +93,15 @@ def _split_panels(figure: Figure) -> list[Figure]:
         )
         for k, half in enumerate(halves)
     ]
+
+
+def _shorten_panel(panel: Panel) -> Panel:
+    """Return a panel for half the width, whose marks have their values alone; places and instants are in the table."""
+    items = [
+        item._replace(text=item.text.partition(" at ")[0], note="") if isinstance(item, Spot) else item
+        for item in panel.items
+    ]
+    return panel._replace(height=min(panel.height, PANEL_HEIGHT), title="", items=tuple(items))
 
 
 def _format_open_cases(data: ReportData, name: str) -> str:

@@ -52,12 +52,18 @@ def make_trust_parts(data: ReportData) -> list[Part]:
         parts.append(OutputTable("RUNS", columns, rows, (), "page"))
     else:
         parts.append(Facts(_list_run_facts(data.runs[0])))
-    return [*parts, _make_error_table(data), Facts(list(_iter_provenance(data)))]
+    return [*parts, _make_error_table(data), _make_provenance_table(data)]
 
 
 def _list_run_facts(run: ReportedRun) -> list[tuple[str, str]]:
     """Return what is known of a run and its accuracy, without the model and warnings, which stand elsewhere."""
     return [line for line in make_heading(run.results) if line[0] not in ("model", "warning")]
+
+
+def _make_provenance_table(data: ReportData) -> OutputTable:
+    """Make the table of files, options and versions."""
+    rows = [[TextCell(label), TextCell(text)] for label, text in _iter_provenance(data)]
+    return OutputTable("SOURCES", [OutputColumn("", "text"), OutputColumn("", "text")], rows, (), "half")
 
 
 def _iter_provenance(data: ReportData) -> Iterator[tuple[str, str]]:
@@ -107,7 +113,11 @@ def _make_error_table(data: ReportData) -> OutputTable:
         )
     heads = [OutputColumn("quantity", "text"), OutputColumn("unit", "text"), OutputColumn("±")]
     return OutputTable(
-        "STATED ERRORS  for each kind of quantity", [*heads, *([CASE_COLUMN] if data.has_cases else [])], rows
+        "STATED ERRORS  for each kind of quantity",
+        [*heads, *([CASE_COLUMN] if data.has_cases else [])],
+        rows,
+        (),
+        "half",
     )
 
 
