@@ -8,6 +8,7 @@ from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.queries.measure_uncertainty import find_unit
 
+WORDED = ("joints.", "forces.", "couplings.", "sections.", "stops.", "foundation.")  # paths with words
 HOLDS, FAILS = "passed", "FAILED"
 HEADS = ("line", "case", "quantity", "unit", "at", "expected", "found", "allowed", "verdict")
 NUMBERS = frozenset({"line", "expected", "found", "allowed"})
@@ -31,7 +32,7 @@ def _make_row(data: ReportData, outcome: Outcome, *, with_cases: bool) -> list[T
     verdict = TextCell(HOLDS if outcome.has_passed else FAILS, not outcome.has_passed)
     case = [TextCell(outcome.case or AS_IT_STANDS)] if with_cases else []
     texts = (
-        describe_path(outcome.subject, data.labels),
+        describe_path(outcome.subject, data.labels) if outcome.subject.startswith(WORDED) else outcome.subject,
         find_unit(outcome.subject, data.spec),
         outcome.when,
         outcome.expected_text,

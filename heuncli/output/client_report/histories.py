@@ -63,12 +63,12 @@ class RunCourse:
         """The angle of the turning joint in degrees, or the time."""
         if self.crank is None:
             return self.times
-        return np.degrees(np.asarray(self.results.coordinates[self.crank]["angle"]))
+        return np.asarray(np.degrees(self.results.coordinates[self.crank]["angle"]))
 
     def find_numbers(self, path: str) -> Array:
         """Return the number at a path, of a vector its magnitude, (n,)."""
         values = np.asarray(find_values(self.results, path).values)
-        return values if values.ndim == 1 else np.sqrt(np.einsum("nk,nk->n", values, values))
+        return np.asarray(values if values.ndim == 1 else np.sqrt(np.einsum("nk,nk->n", values, values)))
 
 
 def make_history_parts(data: ReportData) -> list[Part]:
