@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from heuncli.app.commands.report.cases import solve_report_cases
 from heuncli.app.commands.report.request import ReportRequest
-from heuncli.output.client_report.contents import make_report
-from heuncli.output.client_report.report_data import ReportData
+from heuncli.base.records import replace
+from heuncli.output.client_report.contents import CHAPTERS, make_report
+from heuncli.output.client_report.report_data import CHAPTER_NAMES, ReportData
 from heuncli.output.documents.as_html import render_html
 from heuncli.output.documents.as_markdown import render_markdown
+from heuncli.scene.file_format.format import ReportChapter
 from tests.shared.page_reader import OURS, PageReader
 
 FOLDER = Path(__file__).parents[2] / "specs"
@@ -24,6 +27,7 @@ UNIT = re.compile(r"\[[^\]]+\]")
 @pytest.mark.parametrize("name", NAMES)
 def test_reports_of_all_examples(name: str) -> None:
     of = solve_report_cases(ReportRequest(spec=str(FOLDER / f"{name}.yaml"), quiet=True))
+    of = replace(of, chapters=CHAPTER_NAMES)  # with those that are printed on request
     report = make_report(of)
     page, text = render_html(report), render_markdown(report)
     read = PageReader(page)
@@ -38,6 +42,10 @@ def test_reports_of_all_examples(name: str) -> None:
         assert UNIT.search(figure)
     every_line_of_the_spec_is_there(of, read, text)
     assert all(outcome.has_passed for outcome in of.outcomes)  # as heun check finds, see tests/cli/test_specs.py
+
+
+def test_every_chapter_has_its_name() -> None:
+    assert set(CHAPTERS) == set(CHAPTER_NAMES) == set(get_args(ReportChapter))
 
 
 def every_line_of_the_spec_is_there(of: ReportData, read: PageReader, text: str) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from html.parser import HTMLParser
 
-ALONE = {"meta", "br"}
+ALONE = {"meta", "br", "img"}
 OURS = {  # elements of the pages that heun writes
     "html", "head", "meta", "title", "style", "body", "main", "header", "nav", "ol", "ul", "li", "a", "section", "h1",
     "h2", "h3", "small", "p", "dl", "dt", "dd", "div", "table", "thead", "tbody", "tr", "th", "td", "strong", "code",
-    "figure", "figcaption", "svg", "desc", "rect", "polyline", "polygon", "circle", "text",
+    "figure", "figcaption", "span", "svg", "desc", "rect", "polyline", "polygon", "circle", "text",
 }  # fmt: skip
 
 

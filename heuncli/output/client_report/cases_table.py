@@ -1,6 +1,6 @@
-"""Tables of extremes over load cases: one row per case, with instants, places, and the stated error of its run.
+"""Tables of extremes: a row for each number, with its least and greatest value in each load case.
 
-The value that no other case exceeds governs, and is bold.
+The value that no other case exceeds governs, and is bold. If there are many cases, their envelope is shown.
 """
 
 from __future__ import annotations
@@ -10,101 +10,99 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.extremes import (
+    DASH,
+    CaseExtreme,
     CaseExtremes,
     GoverningBounds,
-    choose_family_style,
+    choose_family,
     find_governing,
-    format_extreme,
     format_instant,
     format_place_in_unit,
     iter_run_extremes,
 )
-from heuncli.output.client_report.load_groups import TOTAL, LoadGroup, LoadNumber
+from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
-from heuncli.output.documents.document import OutputColumn, OutputTable, TextCell, join_names
+from heuncli.output.documents.document import Fill, OutputColumn, OutputTable, TextCell, join_names
 from heuncli.output.snapshots.envelopes import Bound
-from heuncli.output.tables.extremes_tables import MARK, MAX_FULL_GROUPS, NOT_SEARCHED, PARTLY_OPEN_NOTE
-from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, format_error
+from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
+from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE
 
-MAX_CASES = 12  # with a row each; if there are more, only those that govern
+MAX_NUMBER_COLUMNS = 8  # of cases beside each other; if there are more, their envelope
+MAX_HALF_COLUMNS = 4  # columns of numbers with which a table runs through two columns of a page
+MIN_SPLIT_ROWS = 9  # rows of a table that runs through two columns
+PARTLY_OPEN_MARK = "*"
 BOLD_NOTE = (
     "bold: minimum and maximum over all load cases, for magnitudes only the maximum; not where a case may be open, the "
     "value is rounding error, or all cases agree"
 )
-PARTLY_OPEN_MARK = "*"
-STEADY_NOTE = "no time given: the same at all {}, to the digits shown"
-ERROR_NOTE = "±: stated error of the number, including rounding"
-HIDDEN_CASES_NOTE = "cases not shown with open or unknown numbers, which may be larger: {}"
-FEW_CASES_NOTE = "only the governing ones of {} load cases are shown; all: heun run SPEC --case all"
+NOISE_NOTE = f"{DASH}: below 1/1000 of the largest of its kind; rows of nothing else are left out"
+STEADY_NOTE = "one value: the same at all {}"
+ENVELOPE_NOTE = "least and greatest value of {} load cases; each case: heun run SPEC --case all"
+HIDDEN_CASES_NOTE = "open or unknown, where it may be larger: {}"
 
 
 def make_cases_table(
-    data: ReportData, caption: str, groups: Sequence[LoadGroup], notes: Sequence[str] = (), *, has_places: bool = False
+    data: ReportData, heading: str, groups: Sequence[LoadGroup], notes: Sequence[str] = (), *, has_places: bool = False
 ) -> OutputTable:
     """Make the table of some groups of numbers.
 
     has_places: whether the extremes are along runs of cuts, so that their places are shown
     """
+    layout = _Layout(data, has_places)
     governing_bounds = find_governing(data)
-    shown_cases = _choose_cases(data, groups, governing_bounds)
     rows: list[Sequence[TextCell] | str] = []
     zero_groups: list[str] = []
     for group in groups:
-        group_rows = list(_iter_group_rows(data, group, shown_cases, governing_bounds, has_places=has_places))
+        group_rows = list(_iter_group_rows(layout, group, governing_bounds))
         if not group_rows:
             zero_groups.append(group.name)
-        elif len(groups) > MAX_FULL_GROUPS and group.name != TOTAL:
-            rows += [(line[0]._replace(text=f"{group.name} {line[0].text}".rstrip()), *line[1:]) for line in group_rows]
+        elif len(group_rows) == 1:
+            (line,) = group_rows
+            rows.append((line[0]._replace(text=f"{group.name}, {line[0].text}".rstrip()), *line[1:]))
         else:
             rows += ["  ".join(filter(None, (group.name, group.note))), *group_rows]
-    table_notes = [*_iter_notes(data, rows), *notes]
-    table_notes += [NOT_SEARCHED] if not all(run.is_searched for run in data.runs) else []
-    table_notes += [FEW_CASES_NOTE.format(len(data.runs))] if len(shown_cases) < len(data.runs) else []
-    table_notes += (
-        [HIDDEN_CASES_NOTE.format(join_names(hidden_cases))]
-        if (hidden_cases := _find_hidden_cases(data, groups, shown_cases))
-        else []
-    )
-    table_notes += [f"all values 0: {join_names(zero_groups)}"] if zero_groups else []
-    return OutputTable(caption, _make_columns(data, has_places=has_places) if rows else [], rows, table_notes)
+    table_notes = [*_iter_notes(layout, groups, rows), *notes]
+    table_notes += [f"no load: {join_names(zero_groups)}"] if zero_groups else []
+    fill: Fill = "half" if len(rows) < MIN_SPLIT_ROWS and layout.fill == "columns" else layout.fill
+    return OutputTable(heading, layout.columns if rows else [], rows, table_notes, fill)
 
 
-def _choose_cases(data: ReportData, groups: Sequence[LoadGroup], governing_bounds: GoverningBounds) -> set[str]:
-    """Choose the cases that get rows: all, or, if these are too many, those that govern some number."""
-    if len(data.runs) <= MAX_CASES:
-        return {run.name for run in data.runs}
-    bounds = [
-        find_bound(row.path)
-        for group in groups
-        for row in group.rows
-        for find_bound in (governing_bounds.find_least, governing_bounds.find_greatest)
-    ]
-    return {case for bound in bounds if bound is not None for case in bound.governing} or {data.runs[0].name}
+class _Layout:
+    """The columns of a table: of one case with instants and places, of a few cases, or of the envelope of many."""
 
+    def __init__(self, data: ReportData, has_places: bool) -> None:
+        self.data = data
+        self.has_instants = has_instants(data)
+        self.is_ranged = self.has_instants or has_places
+        self.has_places = has_places and len(data.runs) == 1
+        n_columns = len(data.runs) * (2 if self.is_ranged else 1)
+        self.is_envelope = n_columns > MAX_NUMBER_COLUMNS
+        self.fill: Fill = (
+            "columns" if n_columns <= MAX_HALF_COLUMNS and not (self.has_places and self.has_instants) else "page"
+        )
 
-def _find_hidden_cases(data: ReportData, groups: Sequence[LoadGroup], shown_cases: set[str]) -> list[str]:
-    """Find the cases without rows in which some number is indeterminate or not known, so that they may govern after
-    all.
-    """
-    uncertain_cases = [
-        run.name
-        for group in groups
-        for row in group.rows
-        for run, ends in iter_run_extremes(data, row.path)
-        if not ends.is_known
-    ]
-    return [name for name in dict.fromkeys(uncertain_cases) if name not in shown_cases]
+    @property
+    def columns(self) -> list[OutputColumn]:
+        """The heads of the table."""
+        heads = [OutputColumn("", "text"), OutputColumn("", "text")]
+        words = ("min", "max") if self.is_ranged else ("value",)
+        if self.is_envelope:
+            both = [[OutputColumn(word), OutputColumn("case", "text")] for word in ("min", "max")]
+            return [*heads, *both[0], *both[1]]
+        if len(self.data.runs) > 1:
+            for run in self.data.runs:
+                case = run.case_label.replace("_", " ")
+                heads += [OutputColumn(f"{case} {word}" if self.is_ranged else case) for word in words]
+            return heads
+        for word in words:
+            heads += [OutputColumn(word), *(OutputColumn(head) for head in self.position_heads)]
+        return heads
 
-
-def _make_columns(data: ReportData, *, has_places: bool) -> list[OutputColumn]:
-    """Make the columns; those of instants and of cases only if there are several."""
-    heads = [OutputColumn("", "text"), OutputColumn("unit", "text")]
-    heads += [OutputColumn("case", "text")] if data.has_cases else []
-    unit = data.units.find("m")[0]
-    position_heads = [f"at s [{unit}]"] * has_places + ["at t [s]"] * has_instants(data)
-    for word in ("min", "max") if has_instants(data) or has_places else ("value",):
-        heads += [OutputColumn(word), *(OutputColumn(head) for head in position_heads)]
-    return [*heads, OutputColumn("±")]
+    @property
+    def position_heads(self) -> list[str]:
+        """The heads of the places and instants of an extreme of the only case."""
+        heads = [f"at s [{self.data.units.find('m')[0]}]"] * self.has_places
+        return heads + ["at t [s]"] * self.has_instants
 
 
 def has_instants(data: ReportData) -> bool:
@@ -115,14 +113,12 @@ def has_instants(data: ReportData) -> bool:
 class FormattedNumber(NamedTuple):
     """A number with its extremes in each case and their texts.
 
-    size: factor from SI to `unit`
     texts: by case, the texts of the minimum and the maximum
     """
 
     row: LoadNumber
     case_extremes: Sequence[tuple[ReportedRun, CaseExtremes]]
     unit: str
-    size: float
     texts: Mapping[str, tuple[str, str]]
 
     @property
@@ -131,82 +127,87 @@ class FormattedNumber(NamedTuple):
         return {text for both in self.texts.values() for text in both}
 
     @property
-    def is_zero(self) -> bool:
-        """Whether it is zero at all times in all cases; an indeterminate number is not."""
-        return self.distinct_texts == {"0"} and all(ends.is_known for _, ends in self.case_extremes)
+    def is_noise(self) -> bool:
+        """Whether it is noise at all times in all cases; an indeterminate number is not."""
+        return self.distinct_texts == {DASH} and all(ends.is_known for _, ends in self.case_extremes)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether it is known at all instants of all cases."""
+        return all(ends.is_known and not ends.is_partly_open for _, ends in self.case_extremes)
 
 
 def _iter_formatted(data: ReportData, group: LoadGroup) -> Iterator[FormattedNumber]:
-    """Yield the numbers of a group as texts; those of one family and unit have the same decimals."""
+    """Yield the numbers of a group as texts; those of one family have the same unit, and in a case the same digits."""
     case_extremes = [(row, list(iter_run_extremes(data, row.path))) for row in group.rows]
-    families: dict[tuple[str, str], list[CaseExtremes]] = {}
+    families: dict[tuple[str, str], dict[str, list[CaseExtremes]]] = {}
     for row, extremes in case_extremes:
-        for _, ends in extremes:
-            families.setdefault((row.family, ends.unit), []).append(ends)
+        for run, ends in extremes:
+            families.setdefault((row.family, ends.unit), {}).setdefault(run.name, []).append(ends)
     for row, extremes in case_extremes:
-        first = extremes[0][1]
-        unit, size = data.units.find(first.unit)
-        style = choose_family_style(families[row.family, first.unit], data, size)
-        yield FormattedNumber(
-            row, extremes, unit, size, {run.name: _format_extremes(ends, style, size) for run, ends in extremes}
-        )
+        by_case = families[row.family, extremes[0][1].unit]
+        all_ends = [ends for case in by_case.values() for ends in case]
+        written = {name: choose_family(ends, data, all_ends) for name, ends in by_case.items()}
+        texts = {
+            run.name: (written[run.name].write(ends.low.value), written[run.name].write(ends.high.value))
+            for run, ends in extremes
+        }
+        yield FormattedNumber(row, extremes, written[extremes[0][0].name].unit, texts)
 
 
 def _iter_group_rows(
-    data: ReportData, group: LoadGroup, shown_cases: set[str], governing_bounds: GoverningBounds, *, has_places: bool
+    layout: _Layout, group: LoadGroup, governing_bounds: GoverningBounds
 ) -> Iterator[Sequence[TextCell]]:
-    """Yield the rows of a group. Numbers that are zero at all times get none; those always indeterminate share one
-    row.
+    """Yield the rows of a group. Numbers that are noise at all times get none; those always indeterminate share one
+    row; what repeats another number is left out.
     """
-    numbers = list(_iter_formatted(data, group))
-    row_numbers = [number for number in numbers if not number.is_zero and number.distinct_texts != {OPEN}]
-    component_counts = Counter(number.row.vector for number in row_numbers if not number.row.is_magnitude)
-    # a repetition
-    row_numbers = [
-        number
-        for number in row_numbers
-        if not (number.row.is_magnitude and number.row.vector and component_counts[number.row.vector] == 1)
-    ]
-    for number in row_numbers:
-        yield from _iter_case_rows(data, number, shown_cases, governing_bounds, has_places=has_places)
-    if open_labels := [number.row.label for number in numbers if number.distinct_texts == {OPEN}]:
-        yield _make_open_row(_make_columns(data, has_places=has_places), open_labels)
-
-
-def _make_open_row(columns: Sequence[OutputColumn], labels: Sequence[str]) -> list[TextCell]:
-    """Make the row of the numbers that are always indeterminate: the word `open` takes the place of the number."""
-    heads = [column.title for column in columns]
-    first = next(heads.index(word) for word in ("min", "value") if word in heads)
-    texts = {0: ", ".join(labels), first: OPEN}
-    return [TextCell(texts.get(i, "")) for i in range(len(columns))]
-
-
-def _iter_case_rows(
-    data: ReportData,
-    number: FormattedNumber,
-    shown_cases: set[str],
-    governing_bounds: GoverningBounds,
-    *,
-    has_places: bool,
-) -> Iterator[Sequence[TextCell]]:
-    """Yield one row per case; the first has the name of the number and its unit."""
-    low, high = governing_bounds.find_least(number.row.path), governing_bounds.find_greatest(number.row.path)
-    is_known = not number.distinct_texts & {OPEN, UNKNOWN} and not any(
-        ends.is_partly_open for _, ends in number.case_extremes
-    )
-    is_compared = is_known and len(data.runs) > 1  # an indeterminate value may be the largest
-    leading = [number.row.label, number.unit if number.unit != "1" else ""]
-    for run, ends in number.case_extremes:
-        if run.name not in shown_cases:
+    numbers = list(_iter_formatted(layout.data, group))
+    shown = [number for number in numbers if not number.is_noise and number.distinct_texts != {OPEN}]
+    counts = Counter(number.row.vector for number in shown if not number.row.is_magnitude)
+    for number in shown:
+        is_vector_length = number.row.is_magnitude and number.row.vector
+        if (is_vector_length and counts[number.row.vector] == 1) or _repeats_one(number, shown):
             continue
+        yield _make_row(layout, number, governing_bounds)
+    if open_labels := [number.row.label for number in numbers if number.distinct_texts == {OPEN}]:
+        blank = [TextCell("")] * (len(layout.columns) - 3)
+        yield [TextCell(", ".join(open_labels)), TextCell(""), TextCell(OPEN), *blank]
+
+
+def _repeats_one(number: FormattedNumber, others: Sequence[FormattedNumber]) -> bool:
+    """Return whether a number that belongs to no vector, such as `radial`, equals one of a vector in all cases."""
+    return not number.row.vector and any(
+        other.row.vector and other.unit == number.unit and other.texts == number.texts for other in others
+    )
+
+
+def _make_row(layout: _Layout, number: FormattedNumber, governing_bounds: GoverningBounds) -> Sequence[TextCell]:
+    """Make the row of a number."""
+    low, high = governing_bounds.find_least(number.row.path), governing_bounds.find_greatest(number.row.path)
+    is_compared = number.is_known and len(layout.data.runs) > 1  # an indeterminate value may be the largest
+    label = number.row.label + PARTLY_OPEN_MARK * any(ends.is_partly_open for _, ends in number.case_extremes)
+    leading = [TextCell(label), TextCell(number.unit)]
+    if layout.is_envelope:
+        return [*leading, *_iter_envelope_cells(number, low, high)]
+    extremes = {run.name: (run, ends) for run, ends in number.case_extremes}
+    for run in layout.data.runs:
+        if run.name not in extremes:
+            leading += [TextCell("")] * (2 if layout.is_ranged else 1)
+            continue
+        _, ends = extremes[run.name]
+        texts = _mark_uncertain(run, number, ends, number.texts[run.name])
         bold = is_compared and not number.row.is_magnitude and _governs(low, run), is_compared and _governs(high, run)
-        case = [run.case_label] if data.has_cases else []
-        texts = number.texts[run.name]
-        error = "" if texts == (OPEN, OPEN) else format_error(ends.error * number.size)
-        cells = _iter_cells(data, run, ends, _mark_uncertain(run, number, ends, texts), bold, has_places=has_places)
-        label = leading[0] + PARTLY_OPEN_MARK * ends.is_partly_open
-        yield (TextCell(label), TextCell(leading[1]), *map(TextCell, case), *cells, TextCell(error))
-        leading = ["", ""]
+        leading += _iter_cells(layout, run, ends, texts, bold)
+    return leading
+
+
+def _iter_envelope_cells(number: FormattedNumber, low: Bound | None, high: Bound | None) -> Iterator[TextCell]:
+    """Yield the least and greatest value of all cases, each with its case."""
+    for k, bound in enumerate((low, high)):
+        governing = bound.governing if bound is not None else ()
+        shown = [*governing, *(bound.similar if bound is not None else ()), *number.texts][0]
+        yield TextCell(number.texts[shown][k])
+        yield TextCell(governing[0] if governing else "")
 
 
 def _mark_uncertain(
@@ -224,47 +225,49 @@ def _mark_uncertain(
     return low, high
 
 
-def _format_extremes(ends: CaseExtremes, style: Style, size: float) -> tuple[str, str]:
-    return format_extreme(ends.low.value, style, size), format_extreme(ends.high.value, style, size)
-
-
 def _governs(extreme: Bound | None, run: ReportedRun) -> bool:
     return extreme is not None and not extreme.is_rounding and run.name in extreme.governing
 
 
 def _iter_cells(
-    data: ReportData,
-    run: ReportedRun,
-    ends: CaseExtremes,
-    texts: tuple[str, str],
-    bold: tuple[bool, bool],
-    *,
-    has_places: bool,
+    layout: _Layout, run: ReportedRun, ends: CaseExtremes, texts: tuple[str, str], bold: tuple[bool, bool]
 ) -> Iterator[TextCell]:
-    """Yield the cells of the minimum and the maximum, each with its place and its instant."""
+    """Yield the cells of the minimum and the maximum in a case; a constant has one."""
     is_constant = texts[0] == texts[1]
-    if not (has_places or has_instants(data)):
+    if not layout.is_ranged:
         yield TextCell(texts[0], any(bold))
         return
     for k, end in enumerate((ends.low, ends.high)):
-        yield TextCell(texts[k], bold[k])
-        if has_places:
-            yield TextCell("" if is_constant else format_place_in_unit(end.place, data.units, with_unit=False))
-        if has_instants(data):
-            yield TextCell("" if is_constant or texts[k] in (OPEN, UNKNOWN) else format_instant(end.time, run))
+        yield TextCell("" if is_constant and k == 0 else texts[k], bold[k] or (is_constant and any(bold)))
+        if len(layout.data.runs) == 1:
+            yield from _iter_position_cells(layout, run, end, is_blank=is_constant or texts[k] in (OPEN, UNKNOWN, DASH))
 
 
-def _iter_notes(data: ReportData, rows: Sequence[Sequence[TextCell] | str]) -> Iterator[str]:
+def _iter_position_cells(layout: _Layout, run: ReportedRun, end: CaseExtreme, *, is_blank: bool) -> Iterator[TextCell]:
+    """Yield the place and the instant of an extreme, where the table has them."""
+    if layout.has_places:
+        yield TextCell("" if is_blank else format_place_in_unit(end.place, layout.data.units, with_unit=False))
+    if layout.has_instants:
+        yield TextCell("" if is_blank else format_instant(end.time, run))
+
+
+def _iter_notes(
+    layout: _Layout, groups: Sequence[LoadGroup], rows: Sequence[Sequence[TextCell] | str]
+) -> Iterator[str]:
     """Yield the notes that explain the signs in a table."""
+    data = layout.data
     cells = [cell for row in rows if not isinstance(row, str) for cell in row]
     texts = {cell.text for cell in cells}
     if any(cell.is_governing for cell in cells):
         yield BOLD_NOTE
-    if cells:
-        yield ERROR_NOTE
-    if cells and has_instants(data):
+    if cells and layout.is_envelope:
+        yield ENVELOPE_NOTE.format(len(data.runs))
+        if hidden := _find_hidden_cases(data, groups):
+            yield HIDDEN_CASES_NOTE.format(join_names(hidden))
+    if cells and layout.has_instants:
         yield STEADY_NOTE.format("times" if all(run.is_searched for run in data.runs) else "output times")
-    yield ZERO_NOTE
+    if DASH in texts:
+        yield NOISE_NOTE
     if OPEN in texts:
         yield OPEN_NOTE
     if UNKNOWN in texts:
@@ -273,3 +276,17 @@ def _iter_notes(data: ReportData, rows: Sequence[Sequence[TextCell] | str]) -> I
         yield PARTLY_OPEN_NOTE
     if any(cell.text.endswith(MARK) for cell in cells):
         yield from dict.fromkeys(run.uncertain_instants.note for run in data.runs if run.uncertain_instants.note)
+    if not all(run.is_searched for run in data.runs):
+        yield NOT_SEARCHED
+
+
+def _find_hidden_cases(data: ReportData, groups: Sequence[LoadGroup]) -> list[str]:
+    """Find the cases in which some number is indeterminate or not known, so that they may govern after all."""
+    names = [
+        run.name
+        for group in groups
+        for row in group.rows
+        for run, ends in iter_run_extremes(data, row.path)
+        if not ends.is_known
+    ]
+    return list(dict.fromkeys(names))

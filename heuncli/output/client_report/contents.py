@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 
 from heuncli.output.client_report.checks import make_check_parts
 from heuncli.output.client_report.events_section import make_event_parts
@@ -10,38 +10,58 @@ from heuncli.output.client_report.first_page import make_first_page
 from heuncli.output.client_report.histories import make_history_parts
 from heuncli.output.client_report.load_table import make_load_parts
 from heuncli.output.client_report.machine import make_drawing_parts, make_model_parts
-from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.client_report.polar import make_polar_parts
+from heuncli.output.client_report.report_data import CHAPTER_NAMES, ON_REQUEST, ReportData
 from heuncli.output.client_report.sections import make_section_parts
 from heuncli.output.client_report.trust import make_open_parts, make_trust_parts
-from heuncli.output.documents.document import Chapter, OutputDocument, Part, Sentence, Verbatim, has_content
+from heuncli.output.documents.document import Brand, Chapter, OutputDocument, Part, Sentence, Verbatim, has_content
+from heuncli.output.documents.sheet import Sheet
 
 MAX_SPEC_LINES = 2000  # of a spec that is printed
-CHAPTERS: Sequence[tuple[str, str, Callable[[ReportData], list[Part]]]] = (
-    ("machine", "The machine", make_drawing_parts),
-    ("loads", "Loads", make_load_parts),
-    ("sections", "Sections", make_section_parts),
-    ("histories", "Time histories", make_history_parts),
-    ("happenings", "Impulses and events", make_event_parts),
-    ("checks", "Checks", make_check_parts),
-    ("trust", "Accuracy of the results", make_trust_parts),
-    ("open", "Indeterminate loads", make_open_parts),
-    ("model", "The model and its assumptions", make_model_parts),
-    ("spec", "Spec", lambda of: make_spec_parts(of)),
-)
+CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
+    "machine": ("The machine", lambda data: make_drawing_parts(data, is_first_page=False)),
+    "loads": ("Loads", make_load_parts),
+    "sections": ("Sections", make_section_parts),
+    "histories": ("Time histories", make_history_parts),
+    "polar": ("Load directions", make_polar_parts),
+    "events": ("Impulses and events", make_event_parts),
+    "checks": ("Checks", make_check_parts),
+    "open": ("Indeterminate loads", make_open_parts),
+    "model": ("The model", make_model_parts),
+    "accuracy": ("How it was computed", make_trust_parts),
+    "spec": ("Spec", lambda data: make_spec_parts(data)),
+}
 
 
 def make_report(data: ReportData) -> OutputDocument:
     """Make the report without the chapters that have no content. Raises the errors of the solver."""
-    chapters = [Chapter(name, title, list(filter(has_content, parts(data)))) for name, title, parts in CHAPTERS]
-    parts = [*make_first_page(data), *(chapter for chapter in chapters if chapter.parts)]
+    names = data.chapters or [name for name in CHAPTER_NAMES if name not in ON_REQUEST]
+    makers = [(name, *CHAPTERS[name]) for name in names]
+    chapters = [Chapter(name, title, list(filter(has_content, make_parts(data)))) for name, title, make_parts in makers]
+    imprint = data.imprint
+    parts = [
+        Brand(imprint.company, imprint.logo, imprint.project),
+        *make_first_page(data),
+        *(chapter for chapter in chapters if chapter.parts),
+    ]
     return OutputDocument(data.spec.title or "untitled", parts=parts, level=1)
+
+
+def make_sheet(data: ReportData, paper: str, *, is_landscape: bool) -> Sheet:
+    """Make the paper, with title, revision and date at the head of its pages."""
+    imprint = data.imprint
+    revision = f"revision {imprint.revision}" if imprint.revision else ""
+    right = ", ".join(filter(None, (revision, imprint.date)))
+    left = ", ".join(filter(None, (imprint.part, data.spec.title or "untitled")))
+    foot = ", ".join(filter(None, (imprint.company, imprint.project)))
+    return Sheet("letter" if paper == "letter" else "a4", is_landscape, left, right, foot)
 
 
 def make_spec_parts(data: ReportData) -> list[Part]:
     """Make the printout of the spec file."""
     lines = data.text.removeprefix("\ufeff").splitlines()
     parts: list[Part] = [
-        Sentence(f"{data.spec.path}, SHA-256 {data.spec.sha256}"),
+        Sentence(f"{data.file_name}, SHA-256 {data.spec.sha256}"),
         Verbatim("\n".join(lines[:MAX_SPEC_LINES]), is_numbered=True),
     ]
     if len(lines) > MAX_SPEC_LINES:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Part, Sentence
 from heuncli.output.tables.event_table import make_events_table
@@ -21,7 +23,8 @@ def make_event_parts(data: ReportData) -> list[Part]:
 
 def _make_run_parts(run: ReportedRun) -> list[Part]:
     page, results = run.page, run.results
-    tables = [make_events_table(results)] if results.events else []
+    has_events = any(np.size(event["time"]) for event in results.events.values())
+    tables = [make_events_table(results)] if has_events else []
     if results.impulses:
         tables += make_impulse_tables(
             ImpactReport(page.results, page.labels, page.certain, page.magnitudes, page.impact_extremes, page.details)

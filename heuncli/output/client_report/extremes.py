@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
@@ -13,11 +14,15 @@ from heuncli.output.snapshots.columns import format_place
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot
 from heuncli.results.results import Array, CutPosition
-from heuncli.study.quantities.digits import OPEN, UNKNOWN, Style, choose_style, format_error, write_times
+from heuncli.study.quantities.digits import OPEN, UNKNOWN
+from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 LEAST, GREATEST = "least", "greatest"
 PLACE_DECIMALS = 9  # of places [m]
+NOISE = 1e-3  # of the largest of a family: what is below it is a dash
+DASH, MINUS = "–", "−"
+INSTANT_DIGITS = 3  # of an instant, beside the run's length
 LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
 
 
@@ -125,27 +130,51 @@ def find_governing(data: ReportData) -> GoverningBounds:
     return GoverningBounds(least, greatest)
 
 
-def choose_family_style(ends: Sequence[CaseExtremes], data: ReportData, size: float) -> Style:
-    """Choose the style for numbers of one family.
+class Family(NamedTuple):
+    """How the numbers of one family are written: four significant digits, noise as a dash.
 
-    size: factor from SI to the display unit
+    noise: magnitudes below it are shown as a dash [SI]
     """
-    scale = max((abs(value) for extremes in ends for value in extremes.values), default=0.0)
+
+    style: ReaderStyle
+    noise: float
+
+    @property
+    def unit(self) -> str:
+        """The display unit, empty for a plain number."""
+        return "" if self.style.unit == "1" else self.style.unit
+
+    def write(self, value: float | str) -> str:
+        """Format a number [SI] or the word in its place."""
+        if isinstance(value, str):
+            return OPEN if value == OPEN else UNKNOWN
+        return DASH if abs(value) < self.noise or value == 0.0 else self.style.write_with_error(value)
+
+
+def choose_family(ends: Sequence[CaseExtremes], data: ReportData, all_ends: Sequence[CaseExtremes] = ()) -> Family:
+    """Choose how numbers of one family and unit are written; all_ends: those by whose size the unit is chosen."""
+    unit = ends[0].unit
+    scale, unit_scale = (
+        max((abs(value) for extremes in group for value in extremes.values), default=0.0)
+        for group in (ends, all_ends or ends)
+    )
+    rounding = max((run.page.certain.rounding_of(unit) for run in data.runs), default=0.0)
     error = max((extremes.error for extremes in ends), default=0.0)
-    lost = max((run.page.certain.rounding_of(extremes.unit) for extremes in ends for run in data.runs), default=0.0)
-    return choose_style(scale * size, error * size, lost * size)
+    noise = math.inf if scale <= rounding else NOISE * scale
+    return Family(choose_style_in_unit(data, unit, scale, unit_scale, error), noise)
 
 
-def format_extreme(value: float | str, number_style: Style, size: float) -> str:
-    """Format an extreme, or the word in its place."""
-    if isinstance(value, float):
-        return number_style.write(value * size)
-    return UNKNOWN if value == BEYOND else OPEN if value == OPEN else UNKNOWN
-
-
-def is_steady(ends: CaseExtremes, number_style: Style, size: float) -> bool:
-    """Return whether minimum and maximum have the same text; then no instant is shown for them."""
-    return format_extreme(ends.low.value, number_style, size) == format_extreme(ends.high.value, number_style, size)
+def choose_style_in_unit(
+    data: ReportData, unit: str, scale: float, unit_scale: float, error: float = 0.0
+) -> ReaderStyle:
+    """Choose the style of numbers whose largest is `scale`, in the unit that suits `unit_scale`; SI."""
+    style = choose_reader_style(unit, scale, data.units, error)
+    if unit_scale == scale:
+        return style
+    size = choose_reader_style(unit, unit_scale, data.units).size
+    shown_unit = choose_reader_style(unit, unit_scale, data.units).unit
+    shift = round(math.log10(style.size / size)) if style.size != size else 0
+    return ReaderStyle(shown_unit, size, max(style.decimals + shift, 0), size * error)
 
 
 def format_place_in_unit(place: str | None, units: Units, *, with_unit: bool = True) -> str:
@@ -160,76 +189,64 @@ def format_place_in_unit(place: str | None, units: Units, *, with_unit: bool = T
 
 
 def format_instant(time: float | None, run: ReportedRun) -> str:
-    """Format an instant; empty if there is none or if the run has only one."""
+    """Format an instant with three digits of the run's length; empty if there is none or if the run has only one."""
     times = run.results.time
     if time is None or len(times) == 1:
         return ""
-    return write_times([time], float(np.ptp(times)))[0]
+    span = float(np.ptp(times))
+    decimals = max(0, INSTANT_DIGITS - math.floor(math.log10(span))) if span > 0.0 else 0
+    text = f"{time:.{decimals}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
 
 
 class GreatestOfCases(NamedTuple):
-    """The largest value of a number over all cases, with what a sentence about it needs.
+    """The number of largest magnitude over all cases, with its sign.
 
-    size: factor from SI to `unit`
-    place, instant: as texts, or empty
+    run: the case; extreme: value, instant and place
     """
 
     name: str
-    unit: str
-    high: Bound
-    error: float
-    number_style: Style
-    size: float
-    place: str
-    instant: str
-
-    def format_value(self) -> str:
-        """Format the largest value with its unit and its error."""
-        value, error = self.number_style.write(self.high.value * self.size), format_error(self.error * self.size)
-        return f"{append_unit(value, self.unit)} (± {append_unit(error, self.unit)})"
+    path: str
+    run: ReportedRun
+    extreme: CaseExtreme
+    ends: CaseExtremes
+    family: Family
 
     @property
-    def position_text(self) -> str:
-        """The place, instant and case of the largest value, as the end of a sentence."""
-        parts = [f"at s = {self.place}"] if self.place else []
-        parts += [f"at t = {self.instant} s"] if self.instant else []
-        parts += [f"in case {self.high.case}"] if self.high.case else []
-        return "".join(f", {part}" for part in parts)
+    def value(self) -> float:
+        """The number [SI]."""
+        assert isinstance(self.extreme.value, float)
+        return self.extreme.value
+
+    @property
+    def text(self) -> str:
+        """The number with its unit."""
+        return append_unit(self.family.write(self.value), self.family.unit)
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether the number is the same at all instants, to the digits shown."""
+        return self.family.write(self.ends.low.value) == self.family.write(self.ends.high.value)
+
+    @property
+    def instant(self) -> str:
+        """The instant as text; empty if there is none."""
+        return "" if self.is_steady and not self.extreme.place else format_instant(self.extreme.time, self.run)
 
 
-def find_greatest_of_cases(
-    data: ReportData, path: str, name: str, *, by_magnitude: bool = False
-) -> GreatestOfCases | None:
-    """Find the largest value of a number over all cases; None if no case knows it, or if it is 0 in all.
-
-    by_magnitude: whether the magnitude counts and not the signed value
-    """
-    extremes_by_case = {run.name: ends for run in data.runs if (ends := find_extremes(run, path)) is not None}
-    if by_magnitude:
-        extremes_by_case = {case: _use_magnitude(ends) for case, ends in extremes_by_case.items()}
-    known = {case: ends for case, ends in extremes_by_case.items() if isinstance(ends.high.value, float)}
-    if not known:
+def find_greatest_of_cases(data: ReportData, path: str, name: str) -> GreatestOfCases | None:
+    """Find the number of largest magnitude over all cases; None if no case knows it, or if it is noise in all."""
+    best: tuple[float, ReportedRun, CaseExtreme, CaseExtremes] | None = None
+    for run, ends in iter_run_extremes(data, path):
+        for end in (ends.high, ends.low):
+            if isinstance(end.value, float) and (best is None or abs(end.value) > best[0]):
+                best = abs(end.value), run, end, ends
+    if best is None:
         return None
-    case, ends = max(known.items(), key=lambda pair: pair[1].high.value)
-    run = next(run for run in data.runs if run.name == case)
-    unit, size = data.units.find(ends.unit)
-    high = Bound(float(ends.high.value), ends.high.time, case)
-    number_style = choose_family_style(list(known.values()), data, size)
-    if number_style.write(high.value * size) == "0":
+    family = choose_family([best[3]], data)
+    if family.write(best[2].value) == DASH:
         return None
-    is_constant = ends.high.place is None and is_steady(ends, number_style, size)
-    instant = "" if is_constant else format_instant(ends.high.time, run)
-    return GreatestOfCases(
-        name, unit, high, ends.error, number_style, size, format_place_in_unit(ends.high.place, data.units), instant
-    )
-
-
-def _use_magnitude(ends: CaseExtremes) -> CaseExtremes:
-    """Return the extremes with the larger magnitude as maximum."""
-    low, high = ends.low, ends.high
-    if isinstance(low.value, float) and isinstance(high.value, float) and -low.value > abs(high.value):
-        return ends._replace(low=high, high=low._replace(value=-low.value))
-    return ends
+    return GreatestOfCases(name, path, best[1], best[2], best[3], family)
 
 
 def find_uncertain_cases(data: ReportData, path: str) -> list[str]:

@@ -2,70 +2,74 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-import numpy as np
-
-from heuncli.base.method_rows import find_method
-from heuncli.output.client_report.extremes import GreatestOfCases, find_greatest_of_cases, find_uncertain_cases
-from heuncli.output.client_report.load_groups import iter_joining_forces
+from heuncli.output.client_report.extremes import (
+    GreatestOfCases,
+    find_greatest_of_cases,
+    find_uncertain_cases,
+    format_place_in_unit,
+)
+from heuncli.output.client_report.machine import make_drawing_parts
 from heuncli.output.client_report.report_data import ReportData
+from heuncli.output.client_report.summary_table import make_summary_table
 from heuncli.output.documents.document import Facts, Mood, Part, Sentence, join_names
-from heuncli.output.tables.extremes_tables import MARK
 from heuncli.output.tables.impulse_tables import find_largest_impulses
 from heuncli.output.tables.plurals import format_count
-from heuncli.version import VERSION
+from heuncli.study.quantities.captions import describe_object, describe_path
+from heuncli.study.quantities.reader_numbers import choose_reader_style
+
+ASSUMPTIONS = (
+    "Bodies are rigid. Joints are ideal, without clearance, compliance or friction unless the model states otherwise; "
+    "rods are massless. Only gravity and the loads stated in the model act. Numerical errors are below the digits "
+    "shown, unless a ± follows; they do not say how well the model represents the machine."
+)
+NO_CHECKS = "No acceptance checks are defined."
 
 
 def make_first_page(data: ReportData) -> list[Part]:
-    """Make the content below the title."""
-    return [Facts(list(_iter_identity(data))), *make_summary(data)]
+    """Make the content of the first page: title block, machine, verdicts, summary, assumptions, warnings."""
+    summary = make_summary_table(data)
+    return [
+        Facts(list(_iter_identity(data)), is_block=True),
+        Facts(list(_iter_cases(data))),
+        *make_drawing_parts(data),
+        *make_verdicts(data),
+        *([summary] if summary is not None else []),
+        Sentence(ASSUMPTIONS),
+        *_iter_warnings(data),
+    ]
 
 
 def _iter_identity(data: ReportData) -> Iterator[tuple[str, str]]:
-    """Yield the lines that identify the report: project, author, files with digests, cases, options, versions."""
+    """Yield the entries of the title block."""
     imprint = data.imprint
-    for label, text in (("project", imprint.project), ("author", imprint.author), ("date", imprint.date)):
-        if text:
+    for label in ("part", "revision", "author", "date"):
+        if text := getattr(imprint, label):
             yield label, text
-    yield "spec", data.spec.path
-    yield "SHA-256", data.spec.sha256
-    for name, digest in data.digests.items():
-        yield f"file {name}", f"SHA-256 {digest}"
+    yield "model", data.file_name
+
+
+def _iter_cases(data: ReportData) -> Iterator[tuple[str, str]]:
+    """Yield the load cases of the report, and those left out."""
     if data.has_cases:
         yield "load cases", ", ".join(_format_case(run.name, run.title) for run in data.runs)
     if data.omitted_cases:
         yield "not reported", f"load cases {', '.join(data.omitted_cases)}"
-    for text in data.options:
-        yield "option", text
-    yield "solved by", _format_versions(data)
 
 
 def _format_case(name: str, title: str) -> str:
     return f"{name} ({title})" if title and title != name else name
 
 
-def _format_versions(data: ReportData) -> str:
-    """Format the versions of the programs that solved it."""
-    kernels = dict.fromkeys(str(run.results.work.get("kernel", "")) for run in data.runs)
-    parts = [f"heun {VERSION}", *(f"{kernel} kernel" for kernel in kernels if kernel), f"NumPy {np.__version__}"]
-    rows = [find_method(str(run.results.model.get("method", ""))) for run in data.runs]
-    if any(row is not None and row.kind == "SciPy" for row in rows):
-        parts.append(f"SciPy {sys.modules['scipy'].__version__}")
-    return ", ".join(parts)
-
-
-def make_summary(data: ReportData) -> list[Part]:
-    """Make the sentences to be read first: what failed, what is indeterminate, what governs."""
+def make_verdicts(data: ReportData) -> list[Part]:
+    """Make the sentences to be read first: what failed, what is indeterminate, how far sections are used."""
     return [
         *_iter_run_ends(data),
         *_iter_check_results(data),
         *_iter_utilisation(data),
-        *_iter_largest_loads(data),
         *_iter_impact_sentences(data),
         *_iter_open(data),
-        *_iter_warnings(data),
     ]
 
 
@@ -101,7 +105,7 @@ def _iter_check_results(data: ReportData) -> Iterator[Sentence]:
     elif data.unchecked_scenes:
         yield Sentence(f"No result was checked.{_format_unchecked(data)}", "unsure")
     else:
-        yield Sentence("No acceptance checks are defined.", "unsure")
+        yield Sentence(NO_CHECKS)
 
 
 def _format_unchecked(data: ReportData) -> str:
@@ -111,72 +115,35 @@ def _format_unchecked(data: ReportData) -> str:
 
 def _iter_utilisation(data: ReportData) -> Iterator[Sentence]:
     """Yield the sentence on the section with the largest utilisation, and on those that exceed their strength."""
-    paths = {f"sections.{name}.stress.utilisation": name for name in data.runs[0].results.sections}
-    qualifier = _format_qualifier(data, list(paths))
-    utilisations = [
-        spread for path, name in paths.items() if (spread := find_greatest_of_cases(data, path, name)) is not None
+    names = {f"sections.{name}.stress.utilisation": name for name in data.runs[0].results.sections}
+    is_uncertain = any(find_uncertain_cases(data, path) for path in names)
+    found = [
+        greatest for path, name in names.items() if (greatest := find_greatest_of_cases(data, path, name)) is not None
     ]
-    if not utilisations:
-        if qualifier:
+    if not found:
+        if is_uncertain:
             yield Sentence("Utilisation unknown: the section loads are open (indeterminate).", "unsure")
         return
-    over_strength = [spread.name for spread in utilisations if spread.high.value > 1.0]
-    near_strength = [
-        spread.name for spread in utilisations if spread.high.value <= 1.0 < spread.high.value + spread.error
-    ]
-    largest = max(utilisations, key=_value_of_greatest)
-    text = f"Largest utilisation{qualifier}: {largest.format_value()} in section {largest.name}{largest.position_text}."
+    words = {each.name: describe_object("sections", each.name, data.labels) for each in found}
+    over_strength = [words[each.name] for each in found if each.value > 1.0]
+    near_strength = [words[each.name] for each in found if each.value <= 1.0 < each.value + each.ends.error]
+    largest = max(found, key=lambda each: each.value)
+    qualifier = " among known values" if is_uncertain else ""
+    text = f"Largest utilisation{qualifier}: {largest.text} in section {words[largest.name]}"
+    text += f"{_format_position(data, largest)}."
     text += f" Strength exceeded: {join_names(over_strength)}." if over_strength else ""
     text += f" Strength exceeded if the stated error is added: {join_names(near_strength)}." if near_strength else ""
     is_certain = not (qualifier or near_strength) and all(run.is_searched for run in data.runs)
     yield Sentence(text, "bad" if over_strength else "good" if is_certain else "unsure")
 
 
-def _format_qualifier(data: ReportData, paths: Sequence[str]) -> str:
-    """Format the qualifier of a maximum whose candidates include an indeterminate or unknown number; else empty."""
-    return " among known values" if any(find_uncertain_cases(data, path) for path in paths) else ""
-
-
-def _value_of_greatest(spread: GreatestOfCases) -> float:
-    return spread.high.value
-
-
-def _iter_largest_loads(data: ReportData) -> Iterator[Sentence]:
-    """Yield the sentences on the largest joint force, the largest force between bodies if that is larger, and the
-    foundation.
-    """
-    foundation_force = find_greatest_of_cases(data, "foundation.force", "the foundation")
-    paths = dict(iter_joining_forces(data))
-    joints = [path for path in paths if path.startswith("joints.") and path.endswith(".force")]
-    largest_so_far: GreatestOfCases | None = None
-    for load_name, some_paths in (("joint force", joints), ("force between bodies", list(paths))):
-        candidates = [
-            spread
-            for path in some_paths
-            if (spread := find_greatest_of_cases(data, path, paths[path], by_magnitude=True)) is not None
-        ]
-        largest = max(candidates, key=_value_of_greatest, default=None)
-        if largest is not None and (
-            largest_so_far is None or largest.high.value > largest_so_far.high.value + largest_so_far.error
-        ):
-            largest_so_far, qualifier = largest, _format_qualifier(data, some_paths)
-            yield Sentence(
-                f"Largest {load_name}{qualifier}: {largest.format_value()} in {largest.name}{largest.position_text}."
-            )
-            yield from _iter_friction_notes(data, largest)
-    if foundation_force is not None:
-        qualifier = _format_qualifier(data, ["foundation.force"])
-        yield Sentence(
-            f"Largest force on the foundation{qualifier}: "
-            f"{foundation_force.format_value()}{foundation_force.position_text}."
-        )
-
-
-def _iter_friction_notes(data: ReportData, largest: GreatestOfCases) -> Iterator[Sentence]:
-    """Yield a sentence if smoothed friction has not reached its full value at the instant of a maximum."""
-    run = next((run for run in data.runs if run.name == largest.high.case), None)
-    if run is not None and largest.instant and largest.high.time in run.uncertain_instants.instants:
-        yield Sentence(f"There, {run.uncertain_instants.note.removeprefix(f'{MARK} ')}.", "unsure")
+def _format_position(data: ReportData, greatest: GreatestOfCases) -> str:
+    """Format the place, instant and case of a number, as the end of a sentence."""
+    place = format_place_in_unit(greatest.extreme.place, data.units)
+    parts = [f"at s = {place}"] if place else []
+    parts += [f"at t = {greatest.instant} s"] if greatest.instant else []
+    parts += [f"in case {greatest.run.name}"] if greatest.run.name else []
+    return "".join(f", {part}" for part in parts)
 
 
 def _iter_impact_sentences(data: ReportData) -> Iterator[Sentence]:
@@ -186,24 +153,25 @@ def _iter_impact_sentences(data: ReportData) -> Iterator[Sentence]:
         impacts = [impact for impact in run.results.impulses if horizon is None or float(impact["time"]) < horizon]
         if not impacts:
             continue
-        unit, size = data.units.find("N·s")
-        largest = size * max(find_largest_impulses(impact, data.labels)[0] for impact in impacts)
+        largest = max(find_largest_impulses(impact, data.labels)[0] for impact in impacts)
+        style = choose_reader_style("N·s", largest, data.units)
         text = (
             f"{format_count(len(impacts), 'impulse')}; largest impulse at a joint, on the ground or of "
             "all bodies together:"
         )
-        yield Sentence(f"{f'Case {run.name}: ' if run.name else ''}{text} {largest:.6g} {unit}.")
+        yield Sentence(f"{f'Case {run.name}: ' if run.name else ''}{text} {style.write(largest)} {style.unit}.")
 
 
 def _iter_open(data: ReportData) -> Iterator[Sentence]:
-    """Yield the sentences on the load components that are indeterminate."""
+    """Yield the sentences on the load components that are indeterminate, by the objects that have them."""
     paths = list(dict.fromkeys(path for run in data.runs for path in run.snapshot.open))
     if paths:
+        objects = dict.fromkeys(describe_path(path, data.labels).partition(", ")[0] for path in paths)
         text = (
             f"Indeterminate: {format_count(len(paths), 'load component')} (open). The constraints are redundant, so "
             "the distribution depends on stiffness"
         )
-        yield Sentence(f"{text} ({join_names(paths)}).", "unsure")
+        yield Sentence(f"{text} ({join_names(list(objects))}).", "unsure")
     splits = dict.fromkeys(run.results.model["split"] for run in data.runs if run.results.model.get("split"))
     for split in splits:
         yield Sentence(
@@ -222,5 +190,6 @@ def _iter_warnings(data: ReportData) -> Iterator[Sentence]:
             if text not in spec_messages:
                 case_names.setdefault(text, []).append(run.name)
     for text, names in case_names.items():
-        case = f" (case {join_names(names)})" if any(names) else ""
+        is_in_all = len(set(names)) == len(data.runs) > 1
+        case = " (all cases)" if is_in_all else f" (case {join_names(names)})" if any(names) else ""
         yield Sentence(f"Warning: {text}{case}", "unsure")

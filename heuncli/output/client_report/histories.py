@@ -1,70 +1,166 @@
-"""The chapter of histories: the most loaded joints over time, in the cases that govern them."""
+"""The chapter of histories: the most loaded joints, couplings and forces over time or over the crank angle."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 
-from heuncli.output.client_report.extremes import find_governing
-from heuncli.output.client_report.report_data import ReportData, ReportedRun
+import numpy as np
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import record
+from heuncli.output.client_report.extremes import GreatestOfCases, choose_family, find_extremes, format_instant
+from heuncli.output.client_report.machine import HALF_WIDTH
+from heuncli.output.client_report.report_data import AT_WORST, ReportData, ReportedRun
+from heuncli.output.client_report.summary_table import SummaryLine, find_crank, find_summary_lines
 from heuncli.output.documents.document import Drawing, Part
-from heuncli.output.drawing.figure import Figure, share_x_axis
-from heuncli.output.figures.courses import FigureSource
-from heuncli.output.figures.histories import make_history
-from heuncli.output.snapshots.envelopes import Bound
+from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, Trace
+from heuncli.output.drawing.ticks import choose_ends
+from heuncli.output.figures.courses import choose_instants, is_claimed
+from heuncli.results.results import Array, Results
+from heuncli.results.results_paths import find_values
+from heuncli.study.quantities.captions import describe_object, describe_path
+from heuncli.study.quantities.labels import Labels
 
-MAX_JOINTS = 3  # joints in a figure
-MAX_CURVES = 4  # cases in one panel
+MAX_PANELS = 6
+MAX_CURVES = 4  # cases in one panel; of more, the governing one
+MAX_ALIKE = 4  # names in a title
+ALIKE = 0.01  # of their greatest value: loads whose extremes agree to it share a panel
+MAX_SEARCH_INSTANTS = 400  # of the search's instants in a curve
+HEIGHT = 125.0  # pixels
+MARGIN = 0.12  # above a curve, for its words
+
+
+class SharedPanel(NamedTuple):
+    """A load with a panel, and the names of others whose extremes agree with its own."""
+
+    greatest: GreatestOfCases
+    names: Sequence[str]
+
+
+@record
+class RunCourse:
+    """The loads of a run over its instants."""
+
+    run: ReportedRun
+    crank: str | None
+
+    @cached_property
+    def times(self) -> Array:
+        """The instants of the curves, (n,): with those of all extremes."""
+        times = np.concatenate([choose_instants(self.run.study, MAX_SEARCH_INSTANTS), self.run.worst_times])
+        horizon = self.run.results.horizon
+        return np.unique(times if horizon is None else times[times < horizon])
+
+    @cached_property
+    def results(self) -> Results:
+        """The results there, solved in one call."""
+        return self.run.study.compute_reports(self.times, AT_WORST)
+
+    @cached_property
+    def x(self) -> Array:
+        """The angle of the turning joint in degrees, or the time."""
+        if self.crank is None:
+            return self.times
+        return np.asarray(np.degrees(self.results.coordinates[self.crank]["angle"]))
+
+    def find_numbers(self, path: str) -> Array:
+        """Return the number at a path, of a vector its magnitude, (n,)."""
+        values = np.asarray(find_values(self.results, path).values)
+        return np.asarray(values if values.ndim == 1 else np.sqrt(np.einsum("nk,nk->n", values, values)))
 
 
 def make_history_parts(data: ReportData) -> list[Part]:
-    """Make the figures of the joints with the largest forces and of the one with the largest moment.
-
-    A few cases share one figure. If there are many, each case that governs one of these loads gets its own figure.
-    """
-    governed_paths = list(_choose_paths(data))
-    moving = [run for run in data.runs if len(run.results.time) > 1]
-    if not governed_paths or not moving:
+    """Make a panel for each of the most loaded objects, with a curve for each case."""
+    moving = [run for run in data.runs if len(run.results.time) > 1 and is_claimed(run.study)]
+    shared = _share_panels([line for line in find_summary_lines(data) if line.greatest is not None])
+    if not moving or not shared:
         return []
-    if 1 < len(moving) <= MAX_CURVES:
-        figure = _make_figure(data, moving, [path for path, _ in governed_paths])
-        return [Drawing(figure, "Most heavily loaded joints over time, all load cases: magnitudes")]
+    crank = find_crank(data)
+    courses = {run.name: RunCourse(run, crank) for run in moving}
     parts: list[Part] = []
-    for run in moving:
-        paths = [path for path, case in governed_paths if case == run.name]
-        if paths:
-            case = f", load case {run.name}" if run.name else ""
-            parts.append(
-                Drawing(_make_figure(data, [run], paths), f"Most heavily loaded joints over time{case}: magnitudes")
-            )
+    for panel in shared[:MAX_PANELS]:
+        shown = [courses[run.name] for run in moving] if len(moving) <= MAX_CURVES else []
+        shown = shown or [courses[panel.greatest.run.name]]
+        figure = _make_figure(data, panel.greatest, shown, crank)
+        parts.append(Drawing(figure, _make_caption(data, panel), HALF_WIDTH, "half"))
     return parts
 
 
-def _make_figure(data: ReportData, runs: Sequence[ReportedRun], paths: Sequence[str]) -> Figure:
-    """Make a figure with one panel per path, so that similar histories can be distinguished, and one curve per case."""
-    names = [run.name for run in runs] if len(runs) > 1 else [""]
-    sources = [FigureSource(name, run.study) for name, run in zip(names, runs, strict=True)]
-    figures = [make_history(sources, [path], data.units) for path in paths]
-    panels = [figure.panels[0]._replace(title=path) for figure, path in zip(figures, paths, strict=True)]
-    notes = dict.fromkeys(note for figure in figures for note in figure.notes)
-    pens = [pen for _, pen in figures[0].legend]
-    legend = list(zip(names, pens, strict=True)) if len(runs) > 1 else []
-    return Figure("", (), share_x_axis(panels), legend, list(notes))
+def _share_panels(lines: Sequence[SummaryLine]) -> list[SharedPanel]:
+    """Give each load a panel that varies; those with equal extremes share one."""
+    panels: list[SharedPanel] = []
+    for line in lines:
+        greatest = line.greatest
+        if greatest is None or greatest.is_steady:
+            continue
+        same = next((k for k, panel in enumerate(panels) if _are_alike(panel.greatest, greatest)), None)
+        if same is None:
+            panels.append(SharedPanel(greatest, [line.name, *line.alike]))
+        else:
+            panels[same] = panels[same]._replace(names=[*panels[same].names, line.name, *line.alike])
+    return panels
 
 
-def _choose_paths(data: ReportData) -> Iterator[tuple[str, str]]:
-    """Choose the paths of the largest forces and of the largest moment, each with the case that governs it."""
-    for quantity, count in (("force", MAX_JOINTS), ("moment", 1)):
-        bounds = [(f"joints.{name}.{quantity}", bound) for name, bound in _iter_bounds(data, quantity)]
-        bounds.sort(key=lambda pair: -pair[1].value)
-        yield from ((path, (bound.governing or bound.similar)[0]) for path, bound in bounds[:count])
+def _are_alike(first: GreatestOfCases, second: GreatestOfCases) -> bool:
+    """Return whether two loads have the same case and the same least and greatest magnitudes."""
+    if first.run is not second.run or first.ends.unit != second.ends.unit:
+        return False
+    (low, high), (other_low, other_high) = (sorted(map(abs, each.ends.values)) for each in (first, second))
+    return abs(high - other_high) <= ALIKE * high and abs(low - other_low) <= ALIKE * high
 
 
-def _iter_bounds(data: ReportData, quantity: str) -> Iterator[tuple[str, Bound]]:
-    """Yield the joints whose load is known and larger than its error, each with its maximum."""
-    governing_bounds = find_governing(data)
-    for name in data.runs[0].results.joints:
-        path = f"joints.{name}.{quantity}"
-        bound = governing_bounds.find_greatest(path)
-        errors = [run.snapshot.numbers[path].error for run in data.runs if path in run.snapshot.numbers]
-        if bound is not None and bound.value > max(errors, default=0.0):
-            yield name, bound
+def _make_caption(data: ReportData, panel: SharedPanel) -> str:
+    """Make the caption: what is drawn, and what else is alike."""
+    words = describe_load(panel.greatest.path, data.labels)
+    names = panel.names[1:]
+    if not names:
+        return words
+    more = f" and {len(names) - MAX_ALIKE} more" if len(names) > MAX_ALIKE else ""
+    return f"{words} (alike: {', '.join(names[:MAX_ALIKE])}{more})"
+
+
+def describe_load(path: str, labels: Labels) -> str:
+    """Describe the path of a load in words; of a coupling's load on a body: that body."""
+    kind, name, *rest = path.split(".")
+    if kind == "couplings" and rest[:1] == ["on"]:
+        body = describe_object("bodies", rest[1], labels)
+        return f"{describe_object(kind, name, labels)}, {' '.join(rest[2:])} on {body}"
+    return describe_path(path, labels)
+
+
+def _make_figure(
+    data: ReportData, greatest: GreatestOfCases, courses: Sequence[RunCourse], crank: str | None
+) -> Figure:
+    """Make the figure of one load in some cases."""
+    style = choose_family([greatest.ends], data).style
+    curves = [style.size * course.find_numbers(greatest.path) for course in courses]
+    known = np.concatenate([curve[np.isfinite(curve)] for curve in curves])
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    x_values = np.concatenate([course.x for course in courses])
+    x_label = "t [s]" if crank is None else "angle [°]"
+    x = Scaling(x_label, *choose_ends(float(x_values.min()), float(x_values.max()), margin=0.0))
+    y_low, y_high = choose_ends(min(low, 0.0), max(high, 0.0), margin=MARGIN)
+    y = Scaling(f"[{style.unit}]", min(y_low, 0.0) if low < 0.0 else 0.0, y_high)
+    items: list[Item] = [Trace(course.run.case_label, course.x, curve, k)
+                         for k, (course, curve) in enumerate(zip(courses, curves, strict=True))]  # fmt: skip
+    items += _mark_greatest(data, greatest, courses, crank)
+    legend = [(course.run.case_label, k) for k, course in enumerate(courses)] if data.has_cases else []
+    return Figure("", (), [Panel(x, y, tuple(items), HEIGHT)], legend)
+
+
+def _mark_greatest(
+    data: ReportData, greatest: GreatestOfCases, courses: Sequence[RunCourse], crank: str | None
+) -> Iterator[Spot]:
+    """Mark the greatest value of all cases with its instant or angle."""
+    for k, course in enumerate(courses):
+        ends = find_extremes(course.run, greatest.path)
+        time = greatest.extreme.time
+        if course.run is not greatest.run or ends is None or time is None:
+            continue
+        value = greatest.family.style.size * greatest.value
+        x = float(course.x[int(np.argmin(np.abs(course.times - time)))])
+        where = f"{x:.0f}°" if crank is not None else f"{format_instant(time, course.run)} s"
+        if math.isfinite(value):
+            yield Spot(x, value, f"{greatest.family.style.write(greatest.value)} at {where}", k, is_filled=True)

@@ -11,6 +11,7 @@ from heuncli.output.tables.table_blocks import format_component
 from heuncli.output.tables.table_plans import TablePlan
 from heuncli.results.results import Results
 from heuncli.results.results_schema import MAGNITUDES, XYZ
+from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import FAMILIES
 
 MAGNITUDE_LABELS = {"force": "|F|", "moment": "|M|"}  # of a vector
@@ -33,11 +34,12 @@ class LoadNumber(NamedTuple):
 
 
 class LoadGroup(NamedTuple):
-    """The numbers of one object, with its name and the note next to it."""
+    """The numbers of one object, with its words and the note next to it; key: its name in the spec."""
 
     name: str
     note: str
     rows: Sequence[LoadNumber]
+    key: str = ""
 
 
 def iter_groups(data: ReportData, plan: TablePlan) -> Iterator[LoadGroup]:
@@ -46,7 +48,8 @@ def iter_groups(data: ReportData, plan: TablePlan) -> Iterator[LoadGroup]:
     for name, prefix in _iter_objects(results, plan):
         rows = list(_iter_numbers(data, prefix, plan.quantities))
         if rows:
-            yield LoadGroup(name, plan.note(name, data.labels), rows)
+            words = name if plan.is_foundation else describe_object(plan.kind, name, data.labels)
+            yield LoadGroup(words, plan.note(name, data.labels), rows, name)
 
 
 def _iter_objects(results: Results, plan: TablePlan) -> Iterator[tuple[str, str]]:
@@ -71,37 +74,64 @@ def _iter_numbers(data: ReportData, prefix: str, quantities: Sequence[str]) -> I
             if is_vector:
                 yield LoadNumber(format_component(f"{quantity}.{axis}"), component, family, vector=path)
         if is_vector:
-            yield LoadNumber(MAGNITUDE_LABELS[quantity], path, family, is_magnitude=True, vector=path)
+            yield LoadNumber(
+                MAGNITUDE_LABELS.get(quantity, f"|{quantity}|"), path, family, is_magnitude=True, vector=path
+            )
         elif path in numbers:
-            yield LoadNumber(quantity, path, family, quantity in MAGNITUDES)
+            yield LoadNumber(quantity.replace("_", " "), path, family, quantity in MAGNITUDES)
 
 
-def iter_joining_forces(data: ReportData) -> Iterator[tuple[str, str]]:
-    """Yield the forces of all that joins bodies, each with its name: joints, drives, stops, couplings, loads between
+class LoadedObject(NamedTuple):
+    """Something that carries a load between bodies: its words, its type where the words do not tell it, and the paths
+    of the loads of which the largest counts.
+    """
+
+    name: str
+    type: str
+    paths: Sequence[str]
+
+
+def iter_loaded_objects(data: ReportData) -> Iterator[LoadedObject]:
+    """Yield all that joins bodies, each with the paths of its loads: joints, drives, stops, couplings, loads between
     bodies.
 
     For a coupling these are the force that it carries and the one it exerts ON each body: a sheave takes both spans of
     rope.
     """
+    objects: dict[tuple[str, str], list[str]] = {}
     units = {path: number.unit for run in data.runs for path, number in run.snapshot.numbers.items()}
     for path, unit in units.items():
         kind, _, rest = path.partition(".")
         name, _, quantity = rest.partition(".")
-        if unit != "N" or (path.rpartition(".")[0] in units and path.rpartition(".")[2] in XYZ):
+        if unit not in ("N", "N·m") or (path.rpartition(".")[0] in units and path.rpartition(".")[2] in XYZ):
             continue
-        if kind == "joints" and quantity in ("force", "drive"):
-            yield path, name if quantity == "force" else f"the drive of {name}"
-        elif kind == "stops" and quantity == "force":
-            yield path, f"stop {name}"
-        elif kind == "couplings" and (
-            quantity in CARRIED_FORCES or (quantity.startswith("on.") and quantity.endswith(".force"))
-        ):
-            loaded_body = quantity.removeprefix("on.").removesuffix(".force") if quantity.startswith("on.") else ""
-            yield path, f"coupling {name}{f' on {loaded_body}' if loaded_body else ''}"
-        elif kind == "forces" and quantity in ("force", "value"):
-            info = data.labels.forces.get(name)
-            if info is not None and not LOAD_KINDS[info.type].is_external:
-                yield path, f"{LOAD_KINDS[info.type].display_name} {name}"
+        if _is_joining_load(data, kind, name, quantity, unit):
+            objects.setdefault((f"{kind}.drive" if quantity == "drive" else kind, name), []).append(path)
+    for (kind, name), paths in objects.items():
+        words = describe_object(kind.removesuffix(".drive"), name, data.labels)
+        type_name = "drive" if kind.endswith(".drive") else _name_type(data, kind, name)
+        yield LoadedObject(words, "" if type_name in words else type_name, paths)
+
+
+def _name_type(data: ReportData, kind: str, name: str) -> str:
+    """Return the type of a coupling or force in words, which its name may not tell."""
+    if kind == "couplings":
+        return str(getattr(data.spec.couplings.get(name), "type", "")).replace("_", " ")
+    info = data.labels.forces.get(name) if kind == "forces" else None
+    return LOAD_KINDS[info.type].display_name if info is not None else ""
+
+
+def _is_joining_load(data: ReportData, kind: str, name: str, quantity: str, unit: str) -> bool:
+    """Return whether a quantity is the load that a joint, stop, coupling or force carries between bodies."""
+    if kind == "joints":
+        return quantity == "drive" or (quantity == "force" and unit == "N")
+    if kind == "stops":
+        return quantity in ("force", "moment")
+    if kind == "couplings":
+        is_on_body = quantity.startswith("on.") and quantity.endswith(".force")
+        return unit == "N" and (quantity in CARRIED_FORCES or is_on_body)
+    info = data.labels.forces.get(name) if kind == "forces" else None
+    return info is not None and quantity in ("force", "value") and not LOAD_KINDS[info.type].is_external
 
 
 def drop_components(group: LoadGroup) -> LoadGroup:

@@ -1,38 +1,126 @@
-"""The chapters on the machine: its figure, and the model in words."""
+"""The machine on the first page, and the chapter on its model: bodies, joints and loads as tables."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Sequence
 
+import numpy as np
+
+from heuncli.base.load_kinds import LOAD_KINDS
+from heuncli.output.client_report.extremes import DASH, MINUS, format_instant
 from heuncli.output.client_report.report_data import ReportData
-from heuncli.output.documents.document import Drawing, Part, Sentence
+from heuncli.output.client_report.summary_table import find_worst_instant
+from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable, Part, Sentence, TextCell, append_unit
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.scenes import make_scene_figure
-from heuncli.output.tables.model_text import make_description_parts
-from heuncli.study.workflow import describe
+from heuncli.output.machine_geometry.poses import Poses, extract_poses
+from heuncli.output.tables.plurals import format_count
+from heuncli.results.results import Array
+from heuncli.results.results_schema import XYZ
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.reader_numbers import choose_reader_style
 
-ASSUMPTIONS = (
-    "Bodies are rigid. Joints are ideal, without clearance, compliance or friction unless the spec states otherwise; "
-    "rods are massless. Only gravity and the loads stated in the spec act."
-)
-DESCRIBED_KEYS = ("names", "notes")  # keys of a model's description that results do not have
+SHEET_WIDTH = 672.0  # pixels: the width of an A4 sheet without its margins
+HALF_WIDTH = 330.0
+FIRST_HEIGHT = 330.0  # pixels of the machine on the first page
+NO_POSITIONS = "No positions are claimed: all output times are past the horizon."
+BODIES_HEADING = "BODIES  mass and centre of mass at the first instant"
+JOINTS_HEADING = "JOINTS  with their points at the first instant"
 
 
-def make_drawing_parts(data: ReportData) -> list[Part]:
-    """Make the figure of the machine at the first instant of the first case."""
-    run = data.runs[0]
+def make_drawing_parts(data: ReportData, *, is_first_page: bool = True) -> list[Part]:
+    """Make the figure of the machine at the instant of the greatest force; on the first page it is smaller."""
+    run, time = find_worst_instant(data)
     if not is_claimed(run.study):
-        return [Sentence("No positions are claimed: all output times are past the horizon.")]
+        return [Sentence(NO_POSITIONS)]
     case = f", load case {run.name}" if run.name else ""
-    figure = make_scene_figure(FigureSource("", run.study), data.units)._replace(title="")
-    return [Drawing(figure, f"The machine at the start{case}")]
+    times = None if time is None or run.study.has_one_instant else np.array([time])
+    figure = make_scene_figure(FigureSource("", run.study), data.units, times)
+    if is_first_page:
+        panels = [panel._replace(height=min(panel.height, FIRST_HEIGHT)) for panel in figure.panels]
+        figure = figure._replace(panels=panels)
+    figure = figure._replace(title="", words=())
+    instant = format_instant(time, run)
+    where = f" at the instant of the greatest force, t = {instant} s" if instant else ""
+    return [Drawing(figure, f"The machine{where}{case}", SHEET_WIDTH, "first" if is_first_page else "")]
 
 
 def make_model_parts(data: ReportData) -> list[Part]:
-    """Make the description of the model that was solved, in the words of `heun model`."""
-    study = data.runs[0].study
-    description = describe(study.spec, reduce=data.reduce)
-    # as it was solved
-    model: Mapping[str, Any] = study.results.model | {key: description[key] for key in DESCRIBED_KEYS}
-    return [Sentence(ASSUMPTIONS), *make_description_parts(model)]
+    """Make the tables of bodies, joints and loads, and the degrees of freedom of the model."""
+    run = data.runs[0]
+    poses = extract_poses(run.worst_results)
+    tables = [_make_body_table(data, poses), _make_joint_table(data, poses), _make_force_table(data)]
+    model = run.results.model
+    counts = [format_count(int(model["freedoms"]), "degree of freedom")] if "freedoms" in model else []
+    redundant = model.get("redundant")
+    counts += [format_count(redundant, "redundant constraint")] if isinstance(redundant, int) and redundant else []
+    space = "Planar model" if "planar" in str(model.get("space", "")) else "Model in space"
+    return [Sentence(f"{', '.join([space, *counts])}."), *(table for table in tables if table is not None)]
+
+
+def _make_body_table(data: ReportData, poses: Poses) -> OutputTable | None:
+    """Make the table of the bodies of the model as it was solved."""
+    bodies = [body for body in data.runs[0].study.setup.scene.mechanism.bodies if body.name in poses.positions]
+    if not bodies:
+        return None
+    unit, size = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
+    columns = [OutputColumn("", "text"), OutputColumn("mass [kg]"), *(OutputColumn(f"{a} [{unit}]") for a in XYZ)]
+    rows = []
+    for body in bodies:
+        place = poses.locate_points(body.name, np.asarray(body.center, dtype=np.float64), 0)
+        mass = choose_reader_style("kg", float(body.mass), data.units).write(float(body.mass))
+        name = describe_object("bodies", body.name, data.labels)
+        rows.append([TextCell(name), TextCell(mass), *_make_place_cells(place, size, unit)])
+    return OutputTable(BODIES_HEADING, columns, rows, (), "page")
+
+
+def _make_joint_table(data: ReportData, poses: Poses) -> OutputTable | None:
+    """Make the table of the joints with their kinds, bodies and places."""
+    joints = data.runs[0].study.spec.joints
+    if not joints:
+        return None
+    unit, size = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
+    columns = [OutputColumn(head, "text") for head in ("", "kind", "between")]
+    columns += [OutputColumn(f"{axis} [{unit}]") for axis in XYZ]
+    rows = []
+    for name, joint in joints.items():
+        known = joint.b in poses.positions or joint.b == "ground"
+        place = poses.locate_points(joint.b, np.asarray(joint.q, dtype=np.float64), 0) if known else np.full(3, np.nan)
+        bodies = " and ".join(describe_object("bodies", body, data.labels) for body in (joint.a, joint.b))
+        words = (describe_object("joints", name, data.labels), joint.kind, bodies)
+        rows.append([*map(TextCell, words), *_make_place_cells(place, size, unit)])
+    return OutputTable(JOINTS_HEADING, columns, rows, (), "page")
+
+
+def _make_force_table(data: ReportData) -> OutputTable | None:
+    """Make the table of forces, drives and parameters with the values that the model gives them."""
+    rows = [[TextCell(text) for text in row] for row in _iter_loads(data)]
+    columns = [OutputColumn(head, "text") for head in ("", "kind", "acts on")]
+    return OutputTable("LOADS AND DRIVES", columns, rows, (), "page") if rows else None
+
+
+def _iter_loads(data: ReportData) -> Iterator[Sequence[str]]:
+    """Yield gravity, the forces and the drives of the model."""
+    spec = data.spec
+    size = float(np.linalg.norm(spec.gravity))
+    if size > 0.0:
+        direction = " ".join(f"{part:.4g}".replace("-", MINUS) for part in spec.gravity)
+        yield "gravity", append_unit(direction, "m/s²"), "all bodies"
+    for name, force in spec.forces.items():
+        ends = [getattr(force, key, None) for key in ("from_", "to")]
+        bodies = [describe_object("bodies", end.body, data.labels) for end in ends if end is not None]
+        joint, body = getattr(force, "joint", None), getattr(force, "body", None)
+        place = " and ".join(bodies) or (joint and f"joint {joint}") or (body if isinstance(body, str) else "")
+        yield describe_object("forces", name, data.labels), LOAD_KINDS[force.type].display_name, str(place)
+    for name, drive in spec.drives.items():
+        yield name, "drive", f"joint {describe_object('joints', drive.joint, data.labels)}"
+
+
+def _make_place_cells(place: Array, size: float, unit: str) -> list[TextCell]:
+    """Make the cells of a place; a tenth of a millimetre counts."""
+    decimals = 1 if unit == "mm" else 4
+    texts = []
+    for value in (size * place).tolist():
+        text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
+        texts.append(DASH if text == "nan" else "0" if text in ("-0", "") else text.replace("-", MINUS))
+    return [TextCell(text) for text in texts]

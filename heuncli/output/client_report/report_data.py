@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
+import numpy as np
+
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.snapshots.envelopes import NumberEnvelope, make_envelope
@@ -12,7 +14,8 @@ from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants
 from heuncli.output.tables.page import Page
-from heuncli.results.results import Results
+from heuncli.results.results import Array, Results
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.smoothed_friction import make_partial_note
 from heuncli.study.quantities.labels import Labels
@@ -22,6 +25,12 @@ from heuncli.study.queries.study import Study
 
 AS_IT_STANDS = "base model"  # the scene without the values of a case
 LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "events"})
+CHAPTER_NAMES = (
+    "machine", "loads", "sections", "histories", "polar", "events", "checks", "open", "model", "accuracy", "spec",
+)  # fmt: skip
+ON_REQUEST = frozenset({"machine", "spec"})  # chapters that are printed only by name
+AT_WORST = frozenset({"motion", "foundation", "joints", "forces"})  # computed at the instants of extremes
+KINDS_AT_WORST = ("foundation.force", "foundation.moment", "joints.", "forces.", "couplings.", "stops.")
 
 
 @record
@@ -52,18 +61,49 @@ class ReportedRun:
         partial = find_partial_friction(self.study, [t for t in times if t is not None])
         return DoubtfulInstants.with_reason(partial, make_partial_note(partial)) if partial else NO_DOUBT
 
+    @cached_property
+    def worst_times(self) -> Array:
+        """The instants of the extremes of forces and moments, (n,) ascending."""
+        numbers = (n for path, n in self.snapshot.numbers.items() if path.startswith(KINDS_AT_WORST))
+        times = {t for number in numbers for t in (number.least_at, number.greatest_at) if t is not None}
+        return np.array(sorted({float(self.results.time[0]), *times}))
+
+    @cached_property
+    def worst_results(self) -> Results:
+        """The results at these instants, solved in one call."""
+        if self.study.has_one_instant:
+            return self.results
+        return self.study.compute_reports(self.worst_times, AT_WORST)
+
+    def find_index(self, time: float | None) -> int:
+        """Find the number of one of these instants; None: the first of the run."""
+        if time is None or self.study.has_one_instant:
+            return 0
+        return int(np.argmin(np.abs(self.worst_times - time)))
+
+    def find_vector(self, path: str, time: float | None) -> Array:
+        """Return the vector (3,) at a path at the instant of one of the extremes."""
+        return np.asarray(find_values(self.worst_results, path).values[self.find_index(time)])
+
     @property
     def case_label(self) -> str:
         """The name of the case as it is shown."""
-        return self.name or AS_IT_STANDS
+        return self.name.replace("_", " ") or AS_IT_STANDS
 
 
 class Imprint(NamedTuple):
-    """Entries of the first page that the user states; those not given are left out."""
+    """Entries of the title block that the user states; those not given are left out.
 
-    date: str = ""
-    author: str = ""
+    logo: a data URI
+    """
+
+    company: str = ""
     project: str = ""
+    part: str = ""
+    revision: str = ""
+    author: str = ""
+    date: str = ""
+    logo: str = ""
 
 
 @record
@@ -78,6 +118,7 @@ class ReportData:
     options: the values of --set and of the solver's options
     omitted_cases: load cases of the spec that were not requested
     unchecked_scenes: scenes with expected values that were not solved
+    chapters: names of those that are printed, in their order; none: all but the spec
     """
 
     spec: Spec
@@ -91,6 +132,7 @@ class ReportData:
     reduce: bool
     units: Units
     imprint: Imprint
+    chapters: Sequence[str] = ()
 
     @cached_property
     def envelope(self) -> list[NumberEnvelope]:
@@ -101,6 +143,11 @@ class ReportData:
     def labels(self) -> Labels:
         """The kinds of all named objects."""
         return self.runs[0].page.labels
+
+    @property
+    def file_name(self) -> str:
+        """The name of the spec's file, without folders."""
+        return self.spec.path.replace("\\", "/").rpartition("/")[2]
 
     @property
     def has_cases(self) -> bool:

@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.cases_table import has_instants, make_cases_table
 from heuncli.output.client_report.extremes import (
     CaseExtremes,
-    choose_family_style,
+    Family,
+    choose_family,
     find_governing,
     find_uncertain_cases,
-    format_extreme,
     format_instant,
     format_place_in_unit,
-    is_steady,
     iter_run_extremes,
 )
 from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
+from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable, Part, Sentence, TextCell, join_names
+from heuncli.output.drawing.figure import Figure, Panel, Spot
 from heuncli.output.figures.courses import FigureSource, is_claimed
-from heuncli.output.figures.diagrams import make_diagrams
+from heuncli.output.figures.diagrams import BAND_SENTENCE, make_diagrams
 from heuncli.output.tables.table_plans import SECTIONS
 from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES
+from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import FAMILIES
-from heuncli.study.quantities.digits import format_error
 
 UTIL_NOTE = (
     "utilisation: largest von Mises stress (mises) divided by the given strength; above 1 the section is overloaded"
@@ -35,6 +37,7 @@ UNCERTAIN_NOTE = "{}: open or unknown{}, where it may be larger"
 LARGEST_NOTE = "bold: section with the highest utilisation"
 GOVERNING_QUANTITIES = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # in order of priority
 MAX_DIAGRAMS = 12
+PANEL_HEIGHT = 90.0  # pixels
 NO_STRENGTH = "not given"
 
 
@@ -56,17 +59,49 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
         if not is_claimed(run.study):
             yield Sentence(f"{name} has no diagram: all output times are past the horizon.")
             continue
-        figure = make_diagrams([FigureSource("", run.study)], [name], data.units)._replace(title="")
+        figure = make_diagrams([FigureSource("", run.study)], [name], data.units)
+        figure = figure._replace(title="", words=())
         case = f", load case {run.name}" if run.name else ""
-        yield Drawing(
-            figure,
-            f"Section {name}{case}{_format_open_cases(data, name)}: force of the far side on the "
-            "near side of the cut; N > 0 tension",
+        words = describe_object("sections", name, data.labels)
+        band = f". {BAND_SENTENCE[0].upper()}{BAND_SENTENCE[1:]}" if len(run.results.time) > 1 else ""
+        axes = data.labels.sections[name].first_axis if name in data.labels.sections else ""
+        caption = (
+            f"Section {words}{case}{_format_open_cases(data, name)}: force of the far side on the "
+            f"near side of the cut, N > 0 tension{f', e1 = {axes}' if axes else ''}{band}"
         )
+        halves = _split_panels(figure)
+        yield from (Drawing(half, "", HALF_WIDTH, "half") for half in halves)
+        yield Sentence(caption)
     if len(cut_runs) > len(drawn_runs):
         yield Sentence(
             f"{len(cut_runs) - len(drawn_runs)} further sections are not shown: heun plot SPEC sections.NAME"
         )
+
+
+def _split_panels(figure: Figure) -> list[Figure]:
+    """Split the panels of a bar into two columns: forces at the left, moments at the right, each with the sketch of
+    the bar if there is one.
+    """
+    sketch = [panel for panel in figure.panels if panel.is_bare]
+    panels = [_shorten_panel(panel) for panel in figure.panels if not panel.is_bare]
+    middle = (len(panels) + 1) // 2
+    halves = [half for half in (panels[:middle], panels[middle:]) if half]
+    return [
+        figure._replace(
+            panels=[*sketch, *half[:-1], half[-1]._replace(x=half[-1].x._replace(hides_label=False))],
+            notes=figure.notes if k == 0 else (),
+        )
+        for k, half in enumerate(halves)
+    ]
+
+
+def _shorten_panel(panel: Panel) -> Panel:
+    """Return a panel for half the width, whose marks have their values alone; places and instants are in the table."""
+    items = [
+        item._replace(text=item.text.partition(" at ")[0], note="") if isinstance(item, Spot) else item
+        for item in panel.items
+    ]
+    return panel._replace(height=min(panel.height, PANEL_HEIGHT), title="", items=tuple(items))
 
 
 def _format_open_cases(data: ReportData, name: str) -> str:
@@ -127,7 +162,7 @@ def _make_group(data: ReportData, name: str) -> LoadGroup:
         for quantity, path in paths
         if any(True for _ in iter_run_extremes(data, path))
     ]
-    return LoadGroup(name, SECTIONS.note(name, data.labels), rows)
+    return LoadGroup(describe_object("sections", name, data.labels), SECTIONS.note(name, data.labels), rows, name)
 
 
 class SectionUtilisation(NamedTuple):
@@ -156,10 +191,10 @@ def _iter_stress_table(data: ReportData, names: list[str]) -> Iterator[Part]:
     # an indeterminate stress may be the largest
     all_known = all(entry_of_section.is_known for entry_of_section in entries)
     largest = max(map(_rank_entry, entries))
-    pa, m = data.units.find("Pa")[0], data.units.find("m")[0]
+    pa, m = _choose_stress_family(data, entries).unit, data.units.find("m")[0]
     heads = [OutputColumn("section", "text"), *([OutputColumn("case", "text")] if data.has_cases else [])]
     heads += [OutputColumn(f"at s [{m}]"), *([OutputColumn("at t [s]")] if has_instants(data) else [])]
-    heads += [OutputColumn(head) for head in (f"mises [{pa}]", f"± [{pa}]", f"strength [{pa}]", "utilisation")]
+    heads += [OutputColumn(head) for head in (f"mises [{pa}]", f"strength [{pa}]", "utilisation")]
     rows = [
         _make_cells(data, entry_of_section, entries, is_largest=all_known and _rank_entry(entry_of_section) == largest)
         for entry_of_section in entries
@@ -174,34 +209,49 @@ def _iter_stress_table(data: ReportData, names: list[str]) -> Iterator[Part]:
         for entry_of_section in entries
         if not entry_of_section.is_known
     ]
-    yield OutputTable("STRESS  largest in each section", heads, rows, notes)
+    yield OutputTable("STRESS  largest in each section", heads, rows, notes, "page")
 
 
 def _make_cells(
     data: ReportData, entry: SectionUtilisation, entries: list[SectionUtilisation], *, is_largest: bool
 ) -> list[TextCell]:
     """Make the row of a section."""
-    size = data.units.find("Pa")[1]
-    stress_style = choose_family_style([each.mises for each in entries], data, size)
-    utilisation_style = choose_family_style(
-        [each.utilisation for each in entries if each.utilisation is not None], data, 1.0
-    )
+    stress_family = _choose_stress_family(data, entries)
+    utilisations = [each.utilisation for each in entries if each.utilisation is not None]
     extreme = (entry.utilisation or entry.mises).high
-    is_constant = extreme.place is None and is_steady(entry.mises, stress_style, size)
+    written = stress_family.write(entry.mises.high.value)
+    is_constant = extreme.place is None and stress_family.write(entry.mises.low.value) == written
     strength = entry.run.study.spec.sections[entry.name].strength
+    size = stress_family.style.size
     return [
-        TextCell(entry.name),
+        TextCell(describe_object("sections", entry.name, data.labels)),
         *([TextCell(entry.run.case_label)] if data.has_cases else []),
         TextCell(format_place_in_unit(extreme.place, data.units, with_unit=False)),
         *([TextCell("" if is_constant else format_instant(extreme.time, entry.run))] if has_instants(data) else []),
-        TextCell(format_extreme(entry.mises.high.value, stress_style, size)),
-        TextCell(format_error(entry.mises.error * size) if isinstance(entry.mises.high.value, float) else ""),
+        TextCell(written),
         TextCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
         TextCell(
-            "" if entry.utilisation is None else format_extreme(entry.utilisation.high.value, utilisation_style, 1.0),
+            "" if entry.utilisation is None else choose_family(utilisations, data).write(entry.utilisation.high.value),
             is_largest and entry.utilisation is not None,
         ),
     ]
+
+
+def _choose_stress_family(data: ReportData, entries: Sequence[SectionUtilisation]) -> Family:
+    """Choose how the stresses of the table are written: in MPa, unless the user chose another unit."""
+    family = choose_family([each.mises for each in entries], data)
+    if data.units.is_chosen("Pa"):
+        return family
+    unit, size = data.units.find("Pa")
+    shift = round(math.log10(family.style.size / size))
+    return family._replace(
+        style=family.style._replace(
+            unit=unit,
+            size=size,
+            decimals=max(family.style.decimals + shift, 0),
+            error=family.style.error * size / family.style.size,
+        )
+    )
 
 
 def _format_uncertain_cases(data: ReportData, entry: SectionUtilisation) -> str:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 
+import numpy as np
+
+from heuncli.base.method_rows import find_method
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Facts, Listing, OutputColumn, OutputTable, Part, Sentence, TextCell
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.heading import make_heading
 from heuncli.results.results_schema import XYZ, error_kind_of_path
 from heuncli.study.quantities.digits import format_error
+from heuncli.version import VERSION
 
 INTEGRATED_NOTE = (
     "Every motion is integrated a second time with 1/30 of the tolerance. The stated errors are twice the largest "
@@ -34,17 +39,51 @@ KIND_LABELS = {"reactions": "joints", "drives": "drives", "foundation": "foundat
 MOTION = ("positions of points", "m")
 LOADS = ("N", "N·m")
 CASE_COLUMN = OutputColumn("case", "text")
-NOTHING_OPEN = "No indeterminate loads: rigid-body mechanics determines every reported load."
+DIGEST_DIGITS = 12  # of a digest of 64
 
 
 def make_trust_parts(data: ReportData) -> list[Part]:
     """Make the notes on each run, and the table of stated errors."""
     parts: list[Part] = [Sentence(text) for text in dict.fromkeys(map(_explain_errors, data.runs))]
-    for run in data.runs:
-        if data.has_cases:
-            parts.append(Sentence(f"Case {run.case_label}:"))
-        parts.append(Facts([line for line in make_heading(run.results) if line[0] not in ("model", "warning")]))
-    return [*parts, _make_error_table(data)]
+    if data.has_cases:
+        rows = [[TextCell(run.case_label), TextCell("; ".join(text for _, text in _list_run_facts(run)))]
+                for run in data.runs]  # fmt: skip
+        columns = [OutputColumn("case", "text"), OutputColumn("run and accuracy", "text")]
+        parts.append(OutputTable("RUNS", columns, rows, (), "page"))
+    else:
+        parts.append(Facts(_list_run_facts(data.runs[0])))
+    return [*parts, _make_error_table(data), _make_provenance_table(data)]
+
+
+def _list_run_facts(run: ReportedRun) -> list[tuple[str, str]]:
+    """Return what is known of a run and its accuracy, without the model and warnings, which stand elsewhere."""
+    return [line for line in make_heading(run.results) if line[0] not in ("model", "warning")]
+
+
+def _make_provenance_table(data: ReportData) -> OutputTable:
+    """Make the table of files, options and versions."""
+    rows = [[TextCell(label), TextCell(text)] for label, text in _iter_provenance(data)]
+    return OutputTable("SOURCES", [OutputColumn("", "text"), OutputColumn("", "text")], rows, (), "half")
+
+
+def _iter_provenance(data: ReportData) -> Iterator[tuple[str, str]]:
+    """Yield the files with their digests, the options and the versions."""
+    yield "spec", f"{data.file_name}, SHA-256 {data.spec.sha256[:DIGEST_DIGITS]}"
+    for name, digest in data.digests.items():
+        yield "file", f"{name}, SHA-256 {digest[:DIGEST_DIGITS]}"
+    for text in data.options:
+        yield "option", text
+    yield "solved by", _format_versions(data)
+
+
+def _format_versions(data: ReportData) -> str:
+    """Format the versions of the programs that solved it."""
+    kernels = dict.fromkeys(str(run.results.work.get("kernel", "")) for run in data.runs)
+    parts = [f"heun {VERSION}", *(f"{kernel} kernel" for kernel in kernels if kernel), f"NumPy {np.__version__}"]
+    rows = [find_method(str(run.results.model.get("method", ""))) for run in data.runs]
+    if any(row is not None and row.kind == "SciPy" for row in rows):
+        parts.append(f"SciPy {sys.modules['scipy'].__version__}")
+    return ", ".join(parts)
 
 
 def _explain_errors(run: ReportedRun) -> str:
@@ -74,7 +113,11 @@ def _make_error_table(data: ReportData) -> OutputTable:
         )
     heads = [OutputColumn("quantity", "text"), OutputColumn("unit", "text"), OutputColumn("±")]
     return OutputTable(
-        "STATED ERRORS  for each kind of quantity", [*heads, *([CASE_COLUMN] if data.has_cases else [])], rows
+        "STATED ERRORS  for each kind of quantity",
+        [*heads, *([CASE_COLUMN] if data.has_cases else [])],
+        rows,
+        (),
+        "half",
     )
 
 
@@ -97,7 +140,7 @@ def make_open_parts(data: ReportData) -> list[Part]:
             parts.append(Listing(f"Open (indeterminate) components{_format_case(run)}", run.snapshot.open))
         parts += _iter_sums(data, run)
     if not parts:
-        return [Sentence(NOTHING_OPEN)]
+        return []
     splits = dict.fromkeys(run.results.model["split"] for run in data.runs if run.results.model.get("split"))
     return [
         *parts,

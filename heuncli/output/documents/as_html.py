@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.base.text_safety import escape
+from heuncli.output.documents.decimal_comma import use_decimal_comma
 from heuncli.output.documents.document import (
+    Brand,
     Cell,
     Chapter,
     Drawing,
@@ -26,31 +28,38 @@ from heuncli.output.documents.document import (
     has_content,
     is_governing,
 )
+from heuncli.output.documents.sheet import A4, Sheet, make_page_style
 from heuncli.output.drawing.layout import lay_out
+from heuncli.output.drawing.shapes import Text, to_svg
 from heuncli.output.drawing.shapes import escape_xml as escaped_for_xml
-from heuncli.output.drawing.shapes import to_svg
 
 STYLE = Path(__file__).with_name("document.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+FILLS = {"": "", "page": "fills", "columns": "fills columns", "half": "fills"}  # of a table -> classes
+MAX_WHOLE_ROWS = 20  # of a table that is kept on one page
 LONG_CELL = 34  # characters; a longer cell may wrap
-VOID_TAGS = ("meta", "br")  # tags without an end tag
+VOID_TAGS = ("meta", "br", "img")  # tags without an end tag
 
 
-def render_html(document: OutputDocument) -> str:
-    """Render the document as HTML, to be written in UTF-8; its chapters follow the other parts."""
+def render_html(document: OutputDocument, sheet: Sheet = A4) -> str:
+    """Render the document as HTML, to be written in UTF-8; its chapters follow the other parts.
+
+    sheet: the paper on which it is printed
+    """
     parts = list(document.parts)
     chapters = [part for part in parts if isinstance(part, Chapter)]
-    lead = [Facts(document.facts), *(part for part in parts if not isinstance(part, Chapter))]
+    brand = [part for part in parts if isinstance(part, Brand)]
+    lead = [Facts(document.facts), *(part for part in parts if not isinstance(part, (Chapter, Brand)))]
     head_elements = [
         make_element("meta", charset="utf-8"),
         make_element("meta", name="viewport", content="width=device-width, initial-scale=1"),
         make_element("meta", http_equiv="Content-Security-Policy", content=POLICY),
         make_element("title", escape_text(document.title or "")),
-        make_element("style", "\n" + STYLE.read_text(encoding="utf-8")),
+        make_element("style", "\n" + STYLE.read_text(encoding="utf-8") + make_page_style(sheet)),
     ]
     body = make_element(
         "header",
-        make_element("h1", escape_text(document.title or "")) + _render_parts(lead) + _render_contents(chapters),
+        _render_parts(brand) + make_element("h1", escape_text(document.title or "")) + _render_parts(lead),
     )
     body += "\n" + _render_parts(chapters)
     page = make_element("head", "\n".join(head_elements)) + "\n" + make_element("body", make_element("main", body))
@@ -70,17 +79,6 @@ def make_element(tag: str, content: str = "", /, **attributes: str) -> str:
     return f"<{tag}{attribute_text}>" if tag in VOID_TAGS else f"<{tag}{attribute_text}>{content}</{tag}>"
 
 
-def _render_contents(chapters: Sequence[Chapter]) -> str:
-    """Render the list of chapters, with links to them."""
-    links = (
-        make_element("li", make_element("a", escape_text(chapter.title), href=f"#{chapter.name}"))
-        for chapter in chapters
-    )
-    if not chapters:
-        return ""
-    return make_element("nav", make_element("ol", "".join(links)), aria_label="Contents")
-
-
 def _render_chapter(number: str, chapter: Chapter) -> str:
     """Render a chapter; a chapter within one has a smaller title."""
     title = make_element(f"h{2 + number.count('.')}", f"{number}&ensp;{escape_text(chapter.title)}")
@@ -91,13 +89,26 @@ def _render_parts(parts: Iterable[Part], prefix: str = "") -> str:
     """Render the parts; prefix: the number of the chapter that they belong to, before those of its own chapters."""
     texts = []
     number = 0
+    halves: list[str] = []
     for part in filter(has_content, parts):
+        if len(halves) == 2 or (halves and not _is_half(part)):
+            texts.append(make_element("div", "".join(halves), class_="pair"))
+            halves = []
         if isinstance(part, Chapter):
             number += 1
             texts.append(_render_chapter(f"{prefix}{number}", part))
         else:
-            texts.append(RENDERERS[type(part)](part))
+            (halves if _is_half(part) else texts).append(RENDERERS[type(part)](part))
+    if halves:
+        texts.append(make_element("div", "".join(halves), class_="pair"))
     return "\n".join(texts)
+
+
+def _is_half(part: Part) -> bool:
+    """Return whether a part is a figure or a table that stands beside another."""
+    return (isinstance(part, Drawing) and part.place == "half") or (
+        isinstance(part, OutputTable) and part.fill == "half"
+    )
 
 
 def _render_sentence(part: Sentence) -> str:
@@ -106,7 +117,17 @@ def _render_sentence(part: Sentence) -> str:
 
 def _render_facts(part: Facts) -> str:
     rows = (make_element("dt", escape_text(label)) + make_element("dd", escape_text(text)) for label, text in part.rows)
+    if part.is_block:
+        cells = (make_element("div", make_element("dt", escape_text(label)) + make_element("dd", escape_text(text)))
+                 for label, text in part.rows)  # fmt: skip
+        return make_element("dl", "".join(cells), class_="block")
     return make_element("dl", "".join(rows))
+
+
+def _render_brand(part: Brand) -> str:
+    logo = make_element("img", src=part.logo, alt="logo") if part.logo else ""
+    words = make_element("span", escape_text(part.company)) + make_element("span", escape_text(part.project))
+    return make_element("div", logo + words, class_="brand")
 
 
 def _render_listing(part: Listing) -> str:
@@ -126,10 +147,18 @@ def render_table(part: OutputTable) -> str:
         body = "\n".join(_render_row(row, kinds) for row in part.rows)
         table = make_element("thead", make_element("tr", "".join(heads))) + "\n" + make_element("tbody", body)
         label = part.heading.partition("  ")[0]
-        table = make_element("div", make_element("table", table, aria_label=label), class_="wide")
+        table = make_element("table", table, aria_label=label)
+        table = make_element(
+            "div", table, class_=" ".join(filter(None, ("wide", FILLS[part.fill], _choose_break(part))))
+        )
     caption = make_element("h3", _render_heading(part.heading)) if part.heading else ""
     notes = "".join(make_element("li", escape_text(note)) for note in part.notes)
     return make_element("div", caption + "\n" + table + (make_element("ul", notes, class_="notes") if notes else ""))
+
+
+def _choose_break(part: OutputTable) -> str:
+    """Return the class of a table that is kept on one page."""
+    return "whole" if len(part.rows) <= MAX_WHOLE_ROWS * (2 if part.fill == "columns" else 1) else ""
 
 
 def _render_heading(text: str) -> str:
@@ -155,9 +184,18 @@ def _render_cell(cell: Cell, kind: str) -> str:
 
 def _render_drawing(part: Drawing) -> str:
     """Render a figure as inline SVG, without its XML declaration."""
-    figure = lay_out(part.figure)._replace(title=part.caption)
+    figure = (lay_out(part.figure) if part.width is None else lay_out(part.figure, part.width))._replace(
+        title=part.caption
+    )
+    if part.has_decimal_comma:
+        shapes = [
+            shape._replace(text=use_decimal_comma(shape.text)) if isinstance(shape, Text) else shape
+            for shape in figure.shapes
+        ]
+        figure = figure._replace(shapes=shapes)
     markup = to_svg(figure).partition("?>\n")[2]
-    return make_element("figure", markup + make_element("figcaption", escape_text(part.caption)))
+    caption = make_element("figcaption", escape_text(part.caption)) if part.caption else ""
+    return make_element("figure", markup + caption, class_=part.place)
 
 
 def _render_verbatim(part: Verbatim) -> str:
@@ -170,6 +208,7 @@ def _render_verbatim(part: Verbatim) -> str:
 RENDERERS: dict[type[Part], Callable[[Any], str]] = {
     Sentence: _render_sentence,
     Facts: _render_facts,
+    Brand: _render_brand,
     Listing: _render_listing,
     OutputTable: render_table,
     Drawing: _render_drawing,

@@ -9,7 +9,9 @@ from typing import Any
 
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.as_text import draw_figure
+from heuncli.output.documents.decimal_comma import use_decimal_comma
 from heuncli.output.documents.document import (
+    Brand,
     Cell,
     Chapter,
     Drawing,
@@ -58,6 +60,10 @@ def _render_facts(part: Facts) -> str:
     return "\n".join(f"- {escape_line(label + ': ' * bool(label) + text)}" for label, text in part.rows)
 
 
+def _render_brand(part: Brand) -> str:
+    return escape_line(", ".join(filter(None, (part.company, part.project))))
+
+
 def _render_listing(part: Listing) -> str:
     title = f"**{escape_markdown(part.title)}**\n\n" if part.title else ""
     return title + "\n".join(f"- {escape_line(item)}" for item in part.items)
@@ -97,7 +103,8 @@ def _embolden(text: str) -> str:
 
 def _render_drawing(part: Drawing) -> str:
     caption = f"{escape_line(part.caption)}\n\n" if part.caption else ""
-    return caption + fence_text(draw_figure(part.figure).rstrip())
+    text = draw_figure(part.figure).rstrip()
+    return caption + fence_text(use_decimal_comma(text) if part.has_decimal_comma else text)
 
 
 def _render_verbatim(part: Verbatim) -> str:
@@ -111,6 +118,7 @@ def _render_verbatim(part: Verbatim) -> str:
 RENDERERS: dict[type[Part], Callable[[Any], str]] = {
     Sentence: _render_sentence,
     Facts: _render_facts,
+    Brand: _render_brand,
     Listing: _render_listing,
     OutputTable: render_table,
     Drawing: _render_drawing,

@@ -9,6 +9,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
 from heuncli.output.documents.document import (
+    Brand,
     Chapter,
     Drawing,
     Facts,
@@ -81,6 +82,10 @@ def _render_sentence(part: Sentence, style: TextStyle) -> str:
     return _join_lines(wrap_text(escape(part.text), style.width))
 
 
+def _render_brand(part: Brand, style: TextStyle) -> str:
+    return _join_lines(wrap_text(escape(", ".join(filter(None, (part.company, part.project)))), style.width))
+
+
 def _render_listing(part: Listing, style: TextStyle) -> str:
     title = wrap_text(escape(part.title), style.width) if part.title else []
     return _join_lines(
@@ -110,6 +115,7 @@ def _render_table(part: OutputTable, style: TextStyle) -> str:
 RENDERERS: dict[type[Part], Callable[[Any, TextStyle], str]] = {
     Sentence: _render_sentence,
     Facts: _render_facts,
+    Brand: _render_brand,
     Listing: _render_listing,
     OutputTable: _render_table,
     Drawing: _render_drawing,

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 MAX_NAMES = 8  # of a list in a sentence
 Kind = Literal["number", "text", "instant", "path", "verdict"]  # of a column; numbers are aligned at their points
 Mood = Literal["plain", "good", "bad", "unsure"]
+Fill = Literal["", "page", "columns", "half"]  # of a table on paper
 
 
 class NumberCell(NamedTuple):
@@ -84,12 +85,16 @@ class OutputColumn(NamedTuple):
 class OutputTable(NamedTuple):
     """A heading, columns, rows of cells, and notes below. A row that is a single string is a title over the rows after
     it. What stands after two blanks in a heading or title explains it. For CSV the rows may be made one by one.
+
+    fill: on paper it takes the whole width, runs through two columns, or stands in one beside another part; by default
+    it is as wide as its cells
     """
 
     heading: str
     columns: Sequence[OutputColumn] = ()
     rows: Sequence[Sequence[Cell] | str] = ()
     notes: Sequence[str] = ()
+    fill: Fill = ""
 
     @property
     def is_empty(self) -> bool:
@@ -98,9 +103,21 @@ class OutputTable(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """Labels with their texts, one per line; further lines of one label have an empty one."""
+    """Labels with their texts, one per line; further lines of one label have an empty one.
+
+    is_block: whether they stand side by side, as in a title block
+    """
 
     rows: Sequence[tuple[str, str]]
+    is_block: bool = False
+
+
+class Brand(NamedTuple):
+    """The line above a title: a company with its logo, a data URI, and a project."""
+
+    company: str = ""
+    logo: str = ""
+    project: str = ""
 
 
 class Sentence(NamedTuple):
@@ -118,10 +135,17 @@ class Listing(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """A figure with its caption."""
+    """A figure with its caption.
+
+    width: for which it is laid out [pixels]; None: as pictures are
+    place: "half" of a page's width beside another, or on the "first" page, which bounds its height
+    """
 
     figure: Figure
     caption: str = ""
+    width: float | None = None
+    place: Literal["", "half", "first"] = ""
+    has_decimal_comma: bool = False
 
 
 class Verbatim(NamedTuple):
@@ -139,7 +163,7 @@ class Chapter(NamedTuple):
     parts: Sequence[Part]
 
 
-Part = Sentence | Facts | Listing | OutputTable | Drawing | Verbatim | Chapter
+Part = Sentence | Facts | Brand | Listing | OutputTable | Drawing | Verbatim | Chapter
 
 
 class OutputDocument(NamedTuple):
@@ -167,6 +191,8 @@ def has_content(part: Part) -> bool:
         return not part.is_empty
     if isinstance(part, Listing):
         return bool(part.items)
+    if isinstance(part, Brand):
+        return any(part)
     return bool(part.rows) if isinstance(part, Facts) else True
 
 

@@ -183,6 +183,17 @@ ENERGY = TablePlan(
     ("kinetic", "potential", "work"),
     lambda results, labels: "ENERGY  potential relative to the world origin; kinetic + potential − work is constant",
 )
+FORCES = TablePlan(
+    "forces",
+    "forces",
+    "force",
+    ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
+    lambda results, labels: (
+        "FORCES  force value, length or angle, rate, power"
+        + ("; bushings in their own axes" if any("shift" in own for own in results.forces.values()) else "")
+    ),
+    _make_force_note,
+)
 PLANS = (
     TablePlan(
         "motion",
@@ -213,17 +224,7 @@ PLANS = (
     STOPS,
     COUPLINGS,
     SECTIONS,
-    TablePlan(
-        "forces",
-        "forces",
-        "force",
-        ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
-        lambda results, labels: (
-            "FORCES  force value, length or angle, rate, power"
-            + ("; bushings in their own axes" if any("shift" in own for own in results.forces.values()) else "")
-        ),
-        _make_force_note,
-    ),
+    FORCES,
     ENERGY,
 )
 # Tables of an impact under its instant and names: for impulses the same tables as for loads.

@@ -134,7 +134,7 @@ Report = Literal[
     "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"
 ]  # fmt: skip
 ReportChapter = Literal[
-    "machine", "loads", "sections", "histories", "events", "checks", "accuracy", "open", "model", "spec"
+    "machine", "loads", "sections", "histories", "polar", "events", "checks", "accuracy", "open", "model", "spec"
 ]  # fmt: skip
 Points = dict[str, Position]
 

@@ -10,17 +10,25 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
 from heuncli.app.cli.units import parse_units
 from heuncli.app.commands.report.request import ReportRequest
-from heuncli.base.errors import HeunError, Problem
+from heuncli.base.errors import Finding, HeunError, Problem
 from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
-from heuncli.output.client_report.report_data import AS_IT_STANDS, LOADS, Imprint, ReportData, ReportedRun
+from heuncli.output.client_report.report_data import (
+    AS_IT_STANDS,
+    CHAPTER_NAMES,
+    LOADS,
+    Imprint,
+    ReportData,
+    ReportedRun,
+)
 from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.snapshots.take_snapshot import is_searched_between_samples, take_run_snapshot
 from heuncli.output.tables.page import make_page
+from heuncli.scene.file_format.file_contents import read_logo
 from heuncli.scene.file_format.load import load_with_cases
-from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.models import Logo, ReportSettings, Spec
 from heuncli.scene.file_format.named_files import NamedFiles
-from heuncli.scene.file_format.reading import digest
+from heuncli.scene.file_format.reading import STANDARD_INPUT, digest
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.memory_estimate import MemoryBudget
@@ -35,6 +43,7 @@ from heuncli.study.workflow import solve
 DRAWING_REPORTS = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
 IMPULSES_ONLY = frozenset({"impulses"})
 NO_REPORTS: frozenset[str] = frozenset()
+IMPRINT_KEYS = ("company", "project", "part", "revision", "author")
 OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
 
 
@@ -58,11 +67,12 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     Raises what solving raises: if one case cannot be solved there is no report.
     """
     units_shown, options = parse_units(request.units), make_solver_options(request)
-    settings = parse_overrides(request.set)
+    settings, chapters = parse_overrides(request.set), parse_chapters(request.chapters)
     text = read_text(request.spec)
     files = DigestedFiles(request.spec)
     spec, cases = load_with_cases(request.spec, settings, not settings, text, files)
     spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
+    imprint = make_imprint(request, spec.report)
     chosen = _select_cases(request, cases)
     selected = chosen or {"": spec}
     outcomes: list[Outcome] = []
@@ -76,14 +86,42 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
         print_warnings(
             scene, study.results, request.quiet, f"heun: case {name}" if name else "heun", study.later_warnings
         )
-    imprint = Imprint(request.date or "", request.author or "", request.project or "")
     left_out = [name for name in cases if name not in selected]
     unchecked = [AS_IT_STANDS] if request.case is not None and spec.expect else []
     unchecked += [name for name in left_out if cases[name].expect]
     return ReportData(
         spec, text, files.digests, runs, outcomes, list(_iter_numeric_options(request)), left_out, unchecked,
-        not request.no_reduce, units_shown, imprint,
+        not request.no_reduce, units_shown, imprint, chapters or spec.report.chapters or (),
     )  # fmt: skip
+
+
+def parse_chapters(words: str | None) -> tuple[str, ...]:
+    """Return the chapters of `--chapters`, in their order; none without it. Raises UsageError."""
+    names = [name.strip() for name in words.split(",")] if words is not None else []
+    for name in names:
+        if name not in CHAPTER_NAMES:
+            hint = suggest(name, CHAPTER_NAMES, "chapters")
+            raise UsageError(Problem("bad-option", f"--chapters {name}: there is no such chapter", hint=hint))
+    return tuple(dict.fromkeys(names))
+
+
+def make_imprint(request: ReportRequest, settings: ReportSettings) -> Imprint:
+    """Make the entries of the title block: the options, else what the spec says. Raises UsageError."""
+    words = {key: getattr(request, key) or getattr(settings, key) for key in IMPRINT_KEYS}
+    logo = settings.logo
+    if request.logo is not None:
+        try:
+            logo = read_logo(request.logo, NamedFiles(STANDARD_INPUT))
+        except Finding as error:
+            raise UsageError(Problem("bad-option", f"--logo: {error.message}", hint=error.hint)) from None
+    return Imprint(**words, date=request.date or "", logo="" if logo is None else _embed(logo))
+
+
+def _embed(logo: Logo) -> str:
+    """Return a picture as a data URI."""
+    from base64 import b64encode  # where there is a logo
+
+    return f"data:{logo.media_type};base64,{b64encode(logo.content).decode()}"
 
 
 def _select_cases(request: ReportRequest, cases: Mapping[str, Spec]) -> dict[str, Spec]:

@@ -18,7 +18,8 @@ from heuncli.app.cli.options import (
 )
 from heuncli.base.named_tuples import NamedTuple
 
-FORMATS = ("html", "md")
+FORMATS = ("html", "pdf", "md")
+PAPERS = ("a4", "letter")
 
 
 class ReportRequest(NamedTuple):
@@ -27,15 +28,28 @@ class ReportRequest(NamedTuple):
     spec: Annotated[str, SPEC]
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Output file, written atomically: x.html, x.md; - is standard output.", "FILE"),
+        Option(
+            ("--output", "-o"), "Output file, written atomically: x.html, x.pdf, x.md; - is standard output.", "FILE"
+        ),
     ] = None
     format: Annotated[
         str | None,
         Option(("--format",), "Output format. Default: from the extension of -o FILE, else html.", "|".join(FORMATS)),
     ] = None
-    date: Annotated[str | None, Option(("--date",), "Date on the first page. Default: none.", "TEXT")] = None
+    date: Annotated[str | None, Option(("--date",), "Date in the title block. Default: none.", "TEXT")] = None
     author: Annotated[str | None, Option(("--author",), "Author of the report.", "TEXT")] = None
     project: Annotated[str | None, Option(("--project",), "Name of the project.", "TEXT")] = None
+    company: Annotated[str | None, Option(("--company",), "Company above the title.", "TEXT")] = None
+    part: Annotated[str | None, Option(("--part",), "Part or drawing number.", "TEXT")] = None
+    revision: Annotated[str | None, Option(("--revision",), "Revision of the report.", "TEXT")] = None
+    logo: Annotated[str | None, Option(("--logo",), "Logo above the title: a PNG or SVG file.", "FILE")] = None
+    chapters: Annotated[
+        str | None,
+        Option(("--chapters",), "Chapters after the first page, in their order. Default: all but spec.", "NAME,..."),
+    ] = None
+    paper: Annotated[str | None, Option(("--paper",), "Paper. Default: a4.", "|".join(PAPERS))] = None
+    landscape: Annotated[bool, Option(("--landscape",), "Print across the paper.")] = False
+    decimal_comma: Annotated[bool, Option(("--decimal-comma",), "Write numbers with a decimal comma.")] = False
     case: Annotated[
         str | None,
         Option(("--case",), "Report only these load cases. Default: all.", "NAME,...", completes="case"),

@@ -1,0 +1,157 @@
+"""The table of points: where joints and bushings act, and their load at the instant of the greatest force."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.client_report.cases_table import has_instants
+from heuncli.output.client_report.extremes import (
+    DASH,
+    MINUS,
+    NOISE,
+    choose_style_in_unit,
+    find_extremes,
+    format_instant,
+)
+from heuncli.output.client_report.report_data import ReportData, ReportedRun
+from heuncli.output.documents.document import OutputColumn, OutputTable, TextCell
+from heuncli.output.machine_geometry.poses import extract_poses
+from heuncli.results.results import Array
+from heuncli.results.results_schema import XYZ
+from heuncli.scene.file_format.models import Bushing
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.digits import OPEN
+from heuncli.study.quantities.reader_numbers import choose_reader_style
+
+MAX_CASES = 4  # with a row each for a point; if there are more, the governing one
+MAX_POINTS = 40
+HEADING = "POINTS  place and load at the instant of the greatest force of each case; {}"
+BUSHING_AXES = "bushings in their own axes"
+PLACE_DECIMALS = {"m": 4, "mm": 1}
+
+
+class PointLoad(NamedTuple):
+    """The load at a point of a joint or bushing at an instant: force and moment (3,), place in the world (3,), SI."""
+
+    name: str
+    run: ReportedRun
+    time: float | None
+    place: Array
+    force: Array
+    moment: Array
+    error: tuple[float, float]
+
+
+def make_hardpoint_table(data: ReportData) -> OutputTable | None:
+    """Make the table of the points of joints and bushings; None if there are none, or too many."""
+    names = {f"joints.{name}": name for name in data.runs[0].results.joints}
+    names |= {f"forces.{name}": name for name, force in data.spec.forces.items() if isinstance(force, Bushing)}
+    if not names or len(names) > MAX_POINTS:
+        return None
+    loads = [load for prefix, name in names.items() for load in _iter_point_loads(data, prefix, name)]
+    return _make_table(data, loads) if loads else None
+
+
+def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[PointLoad]:
+    """Yield the load of a point in each case, or in the governing one of many."""
+    kind = prefix.partition(".")[0]
+    found = []
+    for run in data.runs:
+        ends = find_extremes(run, f"{prefix}.force")
+        if ends is None or not isinstance(ends.high.value, float):
+            continue
+        time = ends.high.time
+        k = run.find_index(time)
+        force = run.find_vector(f"{prefix}.force", time)
+        has_moment = "moment" in getattr(run.results, kind)[name]
+        moment = run.find_vector(f"{prefix}.moment", time) if has_moment else np.zeros(3)
+        moment_ends = find_extremes(run, f"{prefix}.moment") if has_moment else None
+        errors = ends.error, moment_ends.error if moment_ends is not None else 0.0
+        place = _locate(run, kind, name, k)
+        words = describe_object(kind, name, data.labels)
+        found.append((ends.high.value, PointLoad(words, run, time, place, force, moment, errors)))
+    if len(data.runs) > MAX_CASES and found:
+        found = [max(found, key=lambda pair: pair[0])]
+    yield from (load for _, load in found)
+
+
+def _locate(run: ReportedRun, kind: str, name: str, k: int) -> Array:
+    """Return the place in the world of a joint's "to" point, or of a bushing's "from" point, at instant number k."""
+    if kind == "joints":
+        joint = run.study.spec.joints[name]
+        body, point = joint.b, joint.q
+    else:
+        force = run.study.spec.forces[name]
+        assert isinstance(force, Bushing)
+        body, point = force.from_.body, force.from_.point
+    return extract_poses(run.worst_results).locate_points(body, np.asarray(point, dtype=np.float64), k)
+
+
+def _make_table(data: ReportData, loads: Sequence[PointLoad]) -> OutputTable:
+    """Make the table; a column in which nothing acts is left out."""
+    largest_force = max((_find_length(load.force) for load in loads), default=0.0)
+    largest_moment = max((_find_length(load.moment) for load in loads), default=0.0)
+    force_unit = choose_reader_style("N", largest_force, data.units).unit
+    moment_unit = choose_reader_style("N·m", largest_moment, data.units).unit
+    place_unit, place_size = _choose_place_unit(data)
+    decimals = PLACE_DECIMALS.get(place_unit, 4)
+    columns = [OutputColumn("point", "text"), *([OutputColumn("case", "text")] if data.has_cases else [])]
+    columns += [OutputColumn(f"{axis} [{place_unit}]") for axis in XYZ]
+    columns += [OutputColumn(f"F{axis} [{force_unit}]") for axis in XYZ] + [OutputColumn(f"|F| [{force_unit}]")]
+    columns += [OutputColumn(f"M{axis} [{moment_unit}]") for axis in XYZ]
+    columns += [OutputColumn("at t [s]")] * has_instants(data)
+    rows = []
+    previous = ""
+    for load in loads:
+        cells = [load.name if load.name != previous else "", *([load.run.case_label] if data.has_cases else [])]
+        previous = load.name
+        cells += [_format_place(value * place_size, decimals) for value in load.place.tolist()]
+        cells += _format_vector(data, "N", load.force, largest_force, load.error[0], has_length=True)
+        cells += _format_vector(data, "N·m", load.moment, largest_moment, load.error[1])
+        cells += [format_instant(load.time, load.run)] * has_instants(data)
+        rows.append(cells)
+    kept = [k for k, column in enumerate(columns) if k == 0 or any(row[k] not in (DASH, "0", "") for row in rows)]
+    axes = data.runs[0].results.model.get("axes")
+    words = f'reaction of "from" on "to", {f"axes of the {axes} body" if axes else "world axes"}'
+    if any(isinstance(force, Bushing) for force in data.spec.forces.values()):
+        words += f"; {BUSHING_AXES}"
+    text_rows = [[TextCell(row[k]) for k in kept] for row in rows]
+    return OutputTable(HEADING.format(words), [columns[k] for k in kept], text_rows, (), "page")
+
+
+def _choose_place_unit(data: ReportData) -> tuple[str, float]:
+    """Return the unit of places, and how many of it make a metre: mm unless the user chose another."""
+    return data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
+
+
+def _format_place(value: float, decimals: int) -> str:
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text.replace("-", MINUS)
+
+
+def _format_vector(
+    data: ReportData, unit: str, vector: Array, unit_scale: float, error: float, *, has_length: bool = False
+) -> list[str]:
+    """Format the components of a vector, and its magnitude: four digits of this vector."""
+    length = _find_length(vector)
+    values = [*vector.tolist(), *([length] if has_length else [])]
+    rounding = max(run.page.certain.rounding_of(unit) for run in data.runs)
+    style = choose_style_in_unit(data, unit, length, unit_scale, error)
+    texts = []
+    for value in values:
+        if math.isnan(value):
+            texts.append(OPEN)
+        elif abs(value) < NOISE * length or length <= rounding:
+            texts.append(DASH)
+        else:
+            texts.append(style.write_with_error(value))
+    return texts
+
+
+def _find_length(vector: Array) -> float:
+    """Return the magnitude of the known components of a vector."""
+    return float(np.sqrt(np.nansum(vector * vector)))
