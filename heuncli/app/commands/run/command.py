@@ -74,7 +74,7 @@ def main(request: RunRequest) -> int:
         from heuncli.app.commands.run.cases import run_all  # of few runs
 
         return run_all(task, spec, cases)
-    study, pieces = solve_and_render(task, spec)
+    study, pieces, _ = solve_and_render(task, spec)
     emit(pieces, request.output)
     if measures:
         note_measure_units(task, study)
