@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, TextCell
+from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, TextCell
 from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
 from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, RunSummary, SummaryRow
-from heuncli.output.tables.extremes_tables import CONSTANT, MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
+from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NOTE
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import choose_reader_style
+from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.version import VERSION
 
 HEADING = 'SUMMARY  greatest loads; of a joint the reaction of "from" on "to"'
 MAX_LINES = 12  # rows, and lines on what is indeterminate
 MAX_GROUPS = 4  # of what is indeterminate
 ALONG_AXIS = 0.9995  # cosine: a direction is that of an axis, to the decimals shown
 TIME_DIGITS = 4
+MIN_DIGITS = 2  # of a number far smaller than others of its unit
 EXCEEDED = 1.0  # utilisation
 
 
@@ -108,8 +111,7 @@ def make_summary_table(summary: Summary, *, full: bool = False) -> OutputTable:
 
 def _make_cells(row: SummaryRow, summary: Summary) -> tuple[Cell, ...]:
     """Make the cells of name, value, unit, direction or place, and instant."""
-    units = summary.labels.units
-    style = choose_reader_style(row.unit, abs(row.value), units, row.error)
+    style = _choose_style(row, summary)
     text = style.write_with_error(row.value) + "*" * row.is_partly_open + MARK * row.is_doubtful
     value = TextCell(text, is_governing=row.unit == "1" and row.value > EXCEEDED)
     where = format_direction(row.direction) if row.direction is not None else _format_place(row, summary)
@@ -117,10 +119,19 @@ def _make_cells(row: SummaryRow, summary: Summary) -> tuple[Cell, ...]:
     return name_row(row, summary.labels), value, "" if row.unit == "1" else style.unit, where, time
 
 
+def _choose_style(row: SummaryRow, summary: Summary) -> ReaderStyle:
+    """Choose unit and decimals by the largest number of the same SI unit, with two significant digits at least."""
+    units = summary.labels.units
+    largest = max(abs(other.value) for other in summary.rows if other.unit == row.unit)
+    style = choose_reader_style(row.unit, largest, units, row.error)
+    digits = MIN_DIGITS - 1 - math.floor(math.log10(style.size * abs(row.value)))
+    return style._replace(decimals=max(style.decimals, digits))
+
+
 def name_row(row: SummaryRow, labels: Labels) -> str:
     """Name what a row is of: "joint main", "section rod, bending moment M1"."""
     if not row.name:
-        return row.label
+        return row.label.removesuffix(", force")
     words = describe_object(row.path.partition(".")[0], row.name, labels)
     quantity = row.label.removeprefix(words).removeprefix(", ")
     is_plain = quantity in ("force", "load", "drive") or not row.label.startswith(words)
@@ -171,9 +182,12 @@ def _format_angle(row: SummaryRow, labels: Labels) -> str:
 # As data, SI
 
 
-def make_blocks(summary: Summary) -> dict[str, Any]:
+def make_blocks(title: str, summary: Summary) -> dict[str, Any]:
     """Make the rows for JSON, with full digits, and what is indeterminate."""
     return {
+        "heun": FORMAT,
+        "version": VERSION,
+        "title": title,
         "summary": [_make_block(row) for row in summary.rows],
         "indeterminate": [
             {"what": group.what, "names": list(group.names), "paths": list(group.paths)} for group in summary.groups

@@ -33,16 +33,18 @@ class SummaryKind(NamedTuple):
 
     word: what they are
     alternatives: groups of quantities; the first group in which one is not zero tells, by its greatest
+    repeats: a quantity beside which the line would say the same twice
     """
 
     word: str
     block: str
     alternatives: tuple[tuple[str, ...], ...]
+    repeats: str = ""
 
 
 KINDS = (
     SummaryKind("joint", "joints", (("tension",), ("force",), ("moment",))),
-    SummaryKind("drive", "joints", (("drive",),)),
+    SummaryKind("drive", "joints", (("drive",),), repeats="tension"),
     SummaryKind("stop", "stops", (("force",), ("moment",))),
     SummaryKind(
         "coupling", "couplings",
@@ -144,12 +146,16 @@ class _Values(NamedTuple):
 
     def find_greatest(self, kind: SummaryKind, name: str) -> SummaryRow | None:
         """Find the greatest load of a thing; None if it has none, or if it is indeterminate throughout."""
+        if kind.repeats and f"{kind.block}.{name}.{kind.repeats}" in self.channels:
+            return None
         for quantities in kind.alternatives:
             paths = [".".join(part for part in (kind.block, name, quantity) if part) for quantity in quantities]
-            rows = [row for path in paths if path in self.channels
-                    if (row := self._make_row(kind, name, path)) is not None]  # fmt: skip
+            known_paths = [path for path in paths if path in self.channels]
+            rows = [row for path in known_paths if (row := self._make_row(kind, name, path)) is not None]
             if rows:
                 return max(rows, key=_compute_magnitude)
+            if any(np.isnan(self.channels[path].values).all() for path in known_paths):
+                return None
         return None
 
     def _make_row(self, kind: SummaryKind, name: str, path: str) -> SummaryRow | None:
