@@ -17,6 +17,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import Action, ActionEnd
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.multibody.mechanism.model import GROUND as GROUND_INDEX
+from heuncli.output.tables.extremes_tables import PART
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.compose.recovery import Recovery
@@ -32,7 +33,6 @@ QUANTITIES: Mapping[str, tuple[str, ...]] = {
     "joints": ("force", "moment", "drive"), "stops": ("force", "moment"), "couplings": ("force", "moment"),
     "forces": ("value",),
 }  # fmt: skip
-PART = ".on."  # in the names of the loads of a coupling on each body
 
 
 class Hardpoint(NamedTuple):

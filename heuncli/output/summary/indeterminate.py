@@ -8,6 +8,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.cut_runs import collect_runs
+from heuncli.output.tables.extremes_tables import PART
 from heuncli.output.tables.name_ranges import join_ranges
 from heuncli.output.tables.page import Page
 from heuncli.output.tables.plurals import format_count
@@ -17,7 +18,6 @@ from heuncli.study.quantities.channels import Channel
 from heuncli.study.quantities.labels import Labels
 
 ADJECTIVES = ("radial", "axial")  # of the loads of a joint with an axis
-PART = ".on."  # in the names of the loads of a coupling on each body
 MAX_COMPONENTS = 4  # with more, "loads" says as much
 
 

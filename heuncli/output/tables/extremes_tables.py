@@ -30,6 +30,7 @@ PARTLY_OPEN_NOTE = "* open at some times; extremes of the other times"
 NOT_SEARCHED = "extremes at output times only: too many quantities to search between them"
 NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
 CONSTANT = "constant"  # in place of the instant of a greatest value
+PART = ".on."  # in the names of the loads of a coupling on each body
 N_LEADING = 2  # columns before the numbers: label, unit
 
 FRICTION_KINDS = frozenset({"foundation", "joints", "stops", "couplings", "sections"})  # depend on friction
@@ -128,7 +129,10 @@ def _make_full_table(
         elif not lines:
             lines.append(f"{INDENT}all values 0")
         rows += [part.group.title, *lines] if part.group.name and lines else lines
-    rows += [f"{OPEN}  {', '.join(join_ranges(names))}: {labels}" for labels, names in open_groups.items()]
+    open_names = {name for names in open_groups.values() for name in names}
+    for labels, names in open_groups.items():  # what a coupling exerts on each body is open with the coupling
+        named = [name for name in names if name.partition(PART)[0] not in open_names - {name}]
+        rows += [f"{OPEN}  {', '.join(join_ranges(named))}: {labels}"] if named else []
     shown_notes = [note for note in (*NOTES, doubtful.note) if note in notes]
     table = OutputTable(block.heading, COLUMNS, tuple(rows), (*block.notes, *shown_notes))
     if all(isinstance(row, str) for row in rows):
