@@ -76,11 +76,15 @@ def _rank(row: SummaryRow) -> tuple[int, float]:
 
 
 def choose_rows(rows: Sequence[SummaryRow], count: int) -> list[SummaryRow]:
-    """Choose the rows of a short summary: the largest of each kind, then the largest of all; in the order of kinds."""
+    """Choose the rows of a short summary: the largest of each kind, then of all, given loads last.
+
+    They stand in the order of the kinds, the largest of each first.
+    """
     order = {kind.word: i for i, kind in enumerate(KINDS)}
     ranked = sorted(rows, key=lambda row: -row.share)
     firsts = {row.kind: row for row in reversed(ranked)}
-    chosen = [*firsts.values(), *(row for row in ranked if row is not firsts[row.kind])][:count]
+    others = [row for row in ranked if row is not firsts[row.kind]]
+    chosen = [*firsts.values(), *sorted(others, key=lambda row: row.is_given)][:count]
     return sorted(chosen, key=lambda row: (order[row.kind], -row.share))
 
 

@@ -70,6 +70,7 @@ class SummaryRow(NamedTuple):
     place: along a run of cuts
     is_partly_open: at other instants it is indeterminate
     is_doubtful: friction is not at its full value there
+    is_given: it acts from outside, as the spec says
     share: of the greatest of its family, by which rows are ranked
     """
 
@@ -88,6 +89,7 @@ class SummaryRow(NamedTuple):
     case: str = ""
     is_partly_open: bool = False
     is_doubtful: bool = False
+    is_given: bool = False
     share: float = 0.0
 
 
@@ -224,7 +226,9 @@ def _add_directions(study: Study, rows: Sequence[SummaryRow], instants: Array) -
         vectors = _find_vectors(row, results, loads)
         angle = crank.angles.get(row.time) if crank is not None else None
         direction, is_steady = (None, True) if vectors is None else _find_direction(vectors, k)
-        found.append(row._replace(direction=direction, angle=angle, is_constant=row.is_constant and is_steady))
+        is_given = row.kind == "load" and row.name in loads and loads[row.name].from_end is None
+        row = row._replace(direction=direction, angle=angle, is_given=is_given)
+        found.append(row._replace(is_constant=row.is_constant and is_steady))
     return found, crank.joint if crank is not None else ""
 
 
