@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from heuncli.app.cli import terminal
 from heuncli.app.cli.output import emit
-from heuncli.output.documents.as_text import PLAIN, TextStyle, iter_text
-from heuncli.output.documents.document import OutputDocument
+from heuncli.output.documents.as_text import PLAIN, TextStyle, iter_text, render_text
+from heuncli.output.documents.document import OutputDocument, OutputTable
 
 if TYPE_CHECKING:
     from heuncli.output.drawing.figure import Figure
@@ -36,6 +36,22 @@ def render_document(
         to_terminal = output is None and terminal.is_terminal()
         return iter_text(document, make_terminal_style(style) if to_terminal else style)
     return _find_writer(form)(document)
+
+
+def is_rich(form: str, output: str | None) -> bool:
+    """Return whether the document goes to a terminal that shows colours."""
+    return form in TEXT_FORMS and output is None and terminal.is_terminal() and terminal.supports_styles()
+
+
+def render_rich_document(document: OutputDocument) -> list[str]:
+    """Render a document for a terminal: heading, its first table set by rich, and the other parts."""
+    from heuncli.app.cli.rich_tables import render_rich  # 40 ms, only for a terminal
+
+    style = make_terminal_style()
+    first, *others = document.parts
+    assert isinstance(first, OutputTable)
+    pieces = [render_text(document._replace(parts=()), style), "\n", render_rich(first, style.width)]
+    return [*pieces, "\n", *iter_text(OutputDocument(parts=others), style)] if others else pieces
 
 
 def make_terminal_style(style: TextStyle = PLAIN) -> TextStyle:

@@ -55,7 +55,7 @@ class OutputColumn(NamedTuple):
     key: its name in JSON and CSV, if these are made from the table; empty: its head
     vector: in a table too wide for a page, neighbours of one vector stay together
     is_shown_once: it is not repeated in the further parts of a wide table
-    is_optional: as the last column of a wide table it is left out
+    is_optional: it is left out of a table that would be too wide with it
     """
 
     head: str

@@ -94,9 +94,9 @@ def split_to_width(table: OutputTable, width: int) -> list[OutputTable]:
         return [table]
     if len(widths) > 1 and not table.columns[-1].is_number and widths[-1] - len(GAP) - excess >= MIN_TEXT_WIDTH:
         return [table._replace(rows=tuple(wrap_last_column(table, widths[-1] - len(GAP) - excess)))]
-    if table.columns[-1].is_optional:
-        rest = tuple(row if isinstance(row, str) else row[:-1] for row in table.rows)
-        return split_to_width(table._replace(columns=table.columns[:-1], rows=rest), width)
+    if any(column.is_optional for column in table.columns):
+        kept = [i for i, column in enumerate(table.columns) if not column.is_optional]
+        return split_to_width(select_columns(table, kept), width)
     lead = 1 + max((i for i, column in enumerate(table.columns[:3]) if not column.is_number), default=0)
     repeated = [i for i in range(lead) if not table.columns[i].is_shown_once]
     widths_left = [width - indent + len(GAP) - sum(widths[i] for i in columns) for columns in (range(lead), repeated)]
@@ -104,12 +104,16 @@ def split_to_width(table: OutputTable, width: int) -> list[OutputTable]:
     tables = []
     for number, part in enumerate(parts):
         shown_columns = [*(repeated if number else range(lead)), *part]
-        rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
         notes = table.notes if number == len(parts) - 1 else ()
-        tables.append(
-            OutputTable(make_part_heading(table, number), tuple(table.columns[i] for i in shown_columns), rows, notes)
-        )
+        shown = select_columns(table, shown_columns)
+        tables.append(shown._replace(heading=make_part_heading(table, number), notes=notes))
     return tables
+
+
+def select_columns(table: OutputTable, columns: Sequence[int]) -> OutputTable:
+    """Return the table with some of its columns, by their indices."""
+    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in columns) for row in table.rows)
+    return table._replace(columns=tuple(table.columns[i] for i in columns), rows=rows)
 
 
 def wrap_last_column(table: OutputTable, text_width: int) -> Iterator[tuple[Cell, ...] | str]:

@@ -7,8 +7,8 @@ from heuncli.output.documents.document import OutputTable
 from heuncli.output.snapshots import searches
 from heuncli.output.snapshots.pins_note import add_pins_note
 from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, DoubtfulInstants
-from heuncli.output.tables.page import make_page
-from heuncli.results.results import Array
+from heuncli.output.tables.page import Page, make_page
+from heuncli.results.results import Array, Extremes
 from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.smoothed_friction import has_smoothed_friction, make_partial_note
 from heuncli.study.model.selection import EntryKeys, Selection
@@ -28,31 +28,53 @@ class TablesQuery(NamedTuple):
     instants (n,): None for the extremes
     show_all: all instants, and every cut of a run of cuts
     details: include what is shown only on request by name
+    full: repeat what is constant or indeterminate
     """
 
     selection: Selection
     instants: Array | None = None
     show_all: bool = False
     details: bool = False
+    full: bool = True
 
 
-def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[OutputTable]:
-    """Make the tables before they are split to a width; never an empty list."""
-    reports = query.selection.reports
-    page = make_page(study.results, labels, study.magnitudes, details=query.details)
+class SearchedPage(NamedTuple):
+    """The page of a run and the extremes of its channels; None where none are searched: at given instants, or at the
+    only one.
+    """
+
+    page: Page
+    extremes: Extremes | None
+
+
+def search_run(study: Study, labels: Labels, query: TablesQuery) -> SearchedPage:
+    """Make the page of a solved scene, and search the extremes that its tables need."""
+    page = make_page(study.results, labels, study.magnitudes, details=query.details, full=query.full)
     if study.results.impulses:
         page = page._replace(impact_extremes=study.find_impulse_extremes())
     is_one_instant = len(study.results.time) == 1
-    extremes = None
-    if not (query.show_all or query.instants is not None or (is_one_instant and not page.has_runs)):
-        page, extremes = searches.search_page(page, study, reports)
-        if has_smoothed_friction(study.setup.scene.mechanism):
-            doubtful_instants = find_partial_friction(study, [*extremes.low_at.tolist(), *extremes.high_at.tolist()])
-            page = page._replace(
-                doubtful=DoubtfulInstants.with_reason(doubtful_instants, make_partial_note(doubtful_instants))
-            )
+    if query.show_all or query.instants is not None or (is_one_instant and not page.has_runs):
+        return SearchedPage(page, None)
+    page, extremes = searches.search_page(page, study, query.selection.reports)
+    if has_smoothed_friction(study.setup.scene.mechanism):
+        doubtful_instants = find_partial_friction(study, [*extremes.low_at.tolist(), *extremes.high_at.tolist()])
+        page = page._replace(
+            doubtful=DoubtfulInstants.with_reason(doubtful_instants, make_partial_note(doubtful_instants))
+        )
+    return SearchedPage(page, extremes)
+
+
+def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[OutputTable]:
+    """Search the extremes and make the tables before they are split to a width; never an empty list."""
+    return make_tables_of_page(study, search_run(study, labels, query), query)
+
+
+def make_tables_of_page(study: Study, searched: SearchedPage, query: TablesQuery) -> list[OutputTable]:
+    """Make the tables of a searched run; never an empty list."""
+    page, extremes = searched
+    reports = query.selection.reports
     shares = study if SHARES in reports else None
-    if extremes is None or is_one_instant:
+    if extremes is None or len(study.results.time) == 1:
         shown = study.results if query.instants is None else study.resample(query.instants)
         tables = page.make_tables_at_instants(shown, every_cut=query.show_all, search_result=extremes, shares=shares)
     else:

@@ -9,8 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.document import OutputColumn, OutputTable
-from heuncli.output.documents.text_table import INDENT
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable
+from heuncli.output.documents.text_table import INDENT, select_columns
+from heuncli.output.tables.name_ranges import join_ranges
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, format_numbers
 from heuncli.results.results import Array, Extremes
 from heuncli.study.quantities.digits import (
@@ -28,7 +29,9 @@ MAX_FULL_GROUPS = 40  # with more groups, each has one line
 PARTLY_OPEN_NOTE = "* open at some times; extremes of the other times"
 NOT_SEARCHED = "extremes at output times only: too many quantities to search between them"
 NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
-
+CONSTANT = "constant"  # in place of the instant of a greatest value
+PART = ".on."  # in the names of the loads of a coupling on each body
+N_LEADING = 2  # columns before the numbers: label, unit
 
 FRICTION_KINDS = frozenset({"foundation", "joints", "stops", "couplings", "sections"})  # depend on friction
 
@@ -84,13 +87,14 @@ def drop_components(block: TableBlock) -> TableBlock:
 
 def make_extremes_tables(
     block: TableBlock, times: Array, extremes: Extremes, certain: StatedErrors, last_values: Mapping[str, float],
-    doubtful: DoubtfulInstants = NO_DOUBT,
+    doubtful: DoubtfulInstants = NO_DOUBT, *, full: bool = True,
 ) -> list[OutputTable]:  # fmt: skip
     """Make the tables of first, last, lowest and highest values with their instants; one row a group if there are many.
 
     extremes: of the block's rows, in their order
     last_values: by the paths of the rows, if the run ends beyond its horizon
     doubtful: instants whose extremes are marked
+    full: repeat what is constant or indeterminate in every column and group
     """
     counts = np.cumsum([0, *(len(group.rows) for group in block.groups)])
     parts = [
@@ -98,37 +102,70 @@ def make_extremes_tables(
         for group, ends in zip(block.groups, pairwise(counts.tolist()), strict=True)
     ]
     if len(parts) <= MAX_FULL_GROUPS:
-        return [_make_full_table(block, parts, times, certain, doubtful)]
+        return [_make_full_table(block, parts, times, certain, doubtful, full)]
     scene_parts = [part for part in parts if part.group.is_whole_scene]
-    tables = [_make_full_table(block, scene_parts, times, certain, doubtful)] if scene_parts else []
+    tables = [_make_full_table(block, scene_parts, times, certain, doubtful, full)] if scene_parts else []
     other_parts = [part for part in parts if not part.group.is_whole_scene]
     heading = "" if scene_parts else block.heading
     return [*tables, _make_short_table(block, other_parts, times, certain, heading, doubtful)]
 
 
 def _make_full_table(
-    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, doubtful: DoubtfulInstants
-) -> OutputTable:
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, doubtful: DoubtfulInstants,
+    full: bool,
+) -> OutputTable:  # fmt: skip
     """Make the table with a row for each number, under a title for each group."""
     rows: list[tuple[str, ...] | str] = []
     notes: set[str] = set()
+    open_groups: dict[str, list[str]] = {}  # names of groups by their open components
     span = float(np.ptp(times))
     for part in parts:
-        lines, notes_of_group = _make_rows(part, span, certain, block.kind, doubtful)
-        rows += [part.group.title, *lines] if part.group.name else lines
+        lines, open_labels, notes_of_group = _make_rows(part, span, certain, block.kind, doubtful)
         notes |= notes_of_group
-    heads = ("first", "last", "min", "at [s]", "max", "at [s]")
-    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *(OutputColumn(head) for head in heads))
-    if all(isinstance(row, str) for row in rows):
-        columns = (OutputColumn("", "text"),)  # only titles and open components: there are no numbers
+        if open_labels and part.group.name and not full:
+            open_groups.setdefault(", ".join(open_labels), []).append(part.group.name)
+        elif open_labels:
+            lines.append(f"{INDENT}{OPEN}: {', '.join(open_labels)}")
+        elif not lines:
+            lines.append(f"{INDENT}all values 0")
+        rows += [part.group.title, *lines] if part.group.name and lines else lines
+    open_names = {name for names in open_groups.values() for name in names}
+    for labels, names in open_groups.items():  # what a coupling exerts on each body is open with the coupling
+        named = [name for name in names if name.partition(PART)[0] not in open_names - {name}]
+        rows += [f"{OPEN}  {', '.join(join_ranges(named))}: {labels}"] if named else []
     shown_notes = [note for note in (*NOTES, doubtful.note) if note in notes]
-    return OutputTable(block.heading, columns, tuple(rows), (*block.notes, *shown_notes))
+    table = OutputTable(block.heading, COLUMNS, tuple(rows), (*block.notes, *shown_notes))
+    if all(isinstance(row, str) for row in rows):
+        return table._replace(columns=(OutputColumn("", "text"),))  # only titles: there are no numbers
+    return table if full else _merge_constants(table)
+
+
+COLUMNS = (
+    OutputColumn("", "text"), OutputColumn("", "text"),
+    OutputColumn("first", is_optional=True), OutputColumn("last", is_optional=True),
+    OutputColumn("min", vector="extremes"), OutputColumn("at [s]", vector="extremes"),
+    OutputColumn("max", vector="extremes"), OutputColumn("at [s]", vector="extremes"),
+)  # fmt: skip
+
+
+def _merge_constants(table: OutputTable) -> OutputTable:
+    """Show a constant number once, and leave out the columns that are then empty."""
+    rows: list[Sequence[Cell] | str] = []
+    for row in table.rows:
+        numbers = set() if isinstance(row, str) else {row[i] for i in (2, 3, 4, 6)}
+        rows.append((*row[:N_LEADING], "", "", "", "", row[6], CONSTANT) if len(numbers) == 1 else row)
+    cells = [row for row in rows if not isinstance(row, str)]
+    shown = [i for i in range(len(table.columns)) if i < N_LEADING or any(row[i] for row in cells)]
+    return select_columns(table._replace(rows=tuple(rows)), shown)
 
 
 def _make_rows(
     part: GroupExtremes, span: float, certain: StatedErrors, kind: str, doubtful: DoubtfulInstants
-) -> tuple[list[tuple[str, ...] | str], set[str]]:
-    """Make the rows of a group, and the set of notes they need. Numbers that are zero or open throughout get no row."""
+) -> tuple[list[tuple[str, ...] | str], list[str], set[str]]:
+    """Make the rows of a group, the labels of its numbers that are open throughout, and the notes they need.
+
+    Numbers that are zero throughout get no row either.
+    """
     group, extremes = part.group, part.extremes
     instants = np.stack([extremes.low_at, extremes.high_at])
     notes: set[str] = set()
@@ -164,8 +201,7 @@ def _make_rows(
         lines.append((row.label + "*" * partly_open, unit, first, last, low, low_at, high, high_at))
     if open_labels:
         notes.add(OPEN_NOTE)
-        lines.append(f"{INDENT}{OPEN}: {', '.join(open_labels)}")
-    return lines or [f"{INDENT}all values 0"], notes
+    return lines, open_labels, notes
 
 
 def _format_extremes(part: GroupExtremes, certain: StatedErrors) -> list[list[str]]:

@@ -20,23 +20,24 @@ NO_METHOD = "none"  # how the name of a method begins that integrates nothing
 PRESCRIBED = "motion fully prescribed: solved at each instant, nothing integrated"
 
 
-def make_heading(results: Results, show_reductions: bool = False) -> list[tuple[str, str]]:
+def make_heading(results: Results, show_reductions: bool = False, *, brief: bool = False) -> list[tuple[str, str]]:
     """Return the label and text of each line below the title.
 
     show_reductions: also list the simplifications, as `heun model` does
+    brief: without the lines on method, effort and residuals
     """
     lines = [
-        ("model", _describe_model(results)),
+        ("model", _describe_model(results) + (f"; {_describe_span(results)}" if brief else "")),
         *(_label_sentences("reduced", results.model.get("reduced", ())) if show_reductions else ()),
         *(("unknown", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_describe_moved_bodies(results.model.get("moved", ())),
         *_describe_start(results.model.get("started", ())),
-        ("run", _describe_run(results)),
+        *([] if brief else [("run", _describe_run(results))]),
         *_describe_stiff_restart(results.model.get("reasons", ())),
         *_label_sentences("rest", results.model.get("rest", ())),
         *(("until", sentence) for sentence in results.model.get("until", ())),
         ("accuracy", _describe_errors(results)),
-        ("", _describe_residuals(results)),
+        *([] if brief else [("", _describe_residuals(results))]),
         *_describe_contacts(results.model.get("contacts", ())),
         *(("moves", sentence) for sentence in results.model.get("moves", ())),
     ]
@@ -113,14 +114,16 @@ def _describe_model(results: Results) -> str:
     return ", ".join(parts) + (PLANAR_NOTE if model.get("plane") == "declared" else "")
 
 
+def _describe_span(results: Results) -> str:
+    times = results.time
+    return f"{times[0]:.6g} to {times[-1]:.6g} s" if len(times) > 1 else f"one instant, t = {times[0]:.6g} s"
+
+
 def _describe_run(results: Results) -> str:
     times = results.time
     work = results.work
     kernel = f"{work.get('kernel', 'pure')} kernel" if work else ""
-    if len(times) == 1:
-        parts = [f"one instant, t = {times[0]:.6g} s"]
-    else:
-        parts = [f"{times[0]:.6g} to {times[-1]:.6g} s, {len(times)} samples"]
+    parts = [_describe_span(results) + (f", {len(times)} samples" if len(times) > 1 else "")]
     if work.get("steps"):
         method = f"{results.model['method']}, " if results.model.get("method") else ""
         if results.model.get("step"):

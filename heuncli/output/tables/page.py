@@ -52,6 +52,7 @@ class Page(NamedTuple):
     cut_extremes: for each run of cuts, the extremes at the cuts that are shown
     details: whether to include tables that are shown only on request
     doubtful: instants whose extremes are marked
+    full: whether to repeat what is constant or indeterminate
     """
 
     results: Results
@@ -63,6 +64,7 @@ class Page(NamedTuple):
     cut_extremes: Mapping[str, Extremes] = NO_EXTREMES
     details: bool = True
     doubtful: DoubtfulInstants = NO_DOUBT
+    full: bool = True
 
     @property
     def has_runs(self) -> bool:
@@ -71,7 +73,7 @@ class Page(NamedTuple):
 
     def make_search(self) -> ChannelSearch:
         """Make the search of the numbers of all blocks, and of the section forces along runs of cuts."""
-        blocks = self._make_blocks(self.results, only_searched=True)
+        blocks = self.make_blocks(self.results, only_searched=True)
         numbers = [row for block in blocks for group in block.groups for row in group.rows]
         selection = ChannelSelection.from_numbers(self.labels, numbers, has_runs=self.has_runs)
         return ChannelSearch(selection.collect, self.certain.find_error)
@@ -84,9 +86,9 @@ class Page(NamedTuple):
         """
         tables: list[OutputTable] = []
         times, last_values = self.results.time, self._find_last_values()
-        for block in self._make_blocks(self.results, only_searched=True):
+        for block in self.make_blocks(self.results, only_searched=True):
             part = search_result.find(block.paths)
-            tables += make_extremes_tables(block, times, part, self.certain, last_values, self.doubtful)
+            tables += make_extremes_tables(block, times, part, self.certain, last_values, self.doubtful, full=self.full)
         for run in cut_runs.collect_runs(self.results, self.labels):
             cuts = self.cut_extremes.get(run.name)
             tables += cut_runs.make_extremes_tables(run, times, search_result, self.certain, cuts)
@@ -97,7 +99,7 @@ class Page(NamedTuple):
         """Make the tables of what each cause contributes to the extremes."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
 
-        blocks = self._make_blocks(self.results, only_searched=True)
+        blocks = self.make_blocks(self.results, only_searched=True)
         found = search_result.find([path for block in blocks for path in block.paths])
         instants = np.unique(np.concatenate([found.low_at, found.high_at]))
         numbers = self._collect_shares(shares.compute_shares(instants)) if len(instants) else {}
@@ -140,7 +142,7 @@ class Page(NamedTuple):
         unknown = frozenset(results.accuracy.get("unknown", ()))
         certain = add_axis_errors(self.certain._replace(singular_times=unknown), results, self.magnitudes)
         tables: list[OutputTable] = []
-        for block in self._make_blocks(results):
+        for block in self.make_blocks(results):
             tables += make_instants_tables(block, results.time, horizon, certain)
         for run in cut_runs.collect_runs(results, self.labels):
             if search_result is not None:
@@ -159,7 +161,7 @@ class Page(NamedTuple):
 
         horizon = self.results.horizon
         numbers, tables = self._collect_shares(results), list[OutputTable]()
-        for block in self._make_blocks(results):
+        for block in self.make_blocks(results):
             tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
         for run in cut_runs.collect_runs(results, self.labels):
             if search_result is not None:
@@ -172,10 +174,11 @@ class Page(NamedTuple):
         """Return the numbers at the last instant by their paths, if the run ends beyond its horizon."""
         if self.last_instant is None:
             return {}
-        blocks = self._make_blocks(self.last_instant, only_searched=True)
+        blocks = self.make_blocks(self.last_instant, only_searched=True)
         return {row.path: float(row.values[-1]) for block in blocks for group in block.groups for row in group.rows}
 
-    def _make_blocks(self, results: Results, *, only_searched: bool = False) -> list[TableBlock]:
+    def make_blocks(self, results: Results, *, only_searched: bool = False) -> list[TableBlock]:
+        """Make the blocks of results of this run; only_searched: those whose extremes are searched."""
         channels = list(iter_channels(results, self.labels))
         plans = [
             plan for plan in PLANS if (plan.has_extremes or not only_searched) and (self.details or not plan.is_detail)
@@ -205,7 +208,9 @@ class Page(NamedTuple):
         return make_impulse_tables(report, show_all=show_all)
 
 
-def make_page(results: Results, labels: Labels, magnitudes: Magnitudes, *, details: bool = True) -> Page:
+def make_page(
+    results: Results, labels: Labels, magnitudes: Magnitudes, *, details: bool = True, full: bool = True
+) -> Page:
     """Make the page of a run, which ends before the run's horizon.
 
     magnitudes: what its numbers are summed from
@@ -213,10 +218,11 @@ def make_page(results: Results, labels: Labels, magnitudes: Magnitudes, *, detai
     horizon = results.horizon
     certain = find_stated_errors(results, labels, magnitudes)
     if horizon is None or results.time[-1] < horizon:
-        return Page(results, labels, certain, magnitudes, details=details)
+        return Page(results, labels, certain, magnitudes, details=details, full=full)
     n_known = max(1, int(np.searchsorted(results.time, horizon)))
     last_instant = select_instants(results, slice(-1, None))
-    return Page(select_instants(results, slice(n_known)), labels, certain, magnitudes, last_instant, details=details)
+    known = select_instants(results, slice(n_known))
+    return Page(known, labels, certain, magnitudes, last_instant, details=details, full=full)
 
 
 def select_instants(results: Results, which: slice) -> Results:

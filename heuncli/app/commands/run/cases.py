@@ -11,14 +11,17 @@ from heuncli.app.cli.entry import select_exit_code
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
 from heuncli.app.cli.units import TABLES, note_si_format
-from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
+from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, render_parts, solve_and_render
 from heuncli.output.documents.as_json import dump_json
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
+from heuncli.output.summary.run_document import RunParts
+from heuncli.output.summary.summary_document import Summary, merge_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.study import Study
 
 COLUMNS = (
     OutputColumn("of", "path"), OutputColumn("unit", "text"),
@@ -33,15 +36,18 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     """Solve every case and write the results; returns the exit code."""
     require_cases(cases)
     texts: dict[str, str] = {}
+    summaries: list[Summary] = []
     runs: dict[str, RunSnapshot] = {}
     codes = [0]
     for name, scene in cases.items():
-        study, pieces = solve_and_render(task, scene)
+        study, pieces, summary = solve_and_render(task, scene, name)
         texts[name] = "".join(pieces)
+        summaries += [summary] if summary is not None else []
         if not (task.measures or task.collective):
             runs[name] = take_run_snapshot(study, task.selection.reports, whole_course=False)
         codes.append(finish(task, scene, study, f"heun: case {name}"))
-    emit(_render_text(task, cases, texts, runs), task.request.output)
+    lead = _render_summary(task, study, merge_cases(summaries)) if summaries else ""
+    emit(lead + _render_text(task, texts, runs), task.request.output)
     if task.measures:
         note_measure_units(task, study)
     else:
@@ -49,9 +55,15 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     return select_exit_code(codes)
 
 
-def _render_text(
-    task: RunTask, cases: Mapping[str, Spec], texts: Mapping[str, str], runs: Mapping[str, RunSnapshot]
-) -> str:
+def _render_summary(task: RunTask, study: Study, summary: Summary) -> str:
+    """Render the summary of all cases, which stands above their tables; study: the last of them."""
+    if summary.is_empty:
+        return ""
+    parts = RunParts(study.results.title, (), summary, ())
+    return "".join(render_parts(task, parts)) + "\n"
+
+
+def _render_text(task: RunTask, texts: Mapping[str, str], runs: Mapping[str, RunSnapshot]) -> str:
     """Render all cases and their envelope in the requested format."""
     if task.form == "json":
         blocks = {name: json.loads(text) for name, text in texts.items()}

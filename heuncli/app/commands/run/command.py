@@ -21,11 +21,13 @@ from heuncli.output.snapshots.selection import find_default_reports, parse_choic
 from heuncli.output.tables.page import EXPORT_DEFAULT
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.study.model.memory_estimate import MemoryBudget
-from heuncli.study.model.selection import select_paths
+from heuncli.study.model.selection import Selection, select_paths
 
 if TYPE_CHECKING:
     from heuncli.app.commands.run.collective import CollectiveTask
     from heuncli.study.queries.measure import MeasureRequest
+
+HARDPOINT_REPORTS = frozenset({"joints", "forces"})
 
 
 def main(request: RunRequest) -> int:
@@ -44,7 +46,14 @@ def main(request: RunRequest) -> int:
     collectives = _parse_collectives(request)
     only_selection = parse_choice(request.only.split(",")) if request.only is not None else None
     units_shown = parse_units(request.units)
-    axes = "world" if request.axes is None else require_choice("--axes", request.axes, JOINT_AXES)
+    is_overview = request.summary or request.hardpoints
+    if is_overview:
+        from heuncli.app.commands.run import overview
+
+        overview.require_alone(request)
+    axes = "world"  # hardpoints are turned afterwards, and may have the axes of any body
+    if request.axes is not None and not request.hardpoints:
+        axes = require_choice("--axes", request.axes, JOINT_AXES)
     options = replace(make_solver_options(request), axes=axes)
     start = time.perf_counter()
     spec, cases = read(request.spec, parse_overrides(request.set), request.case)
@@ -64,19 +73,25 @@ def main(request: RunRequest) -> int:
 
         require_paths(collectives, spec)
     paths = [each.path for each in measures] if collectives is None else collectives.paths
-    if paths:
+    if request.hardpoints:
+        require_choice("--axes", request.axes or "world", (*JOINT_AXES, *spec.bodies))
+        selection = Selection(HARDPOINT_REPORTS)
+    elif paths:
         selection = select_paths(paths, spec)
     else:
-        default = find_default_reports(spec) if form in TABLES or spec.report.results is not None else EXPORT_DEFAULT
+        is_table = form in TABLES or is_overview
+        default = find_default_reports(spec) if is_table or spec.report.results is not None else EXPORT_DEFAULT
         selection = select_reports(only_selection, spec, default, by_cause=request.by_cause)
-    is_export = form not in TABLES and not paths and request.at is None and request.case != ALL_CASES
+    is_export = not (form in TABLES or is_overview or paths) and request.at is None and request.case != ALL_CASES
     options = replace(options, requested_reports=selection.reports, entries=selection.entries, in_parts=is_export)
     task = RunTask(request, form, options, selection, measures, units_shown, collectives)
+    if is_overview:
+        return overview.run_overview(task, spec, cases)
     if request.case == ALL_CASES:
         from heuncli.app.commands.run.cases import run_all  # of few runs
 
         return run_all(task, spec, cases)
-    study, pieces = solve_and_render(task, spec)
+    study, pieces, _ = solve_and_render(task, spec)
     emit(pieces, request.output)
     if measures:
         note_measure_units(task, study)

@@ -62,6 +62,16 @@ class RunRequest(NamedTuple):
         Option(("--at",), "Show values at these times instead of the extremes: seconds, first, last.", "WHEN,..."),
     ] = None
     all: Annotated[bool, Option(("--all",), "Show every output time, and every cut of a series of cuts.")] = False
+    summary: Annotated[
+        bool, Option(("--summary",), "Show only the greatest load of each joint, coupling, load and section.")
+    ] = False
+    full: Annotated[
+        bool, Option(("--full",), "Show every row of summary and tables, with the method and its residual errors.")
+    ] = False
+    hardpoints: Annotated[
+        bool,
+        Option(("--hardpoints",), "Show place, force and moment of every joint and load at its greatest force."),
+    ] = False
     measure: Annotated[
         tuple[str, ...],
         Option(
@@ -104,7 +114,9 @@ class RunRequest(NamedTuple):
     axes: Annotated[
         str | None,
         Option(
-            ("--axes",), "Axes of joint loads: world, or those of one of the two (rotating) bodies.", "world|from|to"
+            ("--axes",),
+            "Axes of joint loads: world, or those of one of the two (rotating) bodies; with --hardpoints any body.",
+            "world|from|to|BODY",
         ),
     ] = None
     units: Annotated[

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from heuncli.app.api import solve_spec
-from heuncli.app.cli.documents import render_document
+from heuncli.app.cli.documents import is_rich, render_document, render_rich_document
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import format_timings, parse_instants, print_warnings
 from heuncli.app.cli.units import TABLES, note_si_format
@@ -16,8 +16,9 @@ from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
-from heuncli.output.documents.document import OutputDocument, OutputTable
-from heuncli.output.snapshots.tables import TablesQuery, make_tables
+from heuncli.output.snapshots.tables import TablesQuery
+from heuncli.output.summary.run_document import RunParts, make_run_parts
+from heuncli.output.summary.summary_document import Summary
 from heuncli.output.tables.heading import make_heading
 from heuncli.results.results import Results
 from heuncli.results.stored_arrays import StoredArray, iter_chunks
@@ -52,26 +53,56 @@ class RunTask(NamedTuple):
     collective: CollectiveTask | None = None
 
 
-def solve_and_render(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
-    """Solve a scene; returns the study and the text of its results, in pieces that are made on demand."""
-    request, selection = task.request, task.selection
+class RenderedRun(NamedTuple):
+    """A solved scene, and the text of its results in pieces that are made on demand.
+
+    summary: of a load case, which the summary of all cases needs
+    """
+
+    study: Study
+    pieces: Iterable[str]
+    summary: Summary | None = None
+
+
+def solve_and_render(task: RunTask, spec: Spec, case: str = "") -> RenderedRun:
+    """Solve a scene and render its results; case: name of its load case, if it is one of all."""
+    request = task.request
     study = solve_spec(spec, task.options)
     with attach_locations(spec):
         if task.measures:
-            return study, [_render_measures(task, study)]
+            return RenderedRun(study, [_render_measures(task, study)])
         if task.collective is not None:
             from heuncli.app.commands.run.collective import make_collectives_document
 
             document = make_collectives_document(task.collective, study, task.units)
-            facts = make_heading(study.results, request.verbose)
-            return study, [*render_document(document._replace(facts=facts), task.form, request.output)]
-        is_explicit = (
-            request.only is not None or spec.report.results is not None
-        ) and "foundation" in selection.reports
+            facts = make_heading(study.results, request.verbose, brief=not request.full)
+            return RenderedRun(study, [*render_document(document._replace(facts=facts), task.form, request.output)])
         labels = replace(make_labels(spec), units=task.units)
         if task.form not in TABLES:
-            return study, _export(request, task.form, study, labels)
-        return study, [_report(request, task.form, study, labels, selection, details=is_explicit)]
+            return RenderedRun(study, _export(request, task.form, study, labels))
+        parts = make_run_parts(
+            study, labels, make_query(task, study, spec), case,
+            has_summary=request.only is None, show_reductions=request.verbose,
+        )  # fmt: skip
+        shown = parts._replace(summary=None) if case else parts
+        return RenderedRun(study, render_parts(task, shown), parts.summary)
+
+
+def make_query(task: RunTask, study: Study, spec: Spec) -> TablesQuery:
+    """Make the query of the tables."""
+    request, selection = task.request, task.selection
+    is_explicit = (request.only is not None or spec.report.results is not None) and "foundation" in selection.reports
+    times = parse_instants(request.at, study) if request.at is not None else None
+    return TablesQuery(selection, times, request.all, is_explicit, full=request.full or request.verbose)
+
+
+def render_parts(task: RunTask, parts: RunParts) -> list[str]:
+    """Render heading, summary and tables."""
+    request = task.request
+    document = parts.make_document(full=request.full)
+    if parts.summary is None or parts.summary.is_empty or not is_rich(task.form, request.output):
+        return [*render_document(document, task.form, request.output)]
+    return render_rich_document(document)
 
 
 def _render_measures(task: RunTask, study: Study) -> str:
@@ -113,20 +144,6 @@ def _export(request: RunRequest, form: str, study: Study, labels: Labels) -> Ite
     times = parse_instants(request.at, study) if request.at is not None else None
     results = study.results if times is None else study.resample(times)
     return iter_json_pieces(results) if form == "json" else iter_csv_pieces(results, labels)
-
-
-def _report(
-    request: RunRequest, form: str, study: Study, labels: Labels, selection: Selection, *, details: bool
-) -> str:
-    times = parse_instants(request.at, study) if request.at is not None else None
-    tables = make_tables(study, labels, TablesQuery(selection, times, request.all, details))
-    return _render_document(request, form, study, tables)
-
-
-def _render_document(request: RunRequest, form: str, study: Study, tables: list[OutputTable]) -> str:
-    """Render tables below the heading of the run."""
-    document = OutputDocument(study.results.title, make_heading(study.results, request.verbose), tables)
-    return "".join(render_document(document, form, request.output))
 
 
 def _check_strict(results: Results, warnings: list[str]) -> int:

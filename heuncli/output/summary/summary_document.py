@@ -1,0 +1,222 @@
+"""The summary of a run, or of all its load cases, as a table of a dozen lines, as data and as CSV."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, TextCell
+from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
+from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, RunSummary, SummaryRow
+from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NOTE
+from heuncli.results.results_schema import XYZ
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels
+from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.version import VERSION
+
+HEADING = 'SUMMARY  greatest loads; of a joint the reaction of "from" on "to"'
+MAX_LINES = 12  # rows, and lines on what is indeterminate
+MAX_GROUPS = 4  # of what is indeterminate
+ALONG_AXIS = 0.9995  # cosine: a direction is that of an axis, to the decimals shown
+TIME_DIGITS = 4
+MIN_DIGITS = 2  # of a number far smaller than others of its unit
+EXCEEDED = 1.0  # utilisation
+
+
+class Summary(NamedTuple):
+    """The summary of a run, or the governing rows of its cases.
+
+    axes: in which directions are given, in words
+    redundant: number of redundant constraints
+    span: length of the longest run [s]
+    """
+
+    rows: Sequence[SummaryRow]
+    groups: Sequence[IndeterminateGroup]
+    labels: Labels
+    axes: str
+    redundant: int = 0
+    span: float = 0.0
+    crank: str = ""
+    notes: Sequence[str] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is loaded and nothing indeterminate."""
+        return not (self.rows or self.groups)
+
+
+def merge_cases(summaries: Sequence[Summary]) -> Summary:
+    """Return the summary of several cases: of each thing the row that governs."""
+    governing: dict[tuple[str, str], SummaryRow] = {}
+    for row in (row for summary in summaries for row in summary.rows):
+        best = governing.get((row.kind, row.name))
+        if best is None or _rank(row) > _rank(best):
+            governing[row.kind, row.name] = row
+    groups = dict.fromkeys(group for summary in summaries for group in summary.groups)
+    notes = dict.fromkeys(note for summary in summaries for note in summary.notes)
+    cranks = {summary.crank for summary in summaries}
+    return summaries[0]._replace(
+        rows=list(governing.values()), groups=list(groups), notes=list(notes),
+        redundant=max(summary.redundant for summary in summaries), span=max(summary.span for summary in summaries),
+        crank=cranks.pop() if len(cranks) == 1 else "",
+    )  # fmt: skip
+
+
+def _rank(row: SummaryRow) -> tuple[int, float]:
+    """Return what decides between the rows of one thing: an earlier alternative, then the larger value."""
+    quantity = row.path.removeprefix(row.path.partition(".")[0]).removeprefix(f".{row.name}").lstrip(".")
+    kind = next(kind for kind in KINDS if kind.word == row.kind)
+    place = next(i for i, quantities in enumerate(kind.alternatives) if quantity in quantities)
+    return -place, abs(row.value)
+
+
+def choose_rows(rows: Sequence[SummaryRow], count: int) -> list[SummaryRow]:
+    """Choose the rows of a short summary: the largest of each kind, then of all, given loads last.
+
+    They stand in the order of the kinds, the largest of each first.
+    """
+    order = {kind.word: i for i, kind in enumerate(KINDS)}
+    ranked = sorted(rows, key=lambda row: -row.share)
+    firsts = {row.kind: row for row in reversed(ranked)}
+    others = [row for row in ranked if row is not firsts[row.kind]]
+    chosen = [*firsts.values(), *sorted(others, key=lambda row: row.is_given)][:count]
+    return sorted(chosen, key=lambda row: (order[row.kind], -row.share))
+
+
+def make_summary_table(summary: Summary, *, full: bool = False) -> OutputTable:
+    """Make the table; full: with every row."""
+    lines = format_indeterminate(summary.groups, summary.labels, summary.redundant)
+    lines_shown = lines if full else lines[:MAX_GROUPS]
+    rows = choose_rows(summary.rows, len(summary.rows) if full else MAX_LINES - len(lines_shown))
+    has_cases = any(row.case for row in rows)
+    crank = summary.crank and any(row.angle is not None for row in rows)
+    columns = [
+        OutputColumn("", "text"), OutputColumn("greatest"), OutputColumn("", "text"), OutputColumn("direction", "text"),
+        OutputColumn("at [s]"), *([OutputColumn(_format_crank_head(summary))] if crank else []),
+        *([OutputColumn("case", "text")] if has_cases else []),
+    ]  # fmt: skip
+    body: list[tuple[Cell, ...]] = []
+    for row in rows:
+        angle = [_format_angle(row, summary.labels)] if crank else []
+        body.append((*_make_cells(row, summary), *angle, *([row.case] if has_cases else [])))
+    further = len(summary.rows) - len(rows), len(lines) - len(lines_shown)
+    notes = [*lines_shown, *([f"and {sum(further)} further: --full"] if any(further) else []), *summary.notes]
+    if any(row.is_partly_open for row in rows):
+        notes.append(PARTLY_OPEN_NOTE)
+    shown = [i for i in range(len(columns)) if i < 3 or any(row[i] for row in body)]
+    cells = tuple(tuple(row[i] for i in shown) for row in body)
+    return OutputTable(f"{HEADING}; {summary.axes}", tuple(columns[i] for i in shown), cells, tuple(notes))
+
+
+def _make_cells(row: SummaryRow, summary: Summary) -> tuple[Cell, ...]:
+    """Make the cells of name, value, unit, direction or place, and instant."""
+    style = _choose_style(row, summary)
+    text = style.write_with_error(row.value) + "*" * row.is_partly_open + MARK * row.is_doubtful
+    value = TextCell(text, is_governing=row.unit == "1" and row.value > EXCEEDED)
+    where = format_direction(row.direction) if row.direction is not None else _format_place(row, summary)
+    time = CONSTANT if row.is_constant and summary.span > 0.0 else _format_time(row.time, summary.span)
+    return name_row(row, summary.labels), value, "" if row.unit == "1" else style.unit, where, time
+
+
+def _choose_style(row: SummaryRow, summary: Summary) -> ReaderStyle:
+    """Choose unit and decimals by the largest number of the same SI unit, with two significant digits at least."""
+    units = summary.labels.units
+    largest = max(abs(other.value) for other in summary.rows if other.unit == row.unit)
+    style = choose_reader_style(row.unit, largest, units, row.error)
+    digits = MIN_DIGITS - 1 - math.floor(math.log10(style.size * abs(row.value)))
+    return style._replace(decimals=max(style.decimals, digits))
+
+
+def name_row(row: SummaryRow, labels: Labels) -> str:
+    """Name what a row is of: "joint main", "section rod, bending moment M1"."""
+    if not row.name:
+        return row.label.removesuffix(", force")
+    words = describe_object(row.path.partition(".")[0], row.name, labels)
+    quantity = row.label.removeprefix(words).removeprefix(", ")
+    is_plain = quantity in ("force", "load", "drive") or not row.label.startswith(words)
+    return f"{row.kind} {words}" + ("" if is_plain else f", {quantity}")
+
+
+def format_direction(direction: Sequence[float]) -> str:
+    """Format a unit vector: an axis where it is one, else its components."""
+    for axis, component in zip(XYZ, direction, strict=True):
+        if abs(component) > ALONG_AXIS:
+            return f"{'+' if component > 0.0 else '−'}{axis}"
+    numbers = (f"{component:.{DIRECTION_DECIMALS}f}" for component in direction)
+    return f"({', '.join('0' if float(text) == 0.0 else text.replace('-', '−') for text in numbers)})"
+
+
+def _format_place(row: SummaryRow, summary: Summary) -> str:
+    if row.place is None or math.isnan(row.place.s):
+        return ""
+    style = choose_reader_style("m", row.place.s, summary.labels.units)
+    side = f" {row.place.side}" if row.place.side else ""
+    return f"s = {style.write(row.place.s)} {style.unit}{side}"
+
+
+def _format_time(time: float, span: float) -> str:
+    if span <= 0.0:
+        return ""
+    decimals = max(0, TIME_DIGITS - 1 - math.floor(math.log10(span)))
+    return f"{time:.{decimals}f}"
+
+
+def _format_crank_head(summary: Summary) -> str:
+    name = describe_object("joints", summary.crank, summary.labels)
+    return f"{name} [{_find_angle_unit(summary.labels)[0]}]"
+
+
+def _find_angle_unit(labels: Labels) -> tuple[str, float]:
+    """Return the display unit of angles: degrees unless the user chose another."""
+    return labels.units.find("rad") if labels.units.is_chosen("rad") else ("deg", 180.0 / math.pi)
+
+
+def _format_angle(row: SummaryRow, labels: Labels) -> str:
+    if row.angle is None or row.is_constant:
+        return ""
+    unit, size = _find_angle_unit(labels)
+    return f"{size * row.angle:.{1 if unit == 'deg' else 3}f}".replace("-", "−")
+
+
+# As data, SI
+
+
+def make_blocks(title: str, summary: Summary) -> dict[str, Any]:
+    """Make the rows for JSON, with full digits, and what is indeterminate."""
+    return {
+        "heun": FORMAT,
+        "version": VERSION,
+        "title": title,
+        "summary": [_make_block(row) for row in summary.rows],
+        "indeterminate": [
+            {"what": group.what, "names": list(group.names), "paths": list(group.paths)} for group in summary.groups
+        ],
+    }
+
+
+def _make_block(row: SummaryRow) -> dict[str, Any]:
+    direction = None if row.direction is None else list(row.direction)
+    block: dict[str, Any] = {"path": row.path, "label": row.label, "unit": row.unit, "value": row.value}
+    block |= {"error": row.error, "direction": direction, "time": row.time, "angle": row.angle}
+    block |= {"case": row.case or None}
+    if row.place is not None:
+        block |= {"s": row.place.s, "side": row.place.side}
+    return block | ({"open_at_times": True} if row.is_partly_open else {})
+
+
+CSV_NAMES = ("path", "label", "unit", "value", "error", *(f"direction_{axis}" for axis in XYZ), "time", "angle", "case", "s")
+
+
+def make_records(summary: Summary) -> OutputTable:
+    """Make the rows for CSV, with full digits."""
+    rows = []
+    for row in summary.rows:
+        direction: Sequence[Cell] = (None, None, None) if row.direction is None else row.direction
+        place = None if row.place is None else row.place.s
+        rows.append((row.path, row.label, row.unit, row.value, row.error, *direction, row.time, row.angle, row.case, place))
+    return OutputTable("", tuple(OutputColumn(name) for name in CSV_NAMES), tuple(rows))
