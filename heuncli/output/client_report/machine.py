@@ -20,13 +20,13 @@ DESCRIBED_KEYS = ("names", "notes")  # keys of a model's description that result
 
 
 def make_drawing_parts(data: ReportData) -> list[Part]:
-    """Make the figure of the machine at the first instant of the first case."""
+    """Make the figure of the machine at the instant of the greatest joint force of the first case."""
     run = data.runs[0]
     if not is_claimed(run.study):
         return [Sentence("No positions are claimed: all output times are past the horizon.")]
     case = f", load case {run.name}" if run.name else ""
-    figure = make_scene_figure(FigureSource("", run.study), data.units)._replace(title="")
-    return [Drawing(figure, f"The machine at the start{case}")]
+    figure = make_scene_figure(FigureSource("", run.study), data.units)
+    return [Drawing(figure._replace(title="", words=()), f"The machine at its worst instant{case}: {figure.words[0]}")]
 
 
 def make_model_parts(data: ReportData) -> list[Part]:
