@@ -46,7 +46,9 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
         if label.number:
             middle = 0.5 * (place.left + place.right), 0.5 * (place.top + place.bottom)
             texts.append(Mark(*middle, "circle", colour, False, CIRCLE_SIZE))
-            texts.append(Text(middle[0], middle[1] + 0.35 * SMALL_SIZE, text, SMALL_SIZE, "middle", colour))
+            texts.append(
+                Text(middle[0], middle[1] + 0.35 * SMALL_SIZE, text, SMALL_SIZE, "middle", colour, has_halo=True)
+            )
         else:
             texts.append(Text(place.left, base, text, SMALL_SIZE, colour=colour, has_halo=True))
     return [*lines, *texts], omitted

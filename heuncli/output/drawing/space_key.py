@@ -14,7 +14,7 @@ from heuncli.output.drawing.words import SMALL_SIZE, estimate_width
 INDENT = 20.0  # pixels at both sides of the sheet
 MIN_WIDTH = 420.0  # pixels of a sheet, for its title and key
 AXES_LENGTH, GRAVITY_LENGTH = 20.0, 26.0  # pixels of a unit vector
-AXES_WIDTH, GRAVITY_WIDTH = 64.0, 34.0  # pixels of their places in the key
+AXES_WIDTH, GRAVITY_WIDTH = 64.0, 42.0  # pixels of their places in the key
 KEY_HEIGHT, LINE_HEIGHT = 52.0, 16.0
 GAP = 22.0  # pixels between the entries of the key
 ARROW_HEAD = 8.0  # pixels
@@ -40,7 +40,7 @@ def lay_out_key(key: SpaceKey, pixels_per_unit: float, top: float, width: float)
     shapes, x = list(_draw_axes(key, INDENT, top)), INDENT + AXES_WIDTH
     if key.gravity is not None:
         a, b = (GRAVITY_LENGTH * part for part in key.gravity)
-        middle_x, middle_y = x + 0.5 * GRAVITY_WIDTH, top + 0.5 * KEY_HEIGHT
+        middle_x, middle_y = x + 0.4 * GRAVITY_WIDTH, top + 0.5 * KEY_HEIGHT
         shapes += draw_arrow(middle_x - 0.5 * a, middle_y + 0.5 * b, a, -b, GREY, "gravity")
         shapes.append(Text(middle_x + 7.0, middle_y + 4.0, "g", SMALL_SIZE, colour=GREY))
         x += GRAVITY_WIDTH

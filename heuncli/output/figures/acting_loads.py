@@ -316,7 +316,7 @@ def label_loads(
         tip = place if faces else place + scales.find(pull) * view.project(pull.vector)
         both = [text, moment_texts.pop(key)] if not pull.is_moment and key in moment_texts else [text]
         name = describe_object(pull.kind, pull.name, labels)
-        yield PlaceLabel(*to_pair(tip), f"{name} {', '.join(both)}", name, pull.pen)
+        yield PlaceLabel(*to_pair(tip), f"{name} {' / '.join(both)}", name, pull.pen)
 
 
 def _iter_values(loads: ActingLoads, units: Units, *, moments: bool) -> Iterator[tuple[ActingLoad, str]]:
@@ -349,17 +349,19 @@ def _draw_distributed_load(
     yield Strokes(np.stack([tails[:-1], tails[1:]], axis=1), APPLIED_PEN)
 
 
-def iter_key_arrows(loads: ActingLoads, scales: LoadScales, units: Units) -> Iterator[KeyArrow]:
-    """Yield an arrow of a round number with its words: one for each kind of forces, and one for moments."""
+def iter_key_arrows(
+    loads: ActingLoads, arrows: Sequence[Arrow], scales: LoadScales, units: Units
+) -> Iterator[KeyArrow]:
+    """Yield an arrow of a round number with its words for each kind of forces and of moments among drawn arrows."""
+    drawn = {(arrow.pen, arrow.is_double) for arrow in arrows if arrow.description}
     for moments, scale in ((False, scales.force), (True, scales.moment)):
-        shown = loads.select(moments=moments)
-        if not shown:
+        if not loads.select(moments=moments):
             continue
         style = loads.choose_style(units, moments=moments)
         value = round_down(style.size * loads.find_largest(moments=moments))
         text = f"{format_short(value)} {style.unit}"
         for pen, words in KINDS:
-            if any(pull.pen == pen for pull in shown):
+            if (pen, moments) in drawn:
                 yield KeyArrow(scale * value / style.size, pen, f"{text} {words}", is_double=moments)
 
 

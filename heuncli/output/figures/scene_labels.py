@@ -9,6 +9,7 @@ import numpy as np
 from heuncli.output.drawing.figure import PlaceLabel
 
 MAX_LABELS = 20  # with more of them, numbers stand for the words
+SEPARATOR = " / "  # between the names of one place
 SAME_PLACE = 0.004  # of the figure's side: closer places are one
 
 
@@ -37,6 +38,6 @@ def _merge_places(labels: Sequence[PlaceLabel], tolerance: float) -> list[PlaceL
         k = next(near, None)
         if k is None:
             merged.append(label)
-        elif label.text not in merged[k].text.split(", "):
-            merged[k] = merged[k]._replace(text=f"{merged[k].text}, {label.text}")
+        elif label.text not in merged[k].text.split(SEPARATOR):
+            merged[k] = merged[k]._replace(text=f"{merged[k].text}{SEPARATOR}{label.text}")
     return merged

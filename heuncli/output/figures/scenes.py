@@ -45,6 +45,7 @@ from heuncli.study.quantities.reader_numbers import choose_prefix, choose_reader
 from heuncli.study.quantities.table_units import Units
 
 TIME_DIGITS = 4
+WORST_WORDS = {"joints": "joint", "forces": "bushing"}
 HEIGHT = 560.0  # pixels, maximum
 N_SMOOTH_FACES, MAX_SMOOTH_BODIES = 60, 40  # faces about an axis, and up to how many bodies
 LATER_PEN = 7  # of the labels of later instants
@@ -154,8 +155,9 @@ def make_machine_figure(
     view, size, side = posed_machine.view, posed_machine.size, machine_window.side
     loads = loads.drop_slight_moments(side / size)
     scales = choose_scales(loads, side)
-    arrows = list(draw_loads(loads, view, size, side, scales))
-    window = machine_window.extend_to_arrows([item for item in arrows if isinstance(item, Arrow)])
+    load_items = list(draw_loads(loads, view, size, side, scales))
+    arrows = [item for item in load_items if isinstance(item, Arrow)]
+    window = machine_window.extend_to_arrows(arrows)
     labels = make_labels(posed_machine.spec)
     load_labels = list(label_loads(loads, view, size, side, scales, labels, units)) if posed_machine.has_names else []
     names = [
@@ -168,7 +170,7 @@ def make_machine_figure(
         *clip_items(later, window),
         *traces.draw_paths(posed_machine, point_paths),
         *clip_items(first, window),
-        *arrows,
+        *load_items,
         *place_labels,
         *_label_instants(posed_machine),
     ]
@@ -177,7 +179,7 @@ def make_machine_figure(
         Scaling(f"{axis} [{unit}]", low, high)
         for axis, low, high in zip((x_name, y_name), window.low.tolist(), window.high.tolist(), strict=True)
     )
-    key = _make_key(posed_machine, window, units, [*iter_key_arrows(loads, scales, units)], numbers)
+    key = _make_key(posed_machine, window, units, [*iter_key_arrows(loads, arrows, scales, units)], numbers)
     panel = Panel(x_axis, y_axis, tuple(items), HEIGHT, True, True, name, True, key)
     notes = [*window.notes, *_make_notes(posed_machine, loads)]
     words = [describe_instants(posed_machine, None, units)]
@@ -256,10 +258,12 @@ def describe_instants(posed_machine: PosedMachine, worst: WorstInstant | None, u
     """Describe the instants and the view; worst: the instant of the greatest joint force, if that is known."""
     times = posed_machine.poses.times.tolist()
     text = f"t = {format_short(times[0], TIME_DIGITS)} s"
-    if worst is not None and worst.joint and worst.time == times[0]:
+    if worst is not None and worst.name and worst.time == times[0]:
         style = choose_reader_style("N", worst.force, units)
-        name = describe_object("joints", worst.joint, make_labels(posed_machine.spec))
-        text += f", worst instant: greatest joint force, {name} {style.write(worst.force)} {style.unit}"
+        name = describe_object(worst.kind, worst.name, make_labels(posed_machine.spec))
+        text += (
+            f", worst instant: greatest {WORST_WORDS[worst.kind]} force, {name} {style.write(worst.force)} {style.unit}"
+        )
     if len(times) > 1:
         text += f"; pale: t = {', '.join(format_short(t, TIME_DIGITS) for t in times[1:])} s"
     return f"{text}; seen from {posed_machine.view.description}"

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
@@ -14,34 +15,41 @@ from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch
 
-JOINT_REPORTS = frozenset({"joints"})
-
 
 class WorstInstant(NamedTuple):
-    """The instant [s] of the greatest joint force, the joint, and the force [N].
+    """The instant [s] of the greatest force, and what transmits it.
 
-    joint: empty where no joint has a known force; the instant is then the first of the run
+    kind, name: joints and a joint, or forces and a bushing in a scene without joints; empty if no force is known, and
+    then the instant is the first of the run
+    force: its magnitude [N]
     """
 
     time: float
-    joint: str = ""
+    kind: str = ""
+    name: str = ""
     force: float = 0.0
 
 
 def find_worst_instant(study: Study) -> WorstInstant:
-    """Find the greatest joint force of a run before its horizon, between the samples too."""
-    first, names = float(study.results.time[0]), list(study.spec.joints)
+    """Find the greatest joint force of a run before its horizon, between the samples too; without joints, the greatest
+    force of a bushing.
+    """
+    spec, first = study.spec, float(study.results.time[0])
+    bushings = [name for name, force in spec.forces.items() if LOAD_KINDS[force.type].place == "bodies"]
+    kind, names = ("joints", list(spec.joints)) if spec.joints else ("forces", bushings)
     if study.has_one_instant or not names:
         return WorstInstant(first)
 
     def collect(results: Results) -> list[Channel]:
-        return [make_path_channel(find_values(results, f"joints.{name}.force")) for name in names]
+        if names[0] not in getattr(results, kind):  # the run was asked for other reports
+            results = study.compute_reports(results.time, frozenset({kind}))
+        return [make_path_channel(find_values(results, f"{kind}.{name}.force")) for name in names]
 
-    error = find_search_error(study, ("joints", names[0], "force"))
+    error = find_search_error(study, (kind, names[0], "force"))
     search = ChannelSearch(collect, lambda channel: error if math.isfinite(error) else math.nan, (1.0,))
-    bounds = study.search_extremes(search, JOINT_REPORTS)
+    bounds = study.search_extremes(search, frozenset({kind}))
     forces = np.nan_to_num(np.asarray(bounds.high), nan=-math.inf)
     k = int(np.argmax(forces))
     if not forces[k] > 0.0:
         return WorstInstant(first)
-    return WorstInstant(float(bounds.high_at[k]), names[k], float(forces[k]))
+    return WorstInstant(float(bounds.high_at[k]), kind, names[k], float(forces[k]))

@@ -20,7 +20,7 @@ from heuncli.study.queries.measure import MeasureRequest
 
 WORST = "worst"  # the instant of the greatest joint force, which is the default
 INSTANT_WORDS = {"start": "first"}  # words of --at that only scenes know
-REPORTS = ("bodies", "joints", "impulses")  # positions and loads
+REPORTS = ("bodies", "joints", "forces", "impulses")  # positions and loads
 
 
 def draw(target: PlotTarget, request: PlotRequest) -> Figure:
