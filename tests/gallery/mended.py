@@ -8,14 +8,14 @@ every row has all kinds.
 from __future__ import annotations
 
 MENDED: dict[str, tuple[str, ...]] = {
-    "overlap": (),  # words over words
-    "struck": (),  # a stroke through words
-    "outside": (),  # words beyond the picture or the window
-    "empty": (),  # a third of the picture without ink
-    "path": (),  # joints.main.force in place of a name
-    "noise": (),  # 3e-15, 0.000219 kN
-    "digits": (),  # more than five significant ones
-    "folder": (),  # a folder of the machine that drew it
+    "overlap": ("scene",),  # words over words
+    "struck": ("scene",),  # a stroke through words
+    "outside": ("scene",),  # words beyond the picture or the window
+    "empty": ("scene",),  # a third of the picture without ink
+    "path": ("scene",),  # joints.main.force in place of a name
+    "noise": ("scene",),  # 3e-15, 0.000219 kN
+    "digits": ("scene",),  # more than five significant ones
+    "folder": ("scene",),  # a folder of the machine that drew it
     "narrow": (),  # a long table on less than half of the sheet
     "number": (),  # a marked number that is no extreme of the run
 }

@@ -10,16 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial import ConvexHull
 
 from heuncli.output.figures.courses import choose_instants
 from heuncli.output.machine_geometry.elements import collect_elements
 from heuncli.output.machine_geometry.gltf import encode_gltf
-from heuncli.output.machine_geometry.machine import Machine, find_drawn_shapes, make_machine
+from heuncli.output.machine_geometry.machine import BodyGeometry, Machine, find_drawn_shapes, make_machine
 from heuncli.output.machine_geometry.poses import Poses, compute_poses, find_up_direction
 from heuncli.output.machine_geometry.solids import ROD_RADIUS_RATIO, ROUND_FACES
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.models import Body, Shape, Spec
+from heuncli.scene.file_format.models import Shape, Spec
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS
@@ -84,14 +85,14 @@ def test_another_program_finds_each_shape_closed_and_of_its_volume(name: str) ->
             body = node if node in spec.bodies else told.graph.transforms.parents[node]
             found.setdefault(body, []).append(mesh)
     for look in machine.bodies:
-        body, meshes = spec.bodies[look.name], found.pop(look.name, [])
+        meshes = found.pop(look.name, [])
         volumes = [
             volume(shape)
             for shape in find_drawn_shapes(spec, look.name, collect_elements(spec, None).discs.get(look.name, ()))
             if shape.type != "point"
         ]
-        if look.is_ellipsoid:
-            volumes = [spread(body)]
+        if look.surfaces and not volumes:
+            volumes = [hull_volume(look)]
         with np.errstate(invalid="ignore"):  # flat things have no volume to divide by
             told_volumes = [float(mesh.volume) for mesh in meshes]
         assert sorted(told_volumes) == pytest.approx(sorted(volumes), rel=1e-5, abs=1e-12)
@@ -100,11 +101,13 @@ def test_another_program_finds_each_shape_closed_and_of_its_volume(name: str) ->
     assert not found
 
 
-def spread(body: Body) -> float:
-    """The volume of the ellipsoid with the inertia of a body, whose faces are flat."""
-    moments = np.linalg.eigvalsh(np.array(body.inertia))
-    squares = np.maximum(2.5 / body.mass * (moments.sum() - 2.0 * moments), 0.0)
-    return ball(1.0) * float(np.prod(np.sqrt(squares)))
+def hull_volume(look: BodyGeometry) -> float:
+    """The volume of the hull of a body's points and its centre of mass; 0 of a plate."""
+    (surface,) = look.surfaces
+    offsets = surface.corners - surface.corners.mean(axis=0)
+    if np.linalg.matrix_rank(offsets, tol=1e-6 * np.abs(offsets).max()) < 3:
+        return 0.0
+    return float(ConvexHull(surface.corners).volume)
 
 
 def ball(radius: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,9 @@ import pytest
 from heuncli.output.machine_geometry.views import SceneView, parse_view
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
+from tests.gallery.contents import find_spec
 from tests.shared.command import Heun
-from tests.shared.plotted import PlottedPanel, far_from, panels_of, texts_of
+from tests.shared.plotted import PlottedPanel, far_from, key_arrows, panels_of, texts_of, views_of
 
 SPECS = Path(__file__).parents[2] / "specs"
 CASES = [  # spec, view, instant; closed loops, planar and spatial ones, redundant ones, ropes
@@ -22,6 +24,9 @@ CASES = [  # spec, view, instant; closed loops, planar and spatial ones, redunda
     ("excavator", "z", 1.0), ("jib", "0,0", 0.5), ("bricard", "10,-60", 0.2), ("engine", "x", 0.003),
     ("overhang", "z", 0.0),
 ]  # fmt: skip
+VALUE = re.compile(r"(.+?) ([\d.]+) (N|kN|MN)(?: / .*)?")
+NEWTONS = {"N": 1.0, "kN": 1e3, "MN": 1e6}
+JOINT_KEY = re.compile(r"([\d.]+) (N|kN|MN) joint on .*")
 
 
 def run(heun: Heun, spec: str) -> dict[str, Any]:
@@ -32,13 +37,13 @@ def run(heun: Heun, spec: str) -> dict[str, Any]:
     return found
 
 
-def drawn(heun: Heun, spec: str, *words: str) -> tuple[PlottedPanel, list[str]]:
-    """The panel of its scene, and all that is written."""
+def drawn(heun: Heun, spec: str, *words: str) -> tuple[PlottedPanel, str]:
+    """The view of its scene, and the SVG."""
     done = heun("plot", str(SPECS / f"{spec}.yaml"), "scene", *words, "--quiet", "-o", "scene.svg")
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     text = Path("scene.svg").read_text()
-    (panel,) = panels_of(text, equal=True)
-    return panel, texts_of(text)
+    (view,) = views_of(text)
+    return view, text
 
 
 def seen_from(spec: str, words: str) -> SceneView:
@@ -56,34 +61,61 @@ def middle(panel: PlottedPanel, name: str) -> Array:
 def test_joints_their_forces_and_centres_of_mass(heun: Heun, spec: str, view: str, at: float) -> None:
     results, seen = run(heun, spec), seen_from(spec, view)
     k = int(np.argmin(np.abs(np.array(results["time"]) - at)))
-    panel, words = drawn(heun, spec, "--view", view, "--at", repr(results["time"][k]))
+    panel, text = drawn(heun, spec, "--view", view, "--at", repr(results["time"][k]))
     kinds = results_kinds(spec)
-    checked = 0
+    found, placed = [], []
     for name, joint in results["joints"].items():
         place = seen.project(np.array(joint["point"][k], dtype=np.float64))
         if kinds[name] != "rod":
-            assert np.abs(middle(panel, f"{name}: {kinds[name]}") - place).max() < 1.5 * panel.pixel, name
-            checked += 1
+            found.append(middle(panel, f"{name}: {kinds[name]}"))
+            placed.append(place)
         for line, tip in zip(panel.lines(f"force: {name}"), panel.areas(f"force: {name}"), strict=True):
             force = seen.project(np.array(joint["force"][k], dtype=np.float64))
-            assert np.abs(line[0] - place).max() < 1.5 * panel.pixel
-            # the key tells how long an arrow is: its words stand at the key's tip
-            scale = key_length(panel, words) if force.any() else 0.0
-            assert np.abs(tip[0] - place - scale * force).max() < 0.01 * np.abs(scale * force).max() + panel.pixel, name
-            checked += 1
+            found.append(line[0])
+            placed.append(place)
+            arrow = key_length(panel, text) * force
+            assert np.abs(tip[0] - line[0] - arrow).max() < 0.01 * np.abs(arrow).max() + panel.pixel, name
     for name, body in results["bodies"].items():
-        centre = seen.project(np.array(body["center"][k], dtype=np.float64))
         for ring in panel.lines(f"{name}: centre of mass"):
-            assert np.abs(ring[:-1].mean(axis=0) - centre).max() < 1.5 * panel.pixel, name
-            checked += 1
-    assert checked > len(kinds)
+            found.append(ring[:-1].mean(axis=0))
+            placed.append(seen.project(np.array(body["center"][k], dtype=np.float64)))
+    apart = np.array(found) - np.array(placed)
+    assert len(apart) > len(kinds)
+    assert np.abs(apart - np.median(apart, axis=0)).max() < 1.5 * panel.pixel
 
 
-def key_length(panel: PlottedPanel, words: list[str]) -> float:
-    """How long one newton is drawn, by the key."""
-    (text,) = (word for word in words if word.endswith(': joint reactions, "from" on "to"'))
-    (line,), (tip,) = panel.lines(text), panel.areas(text)
-    return float(tip[0, 0] - line[0, 0]) / float(text.partition(" N:")[0])
+@pytest.mark.parametrize(("spec", "view", "at"), CASES)
+def test_values_at_arrows_are_those_of_the_json(heun: Heun, spec: str, view: str, at: float) -> None:
+    results = run(heun, spec)
+    k = int(np.argmin(np.abs(np.array(results["time"]) - at)))
+    _, text = drawn(heun, spec, "--view", view, "--at", repr(results["time"][k]))
+    forces = {
+        name.replace("_", " "): float(np.linalg.norm(np.array(joint["force"][k], dtype=np.float64)))
+        for name, joint in results["joints"].items()
+    }
+    largest = max(forces.values())
+    written = {}
+    for word in texts_of(text):
+        match = VALUE.fullmatch(re.sub(r"^\d+  ", "", word))  # a number in a circle stands before its name
+        if match and match[1] in forces:
+            digits = len(match[2].partition(".")[2])
+            assert float(match[2]) == pytest.approx(forces[match[1]] / NEWTONS[match[3]], abs=0.51 * 10.0**-digits)
+            written[match[1]] = match[2]
+    assert {name for name, force in forces.items() if force >= 0.011 * largest} <= set(written)
+
+
+def key_length(panel: PlottedPanel, text: str) -> float:
+    """How long one newton is drawn [m], by the key."""
+    ((match, pixels),) = [
+        (m, pixels) for words, pixels in key_arrows(text).items() if (m := JOINT_KEY.fullmatch(words))
+    ]
+    return pixels * panel.x.step / (float(match[1]) * NEWTONS[match[2]])
+
+
+def shift_of(panel: PlottedPanel, seen: SceneView, results: dict[str, Any], joint: str, kind: str, k: int) -> Array:
+    """How far the view's origin is from the world's, by one of its joints."""
+    place = seen.project(np.array(results["joints"][joint]["point"][k], dtype=np.float64))
+    return np.asarray(middle(panel, f"{joint}: {kind}") - place)
 
 
 def results_kinds(spec: str) -> dict[str, str]:
@@ -93,24 +125,67 @@ def results_kinds(spec: str) -> dict[str, str]:
 
 def test_a_way_goes_through_the_places_of_its_point(heun: Heun) -> None:
     results = run(heun, "four_bar")
-    panel, _ = drawn(heun, "four_bar", "coupler.C", "rocker.center", "--view", "z")
+    panel, _ = drawn(heun, "four_bar", "coupler.C", "rocker.center", "--view", "z", "--at", "0")
+    shift = shift_of(panel, seen_from("four_bar", "z"), results, "C", "line", 0)
     (way,) = panel.lines("rocker.center")
     centres = np.array(results["bodies"]["rocker"]["center"])[:, :2]
-    assert far_from(centres, way) < 1.5 * panel.pixel
+    assert far_from(centres, way - shift) < 1.5 * panel.pixel
     (other,) = panel.lines("coupler.C")
-    assert far_from(np.array(results["joints"]["C"]["point"])[:, :2], other) < 1.5 * panel.pixel
+    assert far_from(np.array(results["joints"]["C"]["point"])[:, :2], other - shift) < 1.5 * panel.pixel
 
 
-def test_units_of_the_axes(heun: Heun) -> None:
+def test_chosen_units_are_those_of_the_scale_and_the_arrows(heun: Heun) -> None:
     metres, _ = drawn(heun, "four_bar")
-    millimetres, words = drawn(heun, "four_bar", "--units", "mm,kN")
-    assert middle(millimetres, "C: line") == pytest.approx(1e3 * middle(metres, "C: line"), abs=1.5 * millimetres.pixel)
-    assert "x [mm]" in words and "y [mm]" in words and any(" kN: joint reactions" in word for word in words)
+    millimetres, text = drawn(heun, "four_bar", "--units", "mm,N")
+    assert metres.x.step == pytest.approx(millimetres.x.step, rel=1e-3)
+    words = texts_of(text)
+    assert any(re.fullmatch(r"\d+ mm", word) for word in words) and any(" N joint on" in word for word in words)
+    _, text = drawn(heun, "four_bar", "--units", "m,kN")
+    assert any(re.fullmatch(r"0\.\d+ m", word) for word in texts_of(text))
 
 
-def test_one_unit_is_as_long_on_both_axes(heun: Heun) -> None:
-    panel, _ = drawn(heun, "crane", "--view", "x")
-    assert panel.x.step == pytest.approx(-panel.y.step, rel=2e-3)
+def test_a_view_has_no_axes_with_numbers_and_no_frame(heun: Heun) -> None:
+    _, text = drawn(heun, "crane", "--at", "0")
+    assert panels_of(text) == []
+    words = texts_of(text)
+    assert {"x", "y", "z", "g"} <= set(words) and not any(word.lstrip("-").replace(".", "").isdigit() for word in words)
+
+
+def test_by_default_the_greatest_joint_force_is_drawn_and_it_is_said(heun: Heun) -> None:
+    spec = str(SPECS / "engine.yaml")
+    _, text = drawn(heun, "engine")
+    peaks = {}
+    for name in results_kinds("engine"):
+        done = heun("run", spec, "-q", "--measure", f"max joints.{name}.force")
+        peaks[name] = float(done.stdout)
+    worst = max(peaks, key=lambda name: peaks[name])
+    (words,) = [word for word in texts_of(text) if "worst instant" in word]
+    said = " ".join(texts_of(text)).partition("greatest joint force, ")[2].split(" ")
+    assert words.startswith("t = ") and said[0] == worst
+    assert float(said[1]) * NEWTONS[said[2].rstrip(";")] == pytest.approx(peaks[worst], rel=1e-3)
+    _, again = drawn(heun, "engine", "--at", "worst")
+    _, start = drawn(heun, "engine", "--at", "start")
+    assert again == text and "t = 0 s; seen" in start
+
+
+def test_all_kinds_of_loads_have_arrows(heun: Heun) -> None:
+    """Springs, motors, the gas of a piston on both sides, mounts, drives."""
+    engine, text = drawn(heun, "engine")
+    assert len(engine.lines("force: gas")) == 2 and any(word.startswith("gas ") for word in texts_of(text))
+    mounts, _ = drawn(heun, "engine_mounts")
+    names = [name for name, force in load(str(SPECS / "engine_mounts.yaml")).forces.items() if force.type == "bushing"]
+    assert len(names) > 2 and all(len(mounts.lines(f"force: {name}")) == 1 for name in names)
+    drive, _ = drawn(heun, "slider_crank", "--view", "30,20")
+    (shaft,), tips = drive.lines("moment: motor"), drive.areas("moment: motor")
+    assert len(shaft) == 2 and len(tips) == 1  # its second head has no name of its own
+
+
+def test_of_many_labels_numbers_are_listed_below(heun: Heun) -> None:
+    assert heun("plot", str(find_spec("v_engine")), "scene", "--quiet", "-o", "scene.svg").returncode == 0
+    words = texts_of(Path("scene.svg").read_text())
+    numbers = [word for word in words if word.isdigit()]
+    listed = [word for word in words if re.match(r"\d+  \S", word)]
+    assert len(numbers) > 20 and sorted(numbers, key=int) == [word.split("  ")[0] for word in listed]
 
 
 def test_the_branch_that_was_assembled_is_seen(heun: Heun, folder: Path) -> None:
@@ -120,9 +195,9 @@ def test_the_branch_that_was_assembled_is_seen(heun: Heun, folder: Path) -> None
     places = []
     for number, one in enumerate((text, other.partition("expect:")[0])):
         (folder / f"bar{number}.yaml").write_text(one)
-        done = heun("plot", f"bar{number}.yaml", "scene", "-o", "bar.svg", "--quiet")
+        done = heun("plot", f"bar{number}.yaml", "scene", "--at", "0", "-o", "bar.svg", "--quiet")
         assert done.returncode == 0, done.stderr
-        (panel,) = panels_of(Path("bar.svg").read_text(), equal=True)
-        places.append(middle(panel, "C: line"))
-    assert places[0] == pytest.approx(places[1] * (1.0, -1.0), abs=2.0 * panel.pixel)
+        (panel,) = views_of(Path("bar.svg").read_text())
+        places.append(middle(panel, "C: line") - middle(panel, "crank: pin"))
+    assert places[0] == pytest.approx(places[1] * (1.0, -1.0), abs=3.0 * panel.pixel)
     assert places[0][1] > 0.05

@@ -12,6 +12,8 @@ from heuncli.results.results import Array
 
 PlaceOf = Callable[[float, float], tuple[float, bool]]  # of a number at x, y: where on the axis, whether on it
 SVG = "{http://www.w3.org/2000/svg}"
+SCALE_BAR, ABOVE_BAR = "scale bar: ", 17.0  # title of a scale bar; pixels from it up to the view
+METRES = {"mm": 1e-3, "m": 1.0, "km": 1e3, "in": 0.0254}
 BELOW, BESIDE, BASE = 16.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
 
 
@@ -96,6 +98,34 @@ def panels_of(svg: str, *, equal: bool = False) -> list[PlottedPanel]:
         found.append(PlottedPanel(left, top, right, bottom, x, y, root))
     named = next((panel.x for panel in reversed(found) if np.isfinite(panel.x.step)), None)
     return [panel._replace(x=named) if named and not np.isfinite(panel.x.step) else panel for panel in found]
+
+
+def views_of(svg: str) -> list[PlottedPanel]:
+    """The views of machines in a drawing, from above: each ends at its key, whose scale bar tells how long a metre is.
+
+    Where the origin stands is not told: places are right but for a shift that is the same for all of a view.
+    """
+    root = tree.fromstring(svg.encode())
+    found, top = [], 0.0
+    for e in root.iter(f"{SVG}polyline"):
+        words = e.findtext(f"{SVG}title") or ""
+        if words.startswith(SCALE_BAR):
+            (left, y), (right, _) = points_of(e)
+            value, unit = words.removeprefix(SCALE_BAR).split(" ")
+            step = float(value) * METRES[unit] / (right - left)
+            axes = PlottedAxis(0.0, step), PlottedAxis(0.0, -step)
+            found.append(PlottedPanel(-np.inf, top, np.inf, float(y) - ABOVE_BAR, *axes, root))
+            top = float(y) + ABOVE_BAR
+    return found
+
+
+def key_arrows(svg: str) -> dict[str, float]:
+    """The arrows of a key by their words: how long each is [pixels]."""
+    root = tree.fromstring(svg.encode())
+    written = {e.text for e in root.iter(f"{SVG}text")}
+    lines = {name: points_of(e) for e in root.iter(f"{SVG}polyline") if (name := e.findtext(f"{SVG}title")) in written}
+    tips = {name: points_of(e) for e in root.iter(f"{SVG}polygon") if (name := e.findtext(f"{SVG}title")) in lines}
+    return {name: float(tip[0, 0] - lines[name][0, 0]) for name, tip in tips.items()}
 
 
 def is_frame(points: Array) -> bool:

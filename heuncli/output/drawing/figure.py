@@ -36,18 +36,26 @@ class Band(NamedTuple):
 
 
 class Strokes(NamedTuple):
-    """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). For hatches, ordinates, symbols."""
+    """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). For hatches, ordinates, symbols.
+
+    dash: lengths of strokes and gaps [pixels]
+    is_ghost: whether they are pale: of another instant than the one that is shown
+    """
 
     ends: Array
     pen: int | None = None
     width: float = 0.7
+    dash: tuple[float, ...] = ()
+    is_ghost: bool = False
 
 
 class Polygon(NamedTuple):
     """A closed line through corners (n, 2), lightly filled or empty.
 
-    is_opaque: whether it nearly hides what lies below
+    is_opaque: whether it hides what lies below
+    is_light: whether its fill is fainter than that of others
     has_outline: whether the line itself is drawn
+    is_ghost: as of strokes
     """
 
     name: str
@@ -57,6 +65,8 @@ class Polygon(NamedTuple):
     is_opaque: bool = False
     width: float = 1.0
     has_outline: bool = True
+    is_ghost: bool = False
+    is_light: bool = False
 
 
 class Arrow(NamedTuple):
@@ -64,6 +74,7 @@ class Arrow(NamedTuple):
 
     name: label at its tip
     description: title shown to readers
+    is_double: whether it has two heads, as of a moment
     """
 
     x: float
@@ -73,6 +84,7 @@ class Arrow(NamedTuple):
     pen: int | None = None
     name: str = ""
     description: str = ""
+    is_double: bool = False
 
 
 class Spot(NamedTuple):
@@ -131,6 +143,8 @@ class PlaceLabel(NamedTuple):
 
     letter: short form for terminals, which is explained below the panel
     is_optional: whether it may be left out without a note
+    number: stands in a circle in place of the words, which the key of the panel lists
+    is_ghost: as of strokes
     """
 
     x: float
@@ -139,6 +153,8 @@ class PlaceLabel(NamedTuple):
     letter: str = ""
     pen: int | None = None
     is_optional: bool = False
+    number: str = ""
+    is_ghost: bool = False
 
 
 class VerticalMark(NamedTuple):
@@ -226,6 +242,31 @@ class Scaling(NamedTuple):
         return (value - self.low) / (self.high - self.low)
 
 
+class KeyArrow(NamedTuple):
+    """An arrow in a key: its length in the unit of the panel, its pen and words; is_double: as of an arrow."""
+
+    length: float
+    pen: int | None
+    text: str
+    is_double: bool = False
+
+
+class SpaceKey(NamedTuple):
+    """What stands outside of a view of a machine in place of axes.
+
+    axes: names of the world's axes with their directions in the view; one in its plane has length 1
+    gravity: its direction in the view, of length 1 in its plane; None if it is not visible
+    bar: length of the scale bar in the unit of the panel, and its words
+    names: what the numbers of labels stand for
+    """
+
+    axes: tuple[tuple[str, float, float], ...]
+    gravity: tuple[float, float] | None
+    bar: tuple[float, str]
+    arrows: tuple[KeyArrow, ...] = ()
+    names: tuple[tuple[str, str], ...] = ()
+
+
 class Panel(NamedTuple):
     """Axes with their items; the first items are below the others.
 
@@ -233,6 +274,7 @@ class Panel(NamedTuple):
     has_equal_scales: whether a unit has the same length on both axes
     is_bare: whether it has no axes
     is_layered: whether items cover those before them; else lines are drawn over filled areas
+    key: stands outside of a view of a machine, which has no axes
     """
 
     x: Scaling
@@ -243,6 +285,7 @@ class Panel(NamedTuple):
     is_bare: bool = False
     title: str = ""
     is_layered: bool = False
+    key: SpaceKey | None = None
 
 
 def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:

@@ -36,6 +36,7 @@ from heuncli.output.drawing.pens import BLACK, DIM, FAINT, GREY, GRID, WHITE, fi
 from heuncli.output.drawing.scales import PanelBox
 from heuncli.output.drawing.shades import find_shade
 from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, VectorDrawing
+from heuncli.output.drawing.space_key import choose_sheet_width, compute_view_width, draw_arrow, lay_out_key
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.output.drawing.ticks import choose_ticks
 from heuncli.output.drawing.words import (
@@ -55,13 +56,14 @@ TITLE_SIZE, NAME_SIZE = 17.0, 12.0  # font sizes
 LINE_HEIGHT = 16.0  # pixels
 LETTER_WIDTH = 0.56  # mean width of a letter in a sentence, in font sizes
 PER_TICK_X, PER_TICK_Y = 78.0, 34.0  # minimum distance of ticks, pixels
-ARROW_HEAD = 8.0  # pixels
 HATCH_STEP = 9.0  # pixels between lines
 CELL_OVERLAP = 0.5  # pixels by which cells overlap, else the background shows between them
 MARGIN = 8.0  # pixels at the edge, for words beside a panel without axes
 MIN_MARK_DISTANCE = 2.0  # pixels between vertical marks
 POINT_SIZE = 1.6  # pixels, half the size of a single point of a curve
-FILL_OPACITY, OPAQUE_OPACITY = 0.14, 0.65  # of a light fill, and of a fill that hides what is behind it
+FILL_OPACITY = 0.14  # of a light fill
+TINT_SHARE, LIGHT_SHARE = 0.18, 0.07  # of its colour in the fill of a body, and of a large one
+GHOST_SHARE = 0.3  # of its colour in what is of another instant
 DRAWING_ORDER = {Area: 0, Line: 1, Mark: 2, Text: 3}  # later ones cover earlier ones
 LAYERED_ORDER = {Area: 0, Line: 0, Mark: 0, Text: 1}
 MAX_EXACT_CORNERS = 8  # an outline with more corners is simplified
@@ -69,7 +71,8 @@ SIMPLIFY_TOLERANCE = 0.1  # pixels
 
 
 def lay_out(figure: Figure, width: float = WIDTH) -> VectorDrawing:
-    """Lay out a figure."""
+    """Lay out a figure; width: of the sheet, which is narrower if all that it shows is narrow."""
+    width = choose_sheet_width(figure, width)
     shapes, y = _lay_out_heading(figure, width)
     shapes += (legend := _lay_out_legend(figure, y, width))[0]
     y = legend[1]
@@ -85,6 +88,10 @@ def lay_out(figure: Figure, width: float = WIDTH) -> VectorDrawing:
         shapes += panel_shapes
         omitted += without_words
         y = box.bottom + (AXIS_SPACE if panel.x.shown_label else PANEL_SPACE)
+        if panel.key is not None:
+            pixels_per_unit = (box.right - box.left) / (panel.x.high - panel.x.low)
+            key_shapes, y = lay_out_key(panel.key, pixels_per_unit, box.bottom, width)
+            shapes += key_shapes
     notes = [*figure.notes, *make_omitted_note(omitted)]
     y += 6.0 if notes else 0.0
     for note in notes:
@@ -138,7 +145,11 @@ def _lay_out_legend(figure: Figure, y: float, width: float) -> tuple[list[Shape]
 def _make_box(panel: Panel, top: float, width: float) -> PanelBox:
     """Return the field of a panel below a height; with equal scales it is as wide as needed, in the middle."""
     left, right, height = LEFT, width - RIGHT, panel.height
-    if panel.has_equal_scales:
+    if panel.key is not None:
+        view_width = compute_view_width(panel, width)
+        left, right = 0.5 * (width - view_width), 0.5 * (width + view_width)
+        height = view_width * (panel.y.high - panel.y.low) / (panel.x.high - panel.x.low)
+    elif panel.has_equal_scales:
         x_span, y_span = panel.x.high - panel.x.low, panel.y.high - panel.y.low
         scale = min((right - left) / x_span, height / y_span)
         middle = (left + right) / 2.0
@@ -222,17 +233,19 @@ def _draw_band(item: Band, box: PanelBox) -> Iterator[Shape]:
 
 def _draw_strokes(item: Strokes, box: PanelBox) -> Iterator[Shape]:
     colour = GREY if item.pen is None else find_pen(item.pen).colour
+    colour = mix_with_white(colour, GHOST_SHARE) if item.is_ghost else colour
     first, last = (box.to_pixels(*item.ends[:, k].T) for k in (0, 1))
     is_connected = (first[1:] == last[:-1]).all(axis=1)  # begins where the one before ends
     for run in np.split(np.arange(len(first)), np.flatnonzero(~is_connected) + 1):
         if len(run):
             points = np.concatenate([first[run], last[run[-1:]]])
             points = simplify(points) if len(points) > MAX_EXACT_CORNERS else points
-            yield Line(tuple(map(tuple, points.tolist())), colour, item.width)
+            yield Line(tuple(map(tuple, points.tolist())), colour, item.width, item.dash)
 
 
 def _draw_polygon(item: Polygon, box: PanelBox) -> Iterator[Shape]:
     colour = find_colour(item.pen)
+    colour = mix_with_white(colour, GHOST_SHARE) if item.is_ghost else colour
     outline = box.to_pixels(*item.corners.T)
     corners = (
         tuple(map(tuple, simplify(outline).tolist()))
@@ -240,7 +253,8 @@ def _draw_polygon(item: Polygon, box: PanelBox) -> Iterator[Shape]:
         else tuple(map(tuple, outline.tolist()))
     )
     if item.is_opaque:
-        yield Area(corners, mix_with_white(colour, FILL_OPACITY), OPAQUE_OPACITY, escape(item.name))
+        share = LIGHT_SHARE if item.is_light else TINT_SHARE
+        yield Area(corners, mix_with_white(colour, share), 1.0, escape(item.name))
     elif item.is_filled:
         yield Area(corners, colour, FILL_OPACITY, escape(item.name))
     if item.has_outline:
@@ -282,7 +296,7 @@ def _draw_parts(
             yield Area(points, colour, name=name)
         else:
             if part.fill:
-                yield Area(points, WHITE)
+                yield Area(points, mix_with_white(colour, TINT_SHARE) if part.fill == "tint" else WHITE)
             yield Line((*points, points[0]) if part.is_closed else points, colour, 1.2, name=name)
         name = ""  # only once
 
@@ -293,21 +307,13 @@ def _skip_label(item: PlaceLabel, box: PanelBox) -> Iterator[Shape]:
 
 
 def _draw_arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
-    colour = find_colour(item.pen)
+    colour, name = find_colour(item.pen), escape(item.description or item.name)
     x0, y0 = box.to_pixel_x(item.x), box.to_pixel_y(item.y)
     x1, y1 = box.to_pixel_x(item.x + item.by_x), box.to_pixel_y(item.y + item.by_y)
+    yield from draw_arrow(x0, y0, x1 - x0, y1 - y0, colour, name, is_double=item.is_double)
     length = math.hypot(x1 - x0, y1 - y0)
-    if not length > 0.0:
-        return
-    a, b = (x1 - x0) / length, (y1 - y0) / length
-    head = min(ARROW_HEAD, 0.6 * length)
-    back = x1 - head * a, y1 - head * b
-    name = escape(item.description or item.name)
-    yield Line(((x0, y0), back), colour, 1.6, name=name)
-    side = 0.4 * head
-    left, right = (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)
-    yield Area(((x1, y1), left, right), colour, 1.0, name)
-    if item.name:
+    if item.name and length > 0.0:
+        a, b = (x1 - x0) / length, (y1 - y0) / length
         yield Text(
             x1 + 5.0 * a, y1 + 5.0 * b + 4.0, escape(item.name), SMALL_SIZE, "end" if a < 0.0 else "start", colour
         )

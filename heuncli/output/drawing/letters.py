@@ -17,6 +17,7 @@ from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import HEIGHT, Figure, Item, Panel, PlaceLabel, Trace, VerticalMark
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
+from heuncli.output.drawing.letter_key import format_key
 from heuncli.output.drawing.pens import find_pen
 from heuncli.output.drawing.ticks import choose_ticks
 from heuncli.output.drawing.words import order_items
@@ -99,7 +100,9 @@ def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str
     heads = wrap_text(escape(" ".join(part for part in (panel.title, _find_y_label(panel)) if part)), style.width, 0)
     lines = [*(head for head in heads if head)]
     if panel.is_bare:
-        return lines + canvas.format_lines() + key, omitted
+        scale = columns / (panel.x.high - panel.x.low)
+        explained = format_key(panel.key, scale, style) if panel.key is not None else []
+        return lines + canvas.format_lines() + explained + key, omitted
     labels_above = {
         round(canvas.to_dot_x(i.x)) // canvas.per_x: i.text
         for i in panel.items

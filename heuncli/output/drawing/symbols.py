@@ -7,7 +7,7 @@ without a letter is drawn in dots, or left out if there are no dots.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from heuncli.base.named_tuples import NamedTuple
 
@@ -18,7 +18,7 @@ class SymbolPart(NamedTuple):
     """A line through points.
 
     is_closed: whether it returns to its first point
-    fill: "" (none), "paper" or "ink"
+    fill: "" (none), "paper", "tint" (a light shade of the ink) or "ink"
     """
 
     points: Points
@@ -82,6 +82,16 @@ def radial(inner: float, outer: float, angle: float) -> tuple[tuple[float, float
     return (inner * a, inner * b), (outer * a, outer * b)
 
 
+def bearing(*, is_fixed: bool) -> Iterator[SymbolPart]:
+    """Both halves of a rolling bearing, above and below its shaft: crossed lines if it is fixed, else one diagonal."""
+    for y in (9.5, -9.5):
+        corners = ((-6.0, y - 5.5), (6.0, y - 5.5), (6.0, y + 5.5), (-6.0, y + 5.5))
+        yield SymbolPart(corners, True, "paper")
+        yield line(corners[0], corners[2])
+        if is_fixed:
+            yield line(corners[1], corners[3])
+
+
 QUARTERS = tuple(SymbolPart(((0.0, 0.0), *arc(3.6, a, a + 90.0, 6)), True, "ink") for a in (0.0, 180.0))
 SPIRAL = tuple((r * math.cos(0.9 * r), r * math.sin(0.9 * r)) for r in (0.4 * k for k in range(5, 31)))
 SYMBOLS: Mapping[str, SymbolShape] = {
@@ -101,6 +111,11 @@ SYMBOLS: Mapping[str, SymbolShape] = {
     "bore": SymbolShape((ring(7.2),)),
     "table": SymbolShape((line((-7.0, -14.0), (-7.0, 14.0)),)),
     "field": SymbolShape((box(12.0, 9.0),)),
+    # bearings of a shaft along x: fixed and floating
+    "fixed bearing": SymbolShape((ring(1.4, "ink"), *bearing(is_fixed=True)), "⊠", "X"),
+    "floating bearing": SymbolShape((ring(1.4, "ink"), *bearing(is_fixed=False)), "◫", "/"),
+    # where gears mesh
+    "pitch point": SymbolShape((ring(2.4, "ink"),), "•", "."),
     # supports on the ground, with x into the ground
     "foot": SymbolShape(
         (SymbolPart(((0.0, 0.0), (13.0, 7.5), (13.0, -7.5)), True, "paper"), *hatch(13.0, 12.5)), "", "/"
@@ -135,38 +150,21 @@ SYMBOLS: Mapping[str, SymbolShape] = {
 }
 
 
-def spring(length: float) -> tuple[SymbolPart, ...]:
+def spring(length: float, half_width: float = 6.0) -> tuple[SymbolPart, ...]:
     """A zigzag between two straight ends."""
     end = min(8.0, 0.2 * length)
-    turns, high = 7, min(5.5, 0.25 * length)
+    turns, high = max(5, round(length / (2.2 * half_width))), min(half_width, 0.25 * length)
     step = (length - 2.0 * end) / (2.0 * turns)
     zigzag = [(end + (k + 0.5) * step, high if k % 2 == 0 else -high) for k in range(2 * turns)]
     return (line((0.0, 0.0), (end, 0.0), *zigzag, (length - end, 0.0), (length, 0.0)),)
 
 
-def dashpot(length: float) -> tuple[SymbolPart, ...]:
-    """A piston in a cup."""
-    cup, high = min(9.0, 0.2 * length), min(5.0, 0.2 * length)
-    m = 0.5 * length
-    return (
-        line((0.0, 0.0), (m - cup, 0.0)),
-        line((m + cup, high), (m - cup, high), (m - cup, -high), (m + cup, -high)),
-        line((m, high - 1.2), (m, 1.2 - high)),
-        line((m, 0.0), (length, 0.0)),
-    )
-
-
 def damped_spring(length: float) -> tuple[SymbolPart, ...]:
-    """A zigzag and a dashpot side by side."""
-    end, off = min(8.0, 0.15 * length), min(6.5, 0.25 * length)
-
-    def shift_parts(parts: tuple[SymbolPart, ...], y: float) -> tuple[SymbolPart, ...]:
-        return tuple(part._replace(points=tuple((a + end, 0.8 * b + y) for a, b in part.points)) for part in parts)
-
-    inner = length - 2.0 * end
-    plates = (line((end, off), (end, -off)), line((length - end, off), (length - end, -off)))
-    ends = (line((0.0, 0.0), (end, 0.0)), line((length - end, 0.0), (length, 0.0)))
-    return (*ends, *plates, *shift_parts(spring(inner), off), *shift_parts(dashpot(inner), -off))
+    """A dashpot with a zigzag around it, both on the line of their points."""
+    high, first, last = min(3.6, 0.15 * length), 0.3 * length, 0.7 * length
+    barrel = SymbolPart(((0.0, -high), (last, -high), (last, high), (0.0, high)), True, "paper")
+    piston = (line((first, high), (first, -high)), line((first, 0.0), (length, 0.0)))
+    return barrel, *piston, *spring(length, 8.0)
 
 
 def cylinder(length: float) -> tuple[SymbolPart, ...]:
@@ -182,6 +180,13 @@ def straight_line(length: float) -> tuple[SymbolPart, ...]:
     return (line((0.0, 0.0), (length, 0.0)),)
 
 
+def bar(length: float) -> tuple[SymbolPart, ...]:
+    """A flat link between two eyes, which it surrounds."""
+    high = min(4.5, 0.3 * length)
+    last = tuple((a + length, b) for a, b in arc(high, -90.0, 90.0, 8))
+    return (SymbolPart((*last, *arc(high, 90.0, 270.0, 8)), True, "tint"),)
+
+
 def rod(length: float) -> tuple[SymbolPart, ...]:
     """A line between two eyes."""
     eye = tuple((a + length, b) for a, b in arc(2.6, 0.0, 360.0)[:-1])
@@ -190,6 +195,7 @@ def rod(length: float) -> tuple[SymbolPart, ...]:
 
 LINKS: Mapping[str, Callable[[float], tuple[SymbolPart, ...]]] = {
     "spring": spring, "damped spring": damped_spring, "actuator": cylinder, "rope": straight_line, "rod": rod,
+    "bar": bar,
 }  # fmt: skip
 SHORT = 14.0  # pixels, below which a link is a line
 

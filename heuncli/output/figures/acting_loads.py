@@ -1,5 +1,8 @@
-"""The loads that act at an instant as arrows to one scale: forces and moments of joints, couplings and applied
-loads.
+"""The loads that act at an instant as arrows to one scale: forces as arrows, moments in space as double arrows.
+
+Drawn are the loads of joints and their drives, of couplings, and all applied loads: from outside, between two points or
+bodies, and in joints. A load between two bodies is drawn ON the body of its `to` end, or, if that is the ground, on the
+other one; one that acts along the guide of a piston is drawn on both.
 """
 
 from __future__ import annotations
@@ -13,41 +16,50 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import AppliedLoad
 from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.multibody.mechanism.model import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.model import PointLoad
-from heuncli.output.drawing.figure import Arrow, Item, PlaceLabel, Strokes, Symbol
+from heuncli.output.drawing.figure import Arrow, KeyArrow, PlaceLabel, Strokes, Symbol
 from heuncli.output.drawing.ticks import format_short
 from heuncli.output.figures.machine_items import to_pair
 from heuncli.output.machine_geometry.coupling_forces import iter_coupling_forces
+from heuncli.output.machine_geometry.joint_symbols import find_guided_actuators
 from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.views import SceneView
 from heuncli.results.results import Array, Block
 from heuncli.results.results_schema import IMPULSE_UNITS
 from heuncli.scene.file_format.names import GROUND
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels
+from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
 JOINTS_PEN, APPLIED_PEN, COUPLED_PEN = 1, 3, 5
 JOINT_REPORTS = frozenset({"joints"})
 LONGEST_ARROW = 0.2  # share of the figure's larger side: largest force
+LONGEST_MOMENT = 0.14  # share: largest moment
 HIGHEST_DISTRIBUTED = 0.08  # share: largest density of a distributed load
-MIN_ARROW = 0.004  # share: a shorter arrow is seen from its end
+MIN_ARROW = 0.004  # share: a shorter arrow is not drawn, or is seen from its end
+MIN_VISIBLE_PART = 0.2  # of an arrow's length: with less it is seen from its end
 MIN_LOAD = 1e-4  # of the largest load: smaller ones are not drawn
-MIN_FACING = 0.95  # cosine to the line of sight, from which a moment is drawn
-MAX_VALUES = 16  # with more arrows there are no values
+MIN_LABELLED = 0.01  # of the largest load: smaller ones have no value
+MIN_MOMENT = 0.01  # of the largest moment: smaller ones are not drawn
+READABLE = (0.1, 1e4)  # the largest number in chosen units; beyond, the unit is chosen by size
+MIN_FACING = 0.95  # cosine to the line of sight, from which a moment is drawn as a turn
 N_DISTRIBUTED_ARROWS = 9  # arrows of a distributed load
-DIGITS = 3  # of the values
-KINDS = (
-    (JOINTS_PEN, 'joint reactions, "from" on "to"'),
-    (COUPLED_PEN, "couplings"),
-    (APPLIED_PEN, "applied"),
-)
+DIGITS = 3  # of the values of distributed loads
+KINDS = ((JOINTS_PEN, 'joint on "to" body'), (COUPLED_PEN, "coupling"), (APPLIED_PEN, "applied load"))
 
 
 class ActingLoad(NamedTuple):
     """A force or a moment, or its impulse in an impact, at a place (3,), world axes.
 
     is_moment: whether it is a moment
+    kind: the block of the results that has it: joints, couplings, forces, drives
+    is_reaction: whether it is the opposite of one that is drawn, too
+    is_incidental: whether it is a moment that comes with a force, as of a joint
     """
 
     name: str
@@ -55,6 +67,9 @@ class ActingLoad(NamedTuple):
     vector: Array
     pen: int
     is_moment: bool = False
+    kind: str = "joints"
+    is_reaction: bool = False
+    is_incidental: bool = False
 
     @property
     def magnitude(self) -> float:
@@ -86,10 +101,29 @@ class ActingLoads(NamedTuple):
         """Return the forces, or the moments."""
         return [pull for pull in self.loads if pull.is_moment == moments]
 
-    def find_unit(self, units: Units, *, moments: bool = False) -> tuple[str, float]:
-        """Return the display unit, and how many of it are one SI unit."""
-        unit = "N·m" if moments else "N"
-        return units.find(IMPULSE_UNITS[unit] if self.is_impact else unit)
+    def find_largest(self, *, moments: bool) -> float:
+        """Return the largest magnitude of the forces, or of the moments."""
+        return max((pull.magnitude for pull in self.select(moments=moments)), default=0.0)
+
+    def choose_style(self, units: Units, *, moments: bool) -> ReaderStyle:
+        """Choose how the magnitudes are written: in the chosen units unless these make the numbers long or small."""
+        unit, largest = "N·m" if moments else "N", self.find_largest(moments=moments)
+        unit = IMPULSE_UNITS[unit] if self.is_impact else unit
+        style = choose_reader_style(unit, largest, units)
+        is_readable = READABLE[0] <= style.size * largest < READABLE[1]
+        return style if is_readable or unit not in PREFIXES else choose_reader_style(unit, largest, Units())
+
+    def drop_slight_moments(self, size: float) -> ActingLoads:
+        """Drop the moments of joints and bushings that are slight beside the forces on a machine of a size [m]."""
+        slight = MIN_MOMENT * size * self.find_largest(moments=False)
+        return self._replace(
+            loads=[p for p in self.loads if not (p.is_moment and p.is_incidental and p.magnitude < slight)]
+        )
+
+    @property
+    def names(self) -> set[str]:
+        """The names of all loads that are drawn."""
+        return {pull.name for pull in self.loads} | {spread.name for spread in self.distributed}
 
 
 NO_LOADS = ActingLoads((), (), ())
@@ -110,19 +144,13 @@ def collect_loads(study: Study, machine: Machine, poses: Poses) -> ActingLoads:
     is_single, times = study.has_one_instant, poses.times[:1]
     recovery = study.recovery if is_single else study.find_recovery(times, JOINT_REPORTS)
     results = study.results if is_single else study.compute_reports(times, JOINT_REPORTS)
-    loads, spreads = (
-        [*_iter_joint_loads(results.joints, (0,)), *_iter_coupling_loads(machine, poses, results.couplings)],
-        [],
-    )
-    for applied in recovery.loads:
-        if isinstance(applied.load, PointLoad) and applied.action.spread:
-            spreads.append(_make_distributed_load(applied, recovery.states))
-        elif isinstance(applied.load, PointLoad):
-            is_moment = applied.load.is_couple
-            vector = applied.action.moment if is_moment else applied.action.force
-            loads.append(
-                ActingLoad(applied.load.name, applied.action.to_end.position[0], vector[0], APPLIED_PEN, is_moment)
-            )
+    loads = [
+        *_iter_joint_loads(results.joints, (0,)),
+        *_iter_drive_loads(recovery),
+        *_iter_coupling_loads(machine, poses, results.couplings),
+        *_iter_applied_loads(recovery, find_guided_actuators(study.spec)),
+    ]
+    spreads = [_make_distributed_load(own, recovery.states) for own in recovery.loads if own.action.spread]
     magnitudes = study.load_magnitudes
     rounding = {
         is_moment: max(
@@ -142,11 +170,8 @@ def _select_loads(
         is_moment: max((p.magnitude for p in known_loads if p.is_moment == is_moment), default=0.0)
         for is_moment in (False, True)
     }
-    shown = [
-        pull
-        for pull in known_loads
-        if pull.magnitude > max(rounding[pull.is_moment], MIN_LOAD * largest[pull.is_moment])
-    ]
+    smallest = {False: MIN_LOAD * largest[False], True: MIN_MOMENT * largest[True]}
+    shown = [pull for pull in known_loads if pull.magnitude > max(rounding[pull.is_moment], smallest[pull.is_moment])]
     unknown_names = dict.fromkeys(pull.name for pull in loads if not math.isfinite(pull.magnitude))
     return ActingLoads(
         shown, [distributed for distributed in spreads if distributed.densities.any()], list(unknown_names)
@@ -158,14 +183,51 @@ def _iter_joint_loads(block: Block, index: tuple[int, ...]) -> Iterator[ActingLo
     for name, joint_block in block.items():
         place = np.asarray(joint_block["point"])[index]
         yield ActingLoad(name, place, np.asarray(joint_block["force"])[index], JOINTS_PEN)
-        yield ActingLoad(name, place, np.asarray(joint_block["moment"])[index], JOINTS_PEN, is_moment=True)
+        yield ActingLoad(name, place, np.asarray(joint_block["moment"])[index], JOINTS_PEN, True, is_incidental=True)
+
+
+def _iter_drive_loads(recovery: Recovery) -> Iterator[ActingLoad]:
+    """Yield what drives exert, at the first of some instants; a rod's force is its drive's and is drawn with it."""
+    for own in recovery.joints:
+        drive = own.joint.drive
+        if drive is None or drive.quantity == "length":
+            continue
+        is_moment = drive.quantity == "angle"
+        vector = (own.drive_moment if is_moment else own.drive_force)[0]
+        yield ActingLoad(drive.name, own.point[0], vector, APPLIED_PEN, is_moment, "drives")
+
+
+def _iter_applied_loads(recovery: Recovery, guided: frozenset[str]) -> Iterator[ActingLoad]:
+    """Yield the forces and moments of applied loads at the first of some instants, without distributed ones.
+
+    guided: actuators that are drawn as a pair of arrows
+    """
+    for applied in recovery.loads:
+        action = applied.action
+        if action.spread:
+            continue
+        is_on_from = action.to_end.body == ON_GROUND and action.from_end is not None
+        end = action.from_end if is_on_from and action.from_end is not None else action.to_end
+        force, moment = (action.force, action.moment) if not is_on_from else (-action.force, action.opposite_moment)
+        if not (isinstance(applied.load, PointLoad) and applied.load.is_couple):
+            yield ActingLoad(applied.load.name, end.position[0], force[0], APPLIED_PEN, kind="forces")
+        if moment[0].any():
+            is_incidental = bool(force[0].any())
+            yield ActingLoad(
+                applied.load.name, end.position[0], moment[0], APPLIED_PEN, True, "forces", is_incidental=is_incidental
+            )
+        if applied.load.name in guided and action.from_end is not None:
+            other = action.to_end if is_on_from else action.from_end
+            yield ActingLoad(
+                applied.load.name, other.position[0], -force[0], APPLIED_PEN, kind="forces", is_reaction=True
+            )
 
 
 def _iter_coupling_loads(machine: Machine, poses: Poses, blocks: Block) -> Iterator[ActingLoad]:
     """Yield the forces of couplings in a block of results at the first instant of some poses."""
     first = poses.first
     for pull in iter_coupling_forces(machine, first, blocks):
-        yield ActingLoad(pull.name, pull.points[0], pull.forces[0], COUPLED_PEN)
+        yield ActingLoad(pull.name, pull.points[0], pull.forces[0], COUPLED_PEN, kind="couplings")
 
 
 def _iter_applied_impulses(study: Study) -> Iterator[ActingLoad]:
@@ -176,7 +238,7 @@ def _iter_applied_impulses(study: Study) -> Iterator[ActingLoad]:
             rotation = body["rotation"][0]
             vector = rotation @ np.array(impulse.vector) if impulse.in_body else np.array(impulse.vector)
             place = body["position"][0] + rotation @ np.array(impulse.point)
-            yield ActingLoad(name, place, vector, APPLIED_PEN, impulse.kind == "couple")
+            yield ActingLoad(name, place, vector, APPLIED_PEN, impulse.kind == "couple", "forces")
 
 
 def _make_distributed_load(applied: AppliedLoad, states: BodyStates) -> DistributedLoad:
@@ -188,104 +250,119 @@ def _make_distributed_load(applied: AppliedLoad, states: BodyStates) -> Distribu
     return DistributedLoad(applied.load.name, np.array(ends), np.array(densities))
 
 
-class DrawnLoads(NamedTuple):
-    """Loads as they are drawn.
+class LoadScales(NamedTuple):
+    """Lengths of 1 N and of 1 N·m in the unit of the figure."""
 
-    scale: length of 1 N in the unit of the figure
-    notes: what the items do not show
-    """
+    force: float
+    moment: float
 
-    scale: float
-    items: Sequence[Item]
-    notes: Sequence[str]
+    def find(self, load: ActingLoad) -> float:
+        """Return the scale of a load."""
+        return self.moment if load.is_moment else self.force
 
 
-def draw_loads(loads: ActingLoads, view: SceneView, size: float, side: float, units: Units) -> DrawnLoads:
+def choose_scales(loads: ActingLoads, side: float) -> LoadScales:
+    """Choose the scales of the arrows; side: larger side of the machine in the unit of the figure."""
+    largest = [loads.find_largest(moments=moments) or math.inf for moments in (False, True)]
+    return LoadScales(LONGEST_ARROW * side / largest[0], LONGEST_MOMENT * side / largest[1])
+
+
+def draw_loads(
+    loads: ActingLoads, view: SceneView, size: float, side: float, scales: LoadScales
+) -> Iterator[Arrow | Strokes | Symbol]:
     """Draw the arrows.
 
     size: number of the figure's units in a metre
     side: larger side of the machine in that unit
     """
-    forces, moments = loads.select(moments=False), loads.select(moments=True)
-    scale = LONGEST_ARROW * side / max((pull.magnitude for pull in forces), default=math.inf)
-    has_values = len(loads.loads) <= MAX_VALUES
-    items = [
-        item
-        for distributed in loads.distributed
-        for item in _draw_distributed_load(distributed, loads, view, size, side, units)
-    ]
-    for pull in forces:
-        items += _draw_force(pull, view, size, scale, MIN_ARROW * side)
-        tip = size * view.project(pull.place) + scale * view.project(pull.vector)
-        if has_values:
-            items.append(_make_value_label(pull, tip, *loads.find_unit(units)))
-    facing = [pull for pull in moments if abs(float(view.compute_depth(pull.vector))) >= MIN_FACING * pull.magnitude]
-    for pull in facing:
+    for distributed in loads.distributed:
+        yield from _draw_distributed_load(distributed, loads, view, size, side)
+    for pull in loads.loads:
+        place, arrow = size * view.project(pull.place), scales.find(pull) * view.project(pull.vector)
+        depth, length = float(view.compute_depth(pull.vector)), scales.find(pull) * pull.magnitude
+        description = f"{'moment' if pull.is_moment else 'force'}: {pull.name}"
+        if pull.is_moment and abs(depth) >= MIN_FACING * pull.magnitude:
+            symbol = "turning" if depth > 0.0 else "turning back"
+            yield Symbol(*to_pair(place), symbol, (1.0, 0.0), pull.pen, f"moment of {pull.name}")
+        elif float(np.hypot(*arrow)) > max(MIN_VISIBLE_PART * length, MIN_ARROW * side):
+            yield Arrow(*to_pair(place), *to_pair(arrow), pull.pen, "", description, pull.is_moment)
+        elif length > MIN_ARROW * side:
+            yield Symbol(*to_pair(place), "toward" if depth > 0.0 else "away", (1.0, 0.0), pull.pen, pull.name)
+
+
+def label_loads(
+    loads: ActingLoads, view: SceneView, size: float, side: float, scales: LoadScales, labels: Labels, units: Units
+) -> Iterator[PlaceLabel]:
+    """Label the loads with names and magnitudes, the largest first; those below 1 % of the largest have none."""
+    (force, of_force), (length, of_length) = units.find("N"), units.find("m")
+    for distributed in loads.distributed:
+        tail = _find_tails(distributed, loads, view, size, side)[0][N_DISTRIBUTED_ARROWS // 2]
+        values = [
+            format_short(of_force / of_length * float(np.linalg.norm(density)), DIGITS)
+            for density in distributed.densities
+        ]
+        name = describe_object("forces", distributed.name, labels)
+        text = f"{name} {' to '.join(dict.fromkeys(values))} {force}/{length}"
+        yield PlaceLabel(*to_pair(tail), text, name, APPLIED_PEN)
+    forces, moments = ({id(p): text for p, text in _iter_values(loads, units, moments=m)} for m in (False, True))
+    moment_texts = {(p.kind, p.name): moments[id(p)] for p in loads.loads if id(p) in moments}
+    with_force = {(p.kind, p.name) for p in loads.loads if id(p) in forces}
+    for pull in sorted(loads.loads, key=lambda load: -load.magnitude / loads.find_largest(moments=load.is_moment)):
+        text, key = (moments if pull.is_moment else forces).get(id(pull)), (pull.kind, pull.name)
+        if text is None or pull.is_reaction or (pull.is_moment and key in with_force):
+            continue
         place = size * view.project(pull.place)
-        symbol = "turning" if float(view.compute_depth(pull.vector)) > 0.0 else "turning back"
-        items.append(Symbol(*to_pair(place), symbol, (1.0, 0.0), pull.pen, f"moment of {pull.name}"))
-        if has_values:
-            items.append(_make_value_label(pull, place, *loads.find_unit(units, moments=True)))
-    hidden_names = [pull.name for pull in moments if not any(pull is distributed for distributed in facing)]
-    notes = (
-        [f"moments not drawn, as their axes are not along the line of sight: {', '.join(hidden_names)}"]
-        if hidden_names
-        else []
-    )
-    return DrawnLoads(scale, items, notes)
+        faces = pull.is_moment and abs(float(view.compute_depth(pull.vector))) >= MIN_FACING * pull.magnitude
+        tip = place if faces else place + scales.find(pull) * view.project(pull.vector)
+        both = [text, moment_texts.pop(key)] if not pull.is_moment and key in moment_texts else [text]
+        name = describe_object(pull.kind, pull.name, labels)
+        yield PlaceLabel(*to_pair(tip), f"{name} {' / '.join(both)}", name, pull.pen)
 
 
-def _draw_force(pull: ActingLoad, view: SceneView, size: float, scale: float, min_length: float) -> Iterator[Item]:
-    """Draw an arrow, or its head or tail if it points along the line of sight."""
-    x, y = (size * view.project(pull.place)).tolist()
-    by_x, by_y = (scale * view.project(pull.vector)).tolist()
-    if math.hypot(by_x, by_y) > min_length:
-        yield Arrow(x, y, by_x, by_y, pull.pen, description=f"force: {pull.name}")
-    else:
-        symbol = "toward" if float(view.compute_depth(pull.vector)) > 0.0 else "away"
-        yield Symbol(x, y, symbol, (1.0, 0.0), pull.pen, pull.name)
+def _iter_values(loads: ActingLoads, units: Units, *, moments: bool) -> Iterator[tuple[ActingLoad, str]]:
+    """Yield the forces or moments that have a value, with its words."""
+    style, largest = loads.choose_style(units, moments=moments), loads.find_largest(moments=moments)
+    for pull in loads.select(moments=moments):
+        if pull.magnitude >= MIN_LABELLED * largest:
+            yield pull, f"{style.write(pull.magnitude)} {style.unit}"
 
 
-def _make_value_label(pull: ActingLoad, place: Array, unit: str, factor: float) -> PlaceLabel:
-    """Label the magnitude, and the name of applied loads and couplings, which have no other label."""
-    applied = pull.pen != JOINTS_PEN
-    text = f"{pull.name} " * applied + f"{format_short(factor * pull.magnitude, DIGITS)} {unit}"
-    return PlaceLabel(*to_pair(place), text, pull.name if applied else "", pull.pen, is_optional=not applied)
-
-
-def _draw_distributed_load(
-    distributed: DistributedLoad, loads: ActingLoads, view: SceneView, size: float, side: float, units: Units
-) -> Iterator[Item]:
-    """Draw a distributed load: arrows that end on the body, to their own scale, and the line through their tails."""
+def _find_tails(
+    distributed: DistributedLoad, loads: ActingLoads, view: SceneView, size: float, side: float
+) -> tuple[Array, Array]:
+    """Return the tails and the arrows of a distributed load, (n, 2) each."""
     densest = max(float(np.linalg.norm(density)) for other in loads.distributed for density in other.densities)
     shares = np.linspace(0.0, 1.0, N_DISTRIBUTED_ARROWS)[:, None]
     heads = size * view.project(distributed.ends[0] + shares * (distributed.ends[1] - distributed.ends[0]))
-    arrows = (
-        HIGHEST_DISTRIBUTED
-        * side
-        / densest
-        * view.project(distributed.densities[0] + shares * (distributed.densities[1] - distributed.densities[0]))
-    )
-    tails = heads - arrows
+    densities = distributed.densities[0] + shares * (distributed.densities[1] - distributed.densities[0])
+    arrows = HIGHEST_DISTRIBUTED * side / densest * view.project(densities)
+    return heads - arrows, arrows
+
+
+def _draw_distributed_load(
+    distributed: DistributedLoad, loads: ActingLoads, view: SceneView, size: float, side: float
+) -> Iterator[Arrow | Strokes]:
+    """Draw a distributed load: arrows that end on the body, to their own scale, and the line through their tails."""
+    tails, arrows = _find_tails(distributed, loads, view, size, side)
     for tail, arrow in zip(tails.tolist(), arrows.tolist(), strict=True):
         yield Arrow(tail[0], tail[1], arrow[0], arrow[1], APPLIED_PEN)
     yield Strokes(np.stack([tails[:-1], tails[1:]], axis=1), APPLIED_PEN)
-    (force, of_force), (length, of_length) = units.find("N"), units.find("m")
-    values = [
-        format_short(of_force / of_length * float(np.linalg.norm(density)), DIGITS) for density in distributed.densities
-    ]
-    text = f"{distributed.name} {' to '.join(dict.fromkeys(values))} {force}/{length}"
-    yield PlaceLabel(*to_pair(tails[N_DISTRIBUTED_ARROWS // 2]), text, distributed.name, APPLIED_PEN)
 
 
-def draw_key(loads: ActingLoads, scale: float, x: float, y: float, step: float, units: Units) -> Iterator[Item]:
-    """Draw an arrow of a round number with its words for each kind of load, from a place downwards."""
-    forces = loads.select(moments=False)
-    kinds = [(pen, words) for pen, words in KINDS if any(pull.pen == pen for pull in forces)]
-    unit, factor = loads.find_unit(units)
-    for number, (pen, words) in enumerate(kinds):
-        value = round_down(factor * max(pull.magnitude for pull in forces))
-        yield Arrow(x, y - number * step, scale * value / factor, 0.0, pen, f"{format_short(value)} {unit}: {words}")
+def iter_key_arrows(
+    loads: ActingLoads, arrows: Sequence[Arrow], scales: LoadScales, units: Units
+) -> Iterator[KeyArrow]:
+    """Yield an arrow of a round number with its words for each kind of forces and of moments among drawn arrows."""
+    drawn = {(arrow.pen, arrow.is_double) for arrow in arrows if arrow.description}
+    for moments, scale in ((False, scales.force), (True, scales.moment)):
+        if not loads.select(moments=moments):
+            continue
+        style = loads.choose_style(units, moments=moments)
+        value = round_down(style.size * loads.find_largest(moments=moments))
+        text = f"{format_short(value)} {style.unit}"
+        for pen, words in KINDS:
+            if (pen, moments) in drawn:
+                yield KeyArrow(scale * value / style.size, pen, f"{text} {words}", is_double=moments)
 
 
 def round_down(value: float) -> float:

@@ -5,7 +5,7 @@ The symbol of a joint follows from what it constrains and how it lets turn (join
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +17,11 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
 from heuncli.output.figures.letter_names import iter_letters
-from heuncli.output.machine_geometry.joint_symbols import find_scene_joint_kind
+from heuncli.output.machine_geometry.joint_symbols import (
+    find_guided_actuators,
+    find_scene_joint_kind,
+    find_shaft_bearings,
+)
 from heuncli.output.machine_geometry.machine import BodyGeometry, JointGeometry, LineGeometry, Machine
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.silhouettes import (
@@ -31,13 +35,17 @@ from heuncli.output.machine_geometry.views import SceneView
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels
 
 BODY_PENS = (0, 2, 4, 6, 7)  # of bodies in turn; the other pens are for loads
 DRIVE_PEN, LOAD_PEN = 3, 3
 MIN_AXIS_LENGTH = 0.35  # visible length of a unit axis; a shorter one points to the viewer
 MAX_NAMED = 60  # bodies and joints; with more of them there are no names
 MAX_CENTRES = 40  # bodies; with more of them no centres of mass are marked
-BAR, ARM, RIM, THIN = 3.0, 2.0, 1.3, 0.7  # pixels: bodies of lines, lines by shapes, on shapes, later ones
+BAR, ARM, RIM, PITCH, THIN = 3.0, 2.0, 1.3, 1.0, 0.7  # pixels: bodies of lines, lines by shapes, on them, later ones
+DASH_DOT = (9.0, 3.0, 2.0, 3.0)  # pixels: of pitch circles
+LARGE_SIDE, LARGE_AREA = 0.5, 0.25  # of the machine's side and area: a larger part is light, and behind the others
 SAME_DEPTH = 1e-6  # share of the figure's depth: closer pieces are equally far
 DOWN, UP = (0.0, -1.0), (0.0, 1.0)
 MIN_HANGING_SLOPE = 0.2  # rise over run: a body that is less steeply below its support does not hang
@@ -76,16 +84,40 @@ class PosedMachine:
         """Return the component of a direction in a body's axes towards the viewer, -1 to 1."""
         return float(self.view.compute_depth(axis if body == GROUND else self.poses.orientations[body][k] @ axis))
 
+    def find_depth(self, body: str, points: Array, k: int) -> float:
+        """Return the mean depth of points (n, 3) of a body at instant k; larger is nearer."""
+        return float(self.view.compute_depth(self.poses.locate_points(body, points, k)).mean())
+
     @cached_property
     def solids(self) -> dict[str, tuple[SolidEdges, ...]]:
         """The solids of each body."""
-        surfaces_of_body = {body.name: body.surfaces for body in self.machine.bodies}
-        for look in self.machine.joints:  # a body that cannot turn needs no inertia in the spec
-            if GROUND in (look.a, look.b) and find_joint_kind(look, self.spec).turn.condition == "all":
-                surfaces_of_body |= {
-                    body.name: () for body in self.machine.bodies if body.is_ellipsoid and body.name in (look.a, look.b)
-                }
-        return {name: tuple(map(find_solid_edges, surfaces)) for name, surfaces in surfaces_of_body.items()}
+        return {body.name: tuple(map(find_solid_edges, body.surfaces)) for body in self.machine.bodies}
+
+    @cached_property
+    def bearings(self) -> dict[str, bool]:
+        """The joints that are bearings of shafts, each with whether it is fixed."""
+        return find_shaft_bearings(self.spec)
+
+    @cached_property
+    def guided_actuators(self) -> frozenset[str]:
+        """The actuators that are drawn as what they exert."""
+        return find_guided_actuators(self.spec)
+
+    @cached_property
+    def extent(self) -> Array:
+        """The sides (2,) of the rectangle around all bodies and joints at the first instant."""
+        bodies = self.machine.bodies
+        parts = [(body.name, surface.corners) for body in bodies for surface in body.surfaces]
+        parts += [(body.name, line) for body in bodies for line in body.strokes]
+        parts += [(joint.b, joint.q[None]) for joint in self.machine.joints]
+        points = [self.project(name, part, 0) for name, part in parts]
+        return np.asarray(np.ptp(np.concatenate(points), axis=0)) if points else np.zeros(2)
+
+    def is_large(self, contour: Array) -> bool:
+        """Whether an outline (n, 2) would hide most of the machine."""
+        side, area = float(np.ptp(contour, axis=0).max()), compute_area(contour)
+        is_alone = sum(map(len, self.solids.values())) == 1
+        return not is_alone and side > LARGE_SIDE * self.extent.max() and area > LARGE_AREA * float(self.extent.prod())
 
     @cached_property
     def pens(self) -> dict[str, int]:
@@ -138,9 +170,10 @@ def draw_bodies(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> l
         return float(level), -piece.area
 
     pieces.sort(key=order)
+    circles = [] if thin else _draw_pitch_circles(posed_machine, k)
     paths = (posed_machine.project(GROUND, path, k) for path in posed_machine.machine.paths if not thin)
     path_strokes: list[Item] = [Strokes(np.stack([ends[:-1], ends[1:]], axis=1), None, THIN) for ends in paths]
-    return path_strokes + [item for piece in pieces for item in piece.items]
+    return [*path_strokes, *(item for piece in pieces for item in piece.items), *circles]
 
 
 def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int, thin: bool) -> Iterator[DrawnPiece]:
@@ -149,27 +182,41 @@ def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int, thin: 
     for solid in posed_machine.solids[body.name]:
         places = posed_machine.poses.locate_points(body.name, solid.surface.corners, k)
         contour = compute_convex_hull(posed_machine.size * posed_machine.view.project(places))
-        if body.is_ellipsoid:
-            yield DrawnPiece(
-                -np.inf, compute_area(contour), (Polygon(body.name, contour, pen, is_filled=not thin, width=THIN),)
-            )
-            continue
         if not solid.surface.convex:
             yield _draw_mesh(posed_machine, body, solid, k, thin)
             continue
+        depth, is_large = float(posed_machine.view.compute_depth(places).mean()), posed_machine.is_large(contour)
         lines: tuple[Item, ...] = ()
         if not thin:
             edges = select_visible_edges(solid, posed_machine.poses.orientations[body.name][k], posed_machine.view)
-            lines = (Strokes(posed_machine.project(body.name, edges, k), pen, THIN),)
-        shape = Polygon(body.name, contour, pen, is_opaque=not thin, width=THIN if thin else 1.3)
-        yield DrawnPiece(float(posed_machine.view.compute_depth(places).mean()), compute_area(contour), (shape, *lines))
-    for number, line in enumerate(body.strokes):
+            lines = (Strokes(posed_machine.project(body.name, edges, k), pen, THIN, is_ghost=is_large),)
+        width = THIN if thin or is_large else 1.3
+        shape = Polygon(body.name, contour, pen, is_opaque=not thin, width=width, is_ghost=thin, is_light=is_large)
+        yield DrawnPiece(-np.inf if is_large else depth, compute_area(contour), (shape, *lines))
+    middle = max((posed_machine.find_depth(body.name, own.corners, k) for own in body.surfaces), default=-np.inf)
+    is_link = not (body.surfaces or body.lines or body.pitch_circles)
+    for number, line in enumerate((*body.bars, *body.lines)):
         if len(line) > 1:
-            places = posed_machine.poses.locate_points(body.name, line, k)
+            depth = posed_machine.find_depth(body.name, line, k)
+            if number >= len(body.bars) and depth < middle - SAME_DEPTH * posed_machine.extent.max():
+                continue  # on the far side of the body
             ends = posed_machine.project(body.name, line, k)
-            width = RIM if number >= len(body.bars) else ARM if posed_machine.solids[body.name] else BAR
-            strokes = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width)
-            yield DrawnPiece(float(posed_machine.view.compute_depth(places).mean()), 0.0, (strokes,))
+            item: Item = Link(*to_pair(ends[0]), *to_pair(ends[-1]), "bar", pen, body.name)
+            if thin or not is_link:
+                width = RIM if number >= len(body.bars) else ARM if posed_machine.solids[body.name] else BAR
+                item = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width, is_ghost=thin)
+            yield DrawnPiece(depth, 0.0, (item,))
+
+
+def _draw_pitch_circles(posed_machine: PosedMachine, k: int) -> Iterator[Strokes | Symbol]:
+    """Draw the pitch circles of gears, over the bodies, and the points at which they mesh."""
+    for body in posed_machine.machine.bodies:
+        for circle in body.pitch_circles:
+            ends = posed_machine.project(body.name, circle, k)
+            yield Strokes(np.stack([ends[:-1], ends[1:]], axis=1), posed_machine.pens[body.name], PITCH, DASH_DOT)
+    for mesh in posed_machine.machine.pitch_points:
+        place = to_pair(posed_machine.project(mesh.carrier, mesh.point, k))
+        yield Symbol(*place, "pitch point", (1.0, 0.0), None, f"{mesh.name}: pitch point")
 
 
 def _draw_mesh(posed_machine: PosedMachine, body: BodyGeometry, solid: SolidEdges, k: int, thin: bool) -> DrawnPiece:
@@ -184,7 +231,7 @@ def _draw_mesh(posed_machine: PosedMachine, body: BodyGeometry, solid: SolidEdge
     items: list[Item] = [
         Polygon(body.name, np.concatenate([contour, *return_path]), pen, is_opaque=not thin, has_outline=False)
     ]
-    items.append(Strokes(np.concatenate([flat[:0].reshape(0, 2, 2), *rims]), pen, THIN if thin else 1.3))
+    items.append(Strokes(np.concatenate([flat[:0].reshape(0, 2, 2), *rims]), pen, THIN if thin else 1.3, is_ghost=thin))
     if not thin:
         items.append(
             Strokes(posed_machine.project(body.name, select_visible_edges(solid, R, posed_machine.view), k), pen, THIN)
@@ -238,6 +285,9 @@ def draw_joint(posed_machine: PosedMachine, look: JointGeometry, k: int, *, thin
     axis = posed_machine.project_direction(look.a, look.axis / np.linalg.norm(look.axis), k)
     is_seen_aside = int(float(np.hypot(*axis)) > MIN_AXIS_LENGTH)
     along = (float(axis[0]), float(axis[1])) if is_seen_aside else (1.0, 0.0)
+    if is_seen_aside and look.name in posed_machine.bearings:
+        symbol = "fixed bearing" if posed_machine.bearings[look.name] else "floating bearing"
+        return [Symbol(x, y, symbol, along, None, name)]
     items: list[Item] = [*_draw_ground(posed_machine, look, kind, along if is_seen_aside else None, k)]
     if kind.hold.gap_type in HOLD_SYMBOLS:
         items.append(Symbol(x, y, HOLD_SYMBOLS[kind.hold.gap_type][is_seen_aside], along, None, name))
@@ -289,6 +339,8 @@ def _draw_rod(posed_machine: PosedMachine, look: JointGeometry, k: int, thin: bo
 
 def draw_force_line(posed_machine: PosedMachine, look: LineGeometry, k: int, *, thin: bool = False) -> list[Item]:
     """Draw a load between two points by its symbol, with or without damper, or one between two bodies."""
+    if look.name in posed_machine.guided_actuators:
+        return []  # drawn as what it exerts
     kind = LOAD_KINDS[look.kind]
     if kind.place == "bodies":
         return _draw_bushing(posed_machine, look, k, thin)
@@ -307,7 +359,7 @@ def _draw_bushing(posed_machine: PosedMachine, look: LineGeometry, k: int, thin:
     displaced.
     """
     first, second = (posed_machine.project(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
-    displacement_line = Strokes(np.array([[first, second]]), LOAD_PEN, THIN)
+    displacement_line = Strokes(np.array([[first, second]]), LOAD_PEN, THIN, is_ghost=thin)
     if thin:
         return [displacement_line]
     items: list[Item] = [displacement_line]
@@ -325,7 +377,7 @@ def _draw_link(
     """Draw the link between two points, with the ground at those that are fixed to it."""
     first, second = (posed_machine.project(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
     if thin:
-        return [Strokes(np.array([[first, second]]), pen, THIN)]
+        return [Strokes(np.array([[first, second]]), pen, THIN, is_ghost=True)]
     items: list[Item] = []
     for body, place, other in ((look.a, first, second), (look.b, second, first)):
         if body == GROUND:
@@ -335,10 +387,15 @@ def _draw_link(
     return [*items, Link(*to_pair(first), *to_pair(second), kind, pen, f"{look.name}: {look.kind}")]
 
 
-def draw_joint_actions(posed_machine: PosedMachine, k: int) -> Iterator[Symbol]:
-    """Draw the drives of joints, and the loads that act in them."""
+def draw_joint_actions(posed_machine: PosedMachine, k: int, drawn_names: Collection[str] = ()) -> Iterator[Symbol]:
+    """Draw the drives of joints, and the loads that act in them.
+
+    drawn_names: of loads that have an arrow, and need no symbol
+    """
     looks = {look.name: look for look in posed_machine.machine.joints}
     for action in posed_machine.machine.joint_symbols:
+        if action.name in drawn_names:
+            continue
         look = looks[action.joint]
         axis = (
             find_path_tangent(posed_machine, look, k)
@@ -377,25 +434,26 @@ def draw_mass_marks(posed_machine: PosedMachine, k: int) -> Iterator[Symbol]:
             yield Symbol(*position, "centre", (1.0, 0.0), pen, f"{body.name}: centre of mass")
 
 
-def make_labels(posed_machine: PosedMachine, k: int) -> Iterator[PlaceLabel]:
-    """Yield the labels of bodies, joints, springs and actuators; short forms are capitals, numbers and small
-    letters.
+def make_labels(posed_machine: PosedMachine, k: int, labels: Labels, labelled: Collection[str]) -> Iterator[PlaceLabel]:
+    """Yield the labels of joints, springs and actuators, and bodies; short forms are numbers, small letters and
+    capitals.
+
+    labelled: the words of loads that have a label
     """
     if not posed_machine.has_names:
         return
-    for letter, body in zip(iter_letters("A"), posed_machine.machine.bodies, strict=False):
-        x, y = posed_machine.project(body.name, posed_machine.centers[body.name], k).tolist()
-        yield PlaceLabel(x, y, body.name, letter, posed_machine.pens[body.name])
     for number, look in enumerate(posed_machine.machine.joints, 1):
         ends = posed_machine.project(look.b, look.q, k), posed_machine.project(look.a, look.p, k)
-        x, y = (0.5 * (ends[0] + ends[1]) if TYPES[look.kind].keeps_distance else ends[0]).tolist()
-        yield PlaceLabel(x, y, look.name, str(number))
-    for letter, force_line in zip(iter_letters("a"), posed_machine.machine.lines, strict=False):
-        x, y = (
-            0.5
-            * (
-                posed_machine.project(force_line.a, force_line.p, k)
-                + posed_machine.project(force_line.b, force_line.q, k)
-            )
-        ).tolist()
-        yield PlaceLabel(x, y, force_line.name, letter, LOAD_PEN)
+        place = 0.5 * (ends[0] + ends[1]) if TYPES[look.kind].keeps_distance else ends[0]
+        text = describe_object("joints", look.name, labels)
+        if text not in labelled:
+            yield PlaceLabel(*to_pair(place), text, str(number))
+    for letter, line in zip(iter_letters("a"), posed_machine.machine.lines, strict=False):
+        ends = posed_machine.project(line.a, line.p, k), posed_machine.project(line.b, line.q, k)
+        text = describe_object("forces", line.name, labels)
+        if text not in labelled and line.name not in posed_machine.guided_actuators:
+            yield PlaceLabel(*to_pair(0.5 * (ends[0] + ends[1])), text, letter, LOAD_PEN)
+    for letter, body in zip(iter_letters("A"), posed_machine.machine.bodies, strict=False):
+        place = posed_machine.project(body.name, posed_machine.centers[body.name], k)
+        text = describe_object("bodies", body.name, labels)
+        yield PlaceLabel(*to_pair(place), text, letter, posed_machine.pens[body.name])

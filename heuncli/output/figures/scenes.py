@@ -1,41 +1,57 @@
 """Figures of the machine at instants of its run in a view: poses, supports, acting loads, paths of points.
 
-The first instant is drawn with thick lines and with the loads that act; later ones are thin lines. None are drawn
-beyond the horizon.
+The first instant is drawn with the loads that act, by default that of the greatest joint force; later ones are thin,
+pale lines. None are drawn beyond the horizon. Axes, scale and arrows are explained below the machine.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.drawing.figure import Arrow, Figure, Item, Panel, PlaceLabel, Scaling
+from heuncli.output.drawing.figure import Arrow, Figure, Item, KeyArrow, Panel, PlaceLabel, Scaling, SpaceKey
 from heuncli.output.drawing.ticks import format_short
 from heuncli.output.figures import machine_items, rope_items, traces
-from heuncli.output.figures.acting_loads import NO_LOADS, ActingLoads, collect_loads, draw_key, draw_loads
+from heuncli.output.figures.acting_loads import (
+    NO_LOADS,
+    ActingLoads,
+    choose_scales,
+    collect_loads,
+    draw_loads,
+    iter_key_arrows,
+    label_loads,
+    round_down,
+)
 from heuncli.output.figures.courses import FigureSource, require_claimed
-from heuncli.output.figures.machine_items import PosedMachine
+from heuncli.output.figures.machine_items import PosedMachine, to_pair
+from heuncli.output.figures.scene_labels import choose_labels
 from heuncli.output.figures.traces import PointPath
 from heuncli.output.figures.windows import Window, choose_window, clip_items
+from heuncli.output.figures.worst_instant import WorstInstant, find_worst_instant
 from heuncli.output.machine_geometry.machine import Machine, make_machine
 from heuncli.output.machine_geometry.poses import Poses, compute_poses, make_start_poses
 from heuncli.output.machine_geometry.solids import ROUND_FACES
 from heuncli.output.machine_geometry.views import choose_view, parse_view
 from heuncli.results.results import Array
-from heuncli.scene.file_format.models import JointForce, Spec
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.setup import build_with_cuts
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels, make_labels
+from heuncli.study.quantities.reader_numbers import choose_prefix, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
-HEIGHT = 520.0  # pixels, maximum
-STRIP_HEIGHT = 0.13  # share of the larger side, below the machine: for the key of arrows, axes and gravity
-AXES_LENGTH = 0.05  # share of the larger side: the arrows of axes and gravity
+TIME_DIGITS = 4
+WORST_WORDS = {"joints": "joint", "forces": "bushing"}
+HEIGHT = 560.0  # pixels, maximum
 N_SMOOTH_FACES, MAX_SMOOTH_BODIES = 60, 40  # faces about an axis, and up to how many bodies
 LATER_PEN = 7  # of the labels of later instants
+MIN_VISIBLE_GRAVITY = 0.2  # visible part of gravity, with less it is not shown
+SCALE_SHARE = 0.25  # of the figure's width: the scale bar is not longer
+MAX_LISTED = 6  # names in a note
 
 
 def make_scene_figure(
@@ -47,20 +63,23 @@ def make_scene_figure(
 ) -> Figure:
     """Make the figure of one run at some instants.
 
-    given_times (n,): ascending; by default the first instant of the run
+    given_times (n,): ascending; by default that of the greatest joint force
     point_names: points whose paths are drawn, `body.point`; `center` is the centre of mass unless a point has that name
 
     Raises Finding for an unknown view, NotDrawable for a run of which nothing is claimed.
     """
     study = source.study
     require_claimed(study)
-    times = study.results.time[:1] if given_times is None else given_times
+    worst = find_worst_instant(study) if given_times is None else None
+    times = np.array([worst.time]) if worst is not None else np.asarray(given_times)
     poses = compute_poses(study, times)
     posed_machine = pose_machine(study.setup.scene, study.spec, poses, view, units)
     point_paths = traces.make_paths(source, point_names) if point_names else traces.make_reported_paths(source)
-    return make_machine_figure(
-        posed_machine, units, point_paths, collect_loads(study, posed_machine.machine, poses), source.name
+    loads = collect_loads(study, posed_machine.machine, poses)
+    figure = make_machine_figure(
+        posed_machine, units, point_paths, loads, source.name, has_point_names=bool(point_names)
     )
+    return figure._replace(words=[describe_instants(posed_machine, worst, units)])
 
 
 def make_assembly_figure(spec: Spec, view: str | None = None) -> Figure:
@@ -98,7 +117,7 @@ def _collect_points(machine: Machine, centers: Mapping[str, Array], poses: Poses
     """Return points (n, 3) that span the machine at the first instant."""
     points = [poses.locate_points(body.name, np.array(p), 0) for body in machine.bodies for p in (centers[body.name],)]
     for body in machine.bodies:
-        lines = [surface.corners for surface in body.surfaces if not body.is_ellipsoid] + list(body.strokes)
+        lines = [surface.corners for surface in body.surfaces] + list(body.strokes)
         points += [place for part in lines for place in poses.locate_points(body.name, part, 0)]
     points += [place for path in machine.paths for place in path]
     points += [poses.locate_points(j.b, j.q, 0) for j in machine.joints] + [
@@ -108,10 +127,19 @@ def _collect_points(machine: Machine, centers: Mapping[str, Array], poses: Poses
 
 
 def make_machine_figure(
-    posed_machine: PosedMachine, units: Units, point_paths: Sequence[PointPath], loads: ActingLoads, name: str = ""
+    posed_machine: PosedMachine,
+    units: Units,
+    point_paths: Sequence[PointPath],
+    loads: ActingLoads,
+    name: str = "",
+    *,
+    has_point_names: bool = False,
 ) -> Figure:
-    """Make the figure of the machine with the paths of some points and the loads at the first instant."""
-    first = _draw_first_instant(posed_machine)
+    """Make the figure of the machine with the paths of some points and the loads at the first instant.
+
+    has_point_names: whether the paths have labels
+    """
+    first = _draw_first_instant(posed_machine, loads.names)
     later = [
         item for k in range(len(posed_machine.poses.times) - 1, 0, -1) for item in _draw_later_instant(posed_machine, k)
     ]
@@ -124,53 +152,54 @@ def make_machine_figure(
             *rope_items.iter_mark_places(posed_machine),
         ],
     )
-    arrows = draw_loads(loads, posed_machine.view, posed_machine.size, machine_window.side, units)
-    window = machine_window.extend_to_arrows([item for item in arrows.items if isinstance(item, Arrow)])
-    items = [
+    view, size, side = posed_machine.view, posed_machine.size, machine_window.side
+    loads = loads.drop_slight_moments(side / size)
+    scales = choose_scales(loads, side)
+    load_items = list(draw_loads(loads, view, size, side, scales))
+    arrows = [item for item in load_items if isinstance(item, Arrow)]
+    window = machine_window.extend_to_arrows(arrows)
+    labels = make_labels(posed_machine.spec)
+    load_labels = list(label_loads(loads, view, size, side, scales, labels, units)) if posed_machine.has_names else []
+    names = [
+        *machine_items.make_labels(posed_machine, 0, labels, {label.letter for label in load_labels}),
+        *rope_items.make_labels(posed_machine, 0),
+        *(traces.make_labels(posed_machine, point_paths) if has_point_names else ()),
+    ]
+    place_labels, numbers = choose_labels(load_labels, names, side)
+    items: list[Item] = [
         *clip_items(later, window),
         *traces.draw_paths(posed_machine, point_paths),
         *clip_items(first, window),
-        *arrows.items,
-    ]
-    items += [
-        *machine_items.make_labels(posed_machine, 0),
-        *rope_items.make_labels(posed_machine, 0),
+        *load_items,
+        *place_labels,
         *_label_instants(posed_machine),
-        *traces.make_labels(posed_machine, point_paths),
     ]
-    strip = STRIP_HEIGHT * window.side
-    items += _draw_axes(posed_machine, window, strip)
-    step = 0.035 * window.side
-    key_x = window.low[0] + (0.30 if not posed_machine.view.is_axis_aligned else 0.06) * window.side
-    items += draw_key(loads, arrows.scale, key_x, window.low[1] - 0.35 * strip, step, units)
-    unit = units.find("m")[0]
-    x_name, y_name = posed_machine.view.format_axes()
-    low, high = window.low - (0.0, strip), window.high
-    x_axis, y_axis = Scaling(f"{x_name} [{unit}]", low[0], high[0]), Scaling(f"{y_name} [{unit}]", low[1], high[1])
-    panel = Panel(x_axis, y_axis, tuple(items), HEIGHT, has_equal_scales=True, title=name, is_layered=True)
-    return Figure(
-        posed_machine.spec.title,
-        _describe_view(posed_machine),
-        [panel],
-        (),
-        [*_make_notes(posed_machine, loads), *arrows.notes, *window.notes],
+    unit, (x_name, y_name) = units.find("m")[0], view.format_axes()
+    x_axis, y_axis = (
+        Scaling(f"{axis} [{unit}]", low, high)
+        for axis, low, high in zip((x_name, y_name), window.low.tolist(), window.high.tolist(), strict=True)
     )
+    key = _make_key(posed_machine, window, units, [*iter_key_arrows(loads, arrows, scales, units)], numbers)
+    panel = Panel(x_axis, y_axis, tuple(items), HEIGHT, True, True, name, True, key)
+    notes = [*window.notes, *_make_notes(posed_machine, loads)]
+    words = [describe_instants(posed_machine, None, units)]
+    return Figure(posed_machine.spec.title, words, [panel], (), ["; ".join(notes)] if notes else [])
 
 
-def _draw_first_instant(posed_machine: PosedMachine) -> list[Item]:
-    """Draw the first instant."""
+def _draw_first_instant(posed_machine: PosedMachine, drawn_names: Collection[str]) -> list[Item]:
+    """Draw the first instant; drawn_names: of loads that have an arrow."""
     items = [*machine_items.draw_bodies(posed_machine, 0), *machine_items.draw_mass_marks(posed_machine, 0)]
     items += [
         item for line in posed_machine.machine.lines for item in machine_items.draw_force_line(posed_machine, line, 0)
     ]
     items += rope_items.draw_ropes(posed_machine, 0)
     items += machine_items.draw_belt_strands(posed_machine, 0)
-    items += machine_items.draw_joint_actions(posed_machine, 0)
+    items += machine_items.draw_joint_actions(posed_machine, 0, drawn_names)
     return [*items, *machine_items.draw_joints(posed_machine, 0), *rope_items.draw_marks(posed_machine, 0)]
 
 
 def _draw_later_instant(posed_machine: PosedMachine, k: int) -> list[Item]:
-    """Draw a later instant in thin lines."""
+    """Draw a later instant in thin, pale lines."""
     items = machine_items.draw_bodies(posed_machine, k, thin=True)
     items += [
         item
@@ -197,49 +226,63 @@ def _label_instants(posed_machine: PosedMachine) -> Iterator[PlaceLabel]:
     most_moved = max(
         places_of_body, key=lambda name: (float(np.abs(places_of_body[name] - places_of_body[name][0]).max()), name)
     )
-    for t, (x, y) in zip(posed_machine.poses.times.tolist(), places_of_body[most_moved].tolist(), strict=True):
-        text = f"{format_short(t)} s"
-        yield PlaceLabel(x, y, text, text, LATER_PEN)
+    times = posed_machine.poses.times.tolist()
+    for k, (t, (x, y)) in enumerate(zip(times, places_of_body[most_moved].tolist(), strict=True)):
+        text = f"{format_short(t, TIME_DIGITS)} s"
+        yield PlaceLabel(x, y, text, text, LATER_PEN, is_ghost=k > 0)
 
 
-def _draw_axes(posed_machine: PosedMachine, window: Window, strip: float) -> Iterator[Item]:
-    """Draw the world's axes if they are not those of the figure, and gravity if it is visible."""
-    length = AXES_LENGTH * window.side
-    x, y = float(window.low[0]) + 1.6 * length, float(window.low[1]) - 0.5 * strip
-    if not posed_machine.view.is_axis_aligned:
-        for name, axis in zip("xyz", np.eye(3), strict=True):
-            a, b = (length * posed_machine.view.project(axis)).tolist()
-            yield Arrow(x, y, a, b, None, name)
-    gravity = posed_machine.view.project(np.array(posed_machine.spec.gravity))
-    size = float(np.linalg.norm(posed_machine.spec.gravity))
-    if size > 0.0 and float(np.hypot(*gravity)) > 0.2 * size:
-        a, b = (1.4 * length * gravity / size).tolist()
-        yield Arrow(float(window.high[0]) - 1.2 * length, float(window.low[1]) - 0.1 * strip, a, b, LATER_PEN, "g")
+def _make_key(
+    posed_machine: PosedMachine,
+    window: Window,
+    units: Units,
+    arrows: Sequence[KeyArrow],
+    numbers: tuple[tuple[str, str], ...],
+) -> SpaceKey:
+    """Make the key of a view: the world's axes, gravity if it is visible, a scale bar, the arrows of loads."""
+    view = posed_machine.view
+    axes = [(name, *to_pair(view.project(axis))) for name, axis in zip("xyz", np.eye(3), strict=True)]
+    acceleration = np.array(posed_machine.spec.gravity)
+    size = float(np.linalg.norm(acceleration))
+    gravity = view.project(acceleration / size) if size > 0.0 else np.zeros(2)
+    is_visible = float(np.hypot(*gravity)) > MIN_VISIBLE_GRAVITY
+    length = round_down(2.0 * SCALE_SHARE * float(window.high[0] - window.low[0]))
+    unit, per_metre = choose_prefix("m", length / posed_machine.size)
+    if units.is_chosen("m"):
+        unit, per_metre = units.find("m")
+    words = f"{format_short(length / posed_machine.size * per_metre)} {unit}"
+    return SpaceKey(tuple(axes), to_pair(gravity) if is_visible else None, (length, words), tuple(arrows), numbers)
 
 
-def _describe_view(posed_machine: PosedMachine) -> list[str]:
-    """Describe the instants and the view."""
-    times = [format_short(t) for t in posed_machine.poses.times.tolist()]
-    times_text = f"t = {times[0]} s" + (f"; thin lines: t = {', '.join(times[1:])} s" if len(times) > 1 else "")
-    return [f"{times_text}; seen from {posed_machine.view.description}"]
+def describe_instants(posed_machine: PosedMachine, worst: WorstInstant | None, units: Units) -> str:
+    """Describe the instants and the view; worst: the instant of the greatest joint force, if that is known."""
+    times = posed_machine.poses.times.tolist()
+    text = f"t = {format_short(times[0], TIME_DIGITS)} s"
+    if worst is not None and worst.name and worst.time == times[0]:
+        style = choose_reader_style("N", worst.force, units)
+        name = describe_object(worst.kind, worst.name, make_labels(posed_machine.spec))
+        text += (
+            f", worst instant: greatest {WORST_WORDS[worst.kind]} force, {name} {style.write(worst.force)} {style.unit}"
+        )
+    if len(times) > 1:
+        text += f"; pale: t = {', '.join(format_short(t, TIME_DIGITS) for t in times[1:])} s"
+    return f"{text}; seen from {posed_machine.view.description}"
 
 
-def _make_notes(posed_machine: PosedMachine, loads: ActingLoads) -> list[str]:
-    """Return notes on what is not drawn, and on what no symbol shows."""
-    notes = []
+def _make_notes(posed_machine: PosedMachine, loads: ActingLoads) -> Iterator[str]:
+    """Yield notes on what is not drawn."""
     if not posed_machine.has_names:
         bodies, joints = len(posed_machine.machine.bodies), len(posed_machine.machine.joints)
-        notes.append(f"names not shown: too many bodies ({bodies}) and joints ({joints})")
+        yield f"names not shown: too many bodies ({bodies}) and joints ({joints})"
+    labels = make_labels(posed_machine.spec)
     if loads.indeterminate:
-        notes.append(f"open, not drawn: forces and moments of {', '.join(loads.indeterminate)}")
-    spread = [
-        body.name for body in posed_machine.machine.bodies if body.is_ellipsoid and posed_machine.solids[body.name]
-    ]
-    if spread:
-        notes.append(f"drawn as the ellipsoid of the same inertia: {', '.join(spread)}")
-    forces = posed_machine.spec.forces.items()
-    acting = [f"{n} ({LOAD_KINDS[f.type].display_name} on {f.joint})" for n, f in forces if isinstance(f, JointForce)]
-    acting += [f"{n} (drive of {drive.joint})" for n, drive in posed_machine.spec.drives.items()]
+        yield f"indeterminate, without arrows: {_list_names('joints', loads.indeterminate, labels)}"
+    acting = [own.name for own in posed_machine.machine.joint_symbols if own.name not in loads.names]
     if acting and posed_machine.has_names:
-        notes.append(f"acting in joints: {', '.join(acting)}")
-    return notes
+        yield f"acting in joints: {_list_names('forces', acting, labels)}"
+
+
+def _list_names(kind: str, names: Sequence[str], labels: Labels) -> str:
+    """List names, of many the first ones."""
+    listed = ", ".join(describe_object(kind, name, labels) for name in names[:MAX_LISTED])
+    return listed if len(names) <= MAX_LISTED else f"{listed} and {len(names) - MAX_LISTED} more"

@@ -19,8 +19,8 @@ from heuncli.scene.file_format.names import GROUND
 MAX_EXTENT_RATIO = 12.0  # times the extent of joints and centres: a larger machine is drawn in part
 ROUNDING = 1e-9  # share of the figure: joints and centres that are closer coincide
 CORE_MARGIN = 0.8  # of the extent of joints and centres, around them in a partial figure
-MARGIN = 0.07  # share of the larger side, around all
-MIN_SIDES = np.array([0.8, 0.35])  # minimum sides as shares of the larger one; the width is for the key
+MARGIN = 0.05  # share of the larger side, around all
+MIN_SIDES = np.array([0.4, 0.25])  # minimum sides as shares of the larger one, for labels
 
 
 class Window(NamedTuple):
@@ -79,7 +79,8 @@ def _collect_points(posed_machine: PosedMachine, point_paths: Sequence[Array]) -
             posed_machine.project(name, place, k) for name, own in posed_machine.masses.items() for place in own
         ]
         ends = [(own.a, own.p) for own in machine.joints] + [(own.b, own.q) for own in machine.joints]
-        ends += [(own.a, own.p) for own in machine.lines] + [(own.b, own.q) for own in machine.lines]
+        lines = [own for own in machine.lines if own.name not in posed_machine.guided_actuators]
+        ends += [(own.a, own.p) for own in lines] + [(own.b, own.q) for own in lines]
         core_points += [posed_machine.project(body, point, k) for body, point in ends]
         for body in machine.bodies:
             for part in (*(solid.surface.corners for solid in posed_machine.solids[body.name]), *body.strokes):

@@ -15,7 +15,7 @@ from heuncli.scene.shapes.rotations import perpendicular_pair
 CIRCLE_CORNERS = 48  # of a circle
 HALF_THICKNESS = 0.06  # of the radius
 SPOKE_OFFSET = 1.02  # spokes are drawn further out than their face by this factor, to be visible
-RIM_RANGE = (0.5, 1.2)  # of the radius: surface corners at these distances from the axis belong to the wheel
+RIM_RANGE = (0.7, 1.2)  # of the radius: surface corners at these distances from the axis belong to the wheel
 
 
 class Disc(NamedTuple):
@@ -23,6 +23,7 @@ class Disc(NamedTuple):
 
     is_solid: whether a body without shapes is drawn as this disc
     has_spokes: whether it rotates with its body, so that spokes show its angle
+    is_pitch_circle: whether it is that of a gear
     """
 
     centre: Array
@@ -30,6 +31,7 @@ class Disc(NamedTuple):
     radius: float
     is_solid: bool = True
     has_spokes: bool = True
+    is_pitch_circle: bool = False
 
     @property
     def rim(self) -> Array:

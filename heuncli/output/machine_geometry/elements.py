@@ -10,7 +10,7 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.output.machine_geometry.discs import Disc
-from heuncli.output.machine_geometry.pitch_lines import BeltGeometry, make_pitch_geometry
+from heuncli.output.machine_geometry.pitch_lines import BeltGeometry, PitchPoint, make_pitch_geometry
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
@@ -19,11 +19,12 @@ SAME_DISC = 1e-9  # of the radius: discs whose centres, radii and axes differ by
 
 
 class ElementGeometry(NamedTuple):
-    """Discs and lines of each body, in its axes, and belts."""
+    """Discs and lines of each body, in its axes; belts, and the points at which gears mesh."""
 
     discs: dict[str, list[Disc]]
     lines: dict[str, list[Array]]
     belts: tuple[BeltGeometry, ...] = ()
+    pitch_points: tuple[PitchPoint, ...] = ()
 
 
 NO_ELEMENTS = ElementGeometry({}, {})
@@ -56,7 +57,7 @@ def collect_elements(spec: Spec, mechanism: Mechanism | None) -> ElementGeometry
     for body, own in _iter_discs(spec, mechanism, pitch.discs):
         if not any(are_same_disc(own, other) for other in discs[body]):
             discs[body].append(own)
-    return ElementGeometry(discs, lines, tuple(pitch.belts))
+    return ElementGeometry(discs, lines, tuple(pitch.belts), tuple(pitch.points))
 
 
 def _iter_discs(spec: Spec, mechanism: Mechanism | None, gears: dict[str, list[Disc]]) -> Iterator[tuple[str, Disc]]:

@@ -2,8 +2,8 @@
 symbols.
 
 Everything is in body axes [m]; positions in the world follow from the body's pose. A body with shapes is drawn as these
-shapes, with arms to points outside of them. A body without shapes is drawn as the wheel that it is, as lines between
-its points, or, if these coincide, as the ellipsoid that has its inertia.
+shapes, with arms to points outside of them. A body without shapes is drawn as the wheel that it is, or by its points
+and its centre of mass: as the link between two of them, or as the plate or solid that more of them span.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.machine_geometry.discs import Disc
 from heuncli.output.machine_geometry.elements import ElementGeometry, collect_elements
+from heuncli.output.machine_geometry.hulls import make_hull
 from heuncli.output.machine_geometry.joint_symbols import JointSymbol, iter_joint_symbols
 from heuncli.output.machine_geometry.marks import Mark, iter_marks
-from heuncli.output.machine_geometry.pitch_lines import BeltGeometry
+from heuncli.output.machine_geometry.pitch_lines import BeltGeometry, PitchPoint
 from heuncli.output.machine_geometry.ropes import RopeGeometry, collect_ropes
 from heuncli.output.machine_geometry.solids import (
     ROUND_FACES,
     Surface,
     find_nearest_place,
-    make_ellipsoid,
     make_surfaces,
 )
 from heuncli.output.machine_geometry.wheels import iter_balls
@@ -33,7 +33,6 @@ from heuncli.scene.file_format.models import PairForce, Shape, Spec
 from heuncli.scene.file_format.names import GROUND
 
 MIN_LINKED_DISCS = 2  # discs: from this number on, a body without shapes is drawn as a line between them
-MIN_EXTENT = 0.2  # of the radius of gyration: a body whose points span less is drawn as an ellipsoid
 OUTSIDE_TOLERANCE = 1e-9  # of the distance of a point from a shape's axis; less is rounding
 
 
@@ -41,23 +40,23 @@ class BodyGeometry(NamedTuple):
     """The geometry of a body, in its axes.
 
     points: the named points, (3,) each
-    surfaces: those of its shapes
+    surfaces: those of its shapes; without shapes, of the hull of its points
     lines: drawn on it: rims, spokes, threads, outlines of cams
-    is_ellipsoid: whether the surface is not its own but the ellipsoid that has its inertia
     bars: lines between its points, or from these to its shapes, which stand for the body itself
+    pitch_circles: closed lines of its gears, where these are not the surfaces themselves
     """
 
     name: str
     points: Mapping[str, Array]
     surfaces: tuple[Surface, ...]
     lines: tuple[Array, ...]
-    is_ellipsoid: bool = False
     bars: tuple[Array, ...] = ()
+    pitch_circles: tuple[Array, ...] = ()
 
     @property
     def strokes(self) -> tuple[Array, ...]:
-        """Its bars and its lines."""
-        return (*self.bars, *self.lines)
+        """Its bars, its lines and its pitch circles."""
+        return (*self.bars, *self.lines, *self.pitch_circles)
 
 
 class JointGeometry(NamedTuple):
@@ -91,6 +90,7 @@ class Machine(NamedTuple):
     belts, ropes: what does not move with one body
     marks: symbols with a position of their own
     joint_symbols: of drives and loads in joints
+    pitch_points: where gears mesh
     """
 
     title: str
@@ -103,6 +103,7 @@ class Machine(NamedTuple):
     ropes: tuple[RopeGeometry, ...] = ()
     marks: tuple[Mark, ...] = ()
     joint_symbols: tuple[JointSymbol, ...] = ()
+    pitch_points: tuple[PitchPoint, ...] = ()
 
 
 def make_machine(spec: Spec, faces: int = ROUND_FACES, scene: PreparedScene | None = None) -> Machine:
@@ -126,7 +127,15 @@ def make_machine(spec: Spec, faces: int = ROUND_FACES, scene: PreparedScene | No
     paths = (*elements.lines.get(GROUND, ()), *(disc.rim for disc in elements.discs.get(GROUND, ())))
     joint_symbols = tuple(iter_joint_symbols(spec))
     machine = Machine(
-        spec.title, bodies, joints, lines, ground_points, paths, elements.belts, joint_symbols=joint_symbols
+        spec.title,
+        bodies,
+        joints,
+        lines,
+        ground_points,
+        paths,
+        elements.belts,
+        joint_symbols=joint_symbols,
+        pitch_points=elements.pitch_points,
     )
     if scene is None:
         return machine
@@ -157,23 +166,22 @@ def _make_body(
     ends += points.values()
     shapes = find_drawn_shapes(spec, name, discs)
     surfaces = tuple(surface for shape in shapes for surface in make_surfaces(shape, faces))
-    rims = (disc.rim for disc in discs if body.shapes or not disc.is_solid)
+    rims = [disc for disc in discs if body.shapes or not disc.is_solid]
     spokes = (line for disc in discs if disc.has_spokes for line in disc.iter_spokes(surfaces))
-    drawn_lines = (*elements.lines.get(name, ()), *rims, *spokes)
+    drawn_lines = (*elements.lines.get(name, ()), *(disc.rim for disc in rims if not disc.is_pitch_circle), *spokes)
+    pitch_circles = tuple(disc.rim for disc in rims if disc.is_pitch_circle)
+    centre = np.array(body.center, dtype=np.float64)
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
-        if body.shapes or len(discs) < MIN_LINKED_DISCS:
-            return BodyGeometry(name, points, surfaces, drawn_lines, bars=tuple(_iter_arms(shapes, ends)))
-        bar = _join_points([*ends, np.array(body.center, dtype=np.float64)])
-        return BodyGeometry(name, points, surfaces, drawn_lines, bars=(bar,))
+        is_linked = not body.shapes and len(discs) >= MIN_LINKED_DISCS
+        bars = (_join_points([*ends, centre]),) if is_linked else tuple(_iter_arms(shapes, ends))
+        return BodyGeometry(name, points, surfaces, drawn_lines, bars, pitch_circles)
     # for bodies of point masses, centre and inertia are not known yet, and not needed
-    centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
-    line = _join_points([*ends, *centre])
-    moments = np.array(body.inertia, dtype=np.float64)
-    gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
-    if not drawn_lines and float(np.ptp(line, axis=0).max()) < MIN_EXTENT * gyration:
-        return BodyGeometry(name, points, (make_ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
-    return BodyGeometry(name, points, (), drawn_lines, bars=(line,))
+    bar = _join_points([*ends, *([np.array(shape.at) for shape in shapes] or [centre])])
+    hull = make_hull(bar) if not (drawn_lines or pitch_circles) else None
+    if hull is not None:
+        return BodyGeometry(name, points, (hull,), ())
+    return BodyGeometry(name, points, (), drawn_lines, (bar,), pitch_circles)
 
 
 def _iter_arms(shapes: Sequence[Shape], ends: Sequence[Array]) -> Iterator[Array]:

@@ -44,12 +44,21 @@ class BeltGeometry(NamedTuple):
         return np.asarray(np.sum(parts, axis=0))
 
 
+class PitchPoint(NamedTuple):
+    """The point (3,) at which two gears mesh, in the axes of the body that carries their axes."""
+
+    name: str
+    carrier: str
+    point: Array
+
+
 class PitchGeometry(NamedTuple):
-    """Discs of bodies and of the ground, pitch lines of racks (2, 3) in body axes, and belts."""
+    """Discs of bodies and of the ground, pitch lines of racks (2, 3) in body axes, belts, and pitch points."""
 
     discs: dict[str, list[Disc]]
     racks: dict[str, list[Array]]
     belts: list[BeltGeometry]
+    points: list[PitchPoint]
 
 
 class _GearingModel(NamedTuple):
@@ -74,12 +83,12 @@ def make_pitch_geometry(spec: Spec) -> PitchGeometry:
         for name, b in spec.bodies.items()
     ]
     model = _GearingModel(joints, bodies, {i: x for x, i in index.items()}, {x: k for k, x in enumerate(spec.joints)})
-    geometry = PitchGeometry(defaultdict(list), defaultdict(list), [])
+    geometry = PitchGeometry(defaultdict(list), defaultdict(list), [], [])
     for name, coupling in spec.couplings.items():
         if isinstance(coupling, Gear | Belt):
             try:
                 if isinstance(coupling, Gear):
-                    _add_gear(geometry, model, coupling)
+                    _add_gear(geometry, model, name, coupling)
                 else:
                     _add_belt(geometry, model, name, coupling)
             except Finding:
@@ -87,18 +96,21 @@ def make_pitch_geometry(spec: Spec) -> PitchGeometry:
     return geometry
 
 
-def _add_gear(geometry: PitchGeometry, model: _GearingModel, gear: Gear) -> None:
+def _add_gear(geometry: PitchGeometry, model: _GearingModel, name: str, gear: Gear) -> None:
     """Add a pair of wheels, or a wheel and its rack. Raises Finding."""
     pair_joints = model.joint_numbers[gear.terms[0].joint], model.joint_numbers[gear.terms[1].joint]
     carrier, *pair = find_gears(model.joints, model.bodies, pair_joints)
     P = find_mesh(gear, carrier, pair[0], pair[1], None if gear.at is None else np.array(gear.at.point)).P
+    geometry.points.append(PitchPoint(name, model.body_names[carrier], P))
     radii = [float(np.sqrt(m.arm(P) @ m.arm(P))) if m.turns else 0.0 for m in pair]
     for k, member, r in zip(pair_joints, pair, radii, strict=True):
         body = model.body_names[member.body]
         if member.turns:
             ring = r == max(radii) and is_internal_pair(pair, P)
             geometry.discs[body].append(
-                make_pitch_circle(model, k, member, r, float((P - member.point) @ member.axis), not ring)
+                make_pitch_circle(model, k, member, r, float((P - member.point) @ member.axis), not ring)._replace(
+                    is_pitch_circle=True
+                )
             )
         else:
             geometry.racks[body].append(make_rack_line(model, k, member, P, max(radii)))

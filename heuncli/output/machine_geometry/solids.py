@@ -87,21 +87,6 @@ def find_nearest_place(shape: Shape, point: Array) -> tuple[Array, float]:
     return place, max(axial, radial - max(first, last))
 
 
-def make_ellipsoid(mass: float, center: Array, inertia: Array, faces: int = ROUND_FACES) -> Surface:
-    """Make the homogeneous ellipsoid of a mass with that inertia (3, 3) about its centre; flat if there is none.
-
-    a1^2 = 5/(2 m) (A2 + A3 - A1)    of the principal moments A
-    """
-    moments, axes = np.linalg.eigh(inertia)
-    squares = np.maximum(2.5 / mass * (moments.sum() - 2.0 * moments), 0.0)
-    if np.linalg.det(axes) < 0.0:
-        axes = axes * np.array([1.0, 1.0, -1.0])
-    half_axes = np.sqrt(squares) * axes  # columns are the half axes
-    unit = _make_sphere(np.zeros(3), 1.0, faces)
-    edges = tuple(center + edge @ half_axes.T for edge in unit.edges)
-    return Surface(center + unit.corners @ half_axes.T, unit.faces, edges)
-
-
 def _to_array(vector: Vec | None) -> Array:
     return np.array(vector, dtype=np.float64)
 

@@ -129,8 +129,7 @@ def _make_body(body: BodyGeometry, results: Results, topologies: Topologies, is_
         "attitudes": pack_points(pose["quaternion"]),
         "surfaces": [_make_surface(surface, topologies) for surface in body.surfaces],
         "bars": [pack_points(line) for line in body.bars],
-        "lines": [pack_points(line) for line in (*body.lines, *rolling_edges)],
-        "spread": body.is_ellipsoid,
+        "lines": [pack_points(line) for line in (*body.lines, *body.pitch_circles, *rolling_edges)],
         "points": [{"name": name, "at": _to_floats(point)} for name, point in body.points.items()],
     }
 

@@ -7,7 +7,6 @@ import { sidesOf } from "./surfaces.js";
 const LIGHT = [-0.37, 0.56, 0.74];
 const BAR = 6; // pixels: how thick a body without shapes is drawn
 const ARM = 2; // pixels: lines on a body, and from its shapes to a point that lies off them
-const LIGHT_AS_AIR = 0.3; // how opaque an ellipsoid is that stands for a body's inertia
 const BEFORE = 0.004; // of the scene: how much nearer a bar is taken than its rim
 
 /**
@@ -105,7 +104,7 @@ export function paintBodies(painter, scene, poses, view, colours) {
         const [x, y, near] = view.project(stands(poses, k, surface.ball.center));
         painter.ball(near, x, y, surface.ball.radius * view.scale, own.shades, own.edge);
       } else {
-        paintFaces(painter, surface, poses[k], view, own, body.spread ? LIGHT_AS_AIR : 1);
+        paintFaces(painter, surface, poses[k], view, own, 1);
       }
     }
     const thin = (line) =>

@@ -54,7 +54,12 @@ class PlotRequest(NamedTuple):
         ),
     ] = ()
     at: Annotated[
-        str | None, Option(("--at",), "Instants of diagrams and of scene, as in heun export.", "WHEN,...")
+        str | None,
+        Option(
+            ("--at",),
+            "Instants of diagrams and of scene, as in heun export; of scene also start, worst (default).",
+            "WHEN,...",
+        ),
     ] = None
     axes: Annotated[
         str | None,

@@ -1,0 +1,55 @@
+"""Find the instant at which a machine is drawn if none is given: that of the greatest joint force."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.base.load_kinds import LOAD_KINDS
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Results
+from heuncli.results.results_paths import find_values
+from heuncli.study.quantities.channels import Channel, make_path_channel
+from heuncli.study.queries.measure_uncertainty import find_search_error
+from heuncli.study.queries.study import Study
+from heuncli.study.search.columns import ChannelSearch
+
+
+class WorstInstant(NamedTuple):
+    """The instant [s] of the greatest force, and what transmits it.
+
+    kind, name: joints and a joint, or forces and a bushing in a scene without joints; empty if no force is known, and
+    then the instant is the first of the run
+    force: its magnitude [N]
+    """
+
+    time: float
+    kind: str = ""
+    name: str = ""
+    force: float = 0.0
+
+
+def find_worst_instant(study: Study) -> WorstInstant:
+    """Find the greatest joint force of a run before its horizon, between the samples too; without joints, the greatest
+    force of a bushing.
+    """
+    spec, first = study.spec, float(study.results.time[0])
+    bushings = [name for name, force in spec.forces.items() if LOAD_KINDS[force.type].place == "bodies"]
+    kind, names = ("joints", list(spec.joints)) if spec.joints else ("forces", bushings)
+    if study.has_one_instant or not names:
+        return WorstInstant(first)
+
+    def collect(results: Results) -> list[Channel]:
+        if names[0] not in getattr(results, kind):  # the run was asked for other reports
+            results = study.compute_reports(results.time, frozenset({kind}))
+        return [make_path_channel(find_values(results, f"{kind}.{name}.force")) for name in names]
+
+    error = find_search_error(study, (kind, names[0], "force"))
+    search = ChannelSearch(collect, lambda channel: error if math.isfinite(error) else math.nan, (1.0,))
+    bounds = study.search_extremes(search, frozenset({kind}))
+    forces = np.nan_to_num(np.asarray(bounds.high), nan=-math.inf)
+    k = int(np.argmax(forces))
+    if not forces[k] > 0.0:
+        return WorstInstant(first)
+    return WorstInstant(float(bounds.high_at[k]), kind, names[k], float(forces[k]))
