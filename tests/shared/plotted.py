@@ -1,4 +1,4 @@
-"""What a drawing shows, read back from its SVG: panels by their frames, axes by the numbers written along them."""
+"""What a drawing shows, read back from its SVG: panels by their axes, these by the numbers along them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from heuncli.results.results import Array
 
 PlaceOf = Callable[[float, float], tuple[float, bool]]  # of a number at x, y: where on the axis, whether on it
 SVG = "{http://www.w3.org/2000/svg}"
-BELOW, BESIDE, BASE = 16.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
+BELOW, BESIDE, BASE = 18.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
 
 
 class PlottedAxis(NamedTuple):
@@ -99,11 +99,11 @@ def panels_of(svg: str, *, equal: bool = False) -> list[PlottedPanel]:
 
 
 def is_frame(points: Array) -> bool:
-    """Whether a line is the frame of a panel: a closed rectangle."""
-    if len(points) != 5 or not np.array_equal(points[0], points[-1]):
+    """Whether a line is the two axes of a panel: down at its left, then to the right below it."""
+    if len(points) != 3:
         return False
-    steps = np.abs(np.diff(points, axis=0))
-    return bool((steps.min(axis=1) == 0.0).all() and (steps.max(axis=1) > 10.0).all())
+    down, across = np.diff(points, axis=0)
+    return bool(down[0] == 0.0 and down[1] > 10.0 and across[1] == 0.0 and across[0] > 10.0)
 
 
 def numbers(root: tree.Element, anchor: str, place_of: PlaceOf) -> dict[float, float]:
@@ -115,7 +115,7 @@ def numbers(root: tree.Element, anchor: str, place_of: PlaceOf) -> dict[float, f
         place, own = place_of(float(e.get("x", "nan")), float(e.get("y", "nan")))
         try:
             if own:
-                found[place] = float(e.text or "")
+                found[place] = float((e.text or "").replace("−", "-"))
         except ValueError:
             continue
     return found

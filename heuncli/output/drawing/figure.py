@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from math import log
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.results.results import Array
-
-HEIGHT = 170.0  # default, pixels of a panel
 
 
 class Trace(NamedTuple):
@@ -238,7 +237,7 @@ class Panel(NamedTuple):
     x: Scaling
     y: Scaling
     items: tuple[Item, ...]
-    height: float = HEIGHT
+    height: float = PANEL_HEIGHT
     has_equal_scales: bool = False
     is_bare: bool = False
     title: str = ""

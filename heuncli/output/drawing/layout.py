@@ -32,15 +32,51 @@ from heuncli.output.drawing.figure import (
 )
 from heuncli.output.drawing.label_placement import WordBox, make_omitted_note
 from heuncli.output.drawing.labels import place_labels
-from heuncli.output.drawing.pens import BLACK, DIM, FAINT, GREY, GRID, WHITE, find_colour, find_pen, mix_with_white
+from heuncli.output.drawing.pens import find_colour, find_pen, find_shade, mix_with_white
 from heuncli.output.drawing.scales import PanelBox
-from heuncli.output.drawing.shades import find_shade
 from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, VectorDrawing
+from heuncli.output.drawing.style import (
+    ARROW_HEAD,
+    ARROW_WIDTH,
+    AXIS_SPACE,
+    AXIS_WIDTH,
+    BAND_OPACITY,
+    BAR_OPACITY,
+    BLACK,
+    CURVE_WIDTH,
+    DIM,
+    FAINT,
+    FILL_OPACITY,
+    GREY,
+    GRID,
+    GRID_WIDTH,
+    HATCH_STEP,
+    HATCH_WIDTH,
+    INDENT,
+    LEFT,
+    LETTER_WIDTH,
+    LINE_HEIGHT,
+    MARK_SIZE,
+    NAME_SIZE,
+    OPAQUE_OPACITY,
+    PANEL_SPACE,
+    PER_TICK_X,
+    PER_TICK_Y,
+    POINT_SIZE,
+    RIGHT,
+    SMALL_SIZE,
+    SYMBOL_WIDTH,
+    THIN_WIDTH,
+    TICK_LENGTH,
+    TITLE_HEIGHT,
+    TITLE_SIZE,
+    TOP,
+    WHITE,
+    WIDTH,
+)
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.output.drawing.ticks import choose_ticks
 from heuncli.output.drawing.words import (
-    MARK_SIZE,
-    SMALL_SIZE,
     drop_close_marks,
     estimate_width,
     make_field,
@@ -48,20 +84,9 @@ from heuncli.output.drawing.words import (
 )
 from heuncli.results.results import Array
 
-WIDTH = 820.0  # pixels
-LEFT, RIGHT, TOP = 86.0, 26.0, 26.0
-AXIS_SPACE, PANEL_SPACE = 44.0, 20.0  # pixels below a panel with the label of its axis, and without
-TITLE_SIZE, NAME_SIZE = 17.0, 12.0  # font sizes
-LINE_HEIGHT = 16.0  # pixels
-LETTER_WIDTH = 0.56  # mean width of a letter in a sentence, in font sizes
-PER_TICK_X, PER_TICK_Y = 78.0, 34.0  # minimum distance of ticks, pixels
-ARROW_HEAD = 8.0  # pixels
-HATCH_STEP = 9.0  # pixels between lines
 CELL_OVERLAP = 0.5  # pixels by which cells overlap, else the background shows between them
 MARGIN = 8.0  # pixels at the edge, for words beside a panel without axes
 MIN_MARK_DISTANCE = 2.0  # pixels between vertical marks
-POINT_SIZE = 1.6  # pixels, half the size of a single point of a curve
-FILL_OPACITY, OPAQUE_OPACITY = 0.14, 0.65  # of a light fill, and of a fill that hides what is behind it
 DRAWING_ORDER = {Area: 0, Line: 1, Mark: 2, Text: 3}  # later ones cover earlier ones
 LAYERED_ORDER = {Area: 0, Line: 0, Mark: 0, Text: 1}
 MAX_EXACT_CORNERS = 8  # an outline with more corners is simplified
@@ -89,7 +114,7 @@ def lay_out(figure: Figure, width: float = WIDTH) -> VectorDrawing:
     y += 6.0 if notes else 0.0
     for note in notes:
         for text in _wrap(note, SMALL_SIZE, width):
-            shapes.append(Text(20.0, y + 4.0, text, SMALL_SIZE, colour=GREY))
+            shapes.append(Text(INDENT, y + 4.0, text, SMALL_SIZE, colour=GREY))
             y += LINE_HEIGHT
     return VectorDrawing(width, y + 8.0, escape(figure.title), "; ".join(map(escape, figure.words)), shapes)
 
@@ -99,18 +124,18 @@ def _lay_out_heading(figure: Figure, width: float) -> tuple[list[Shape], float]:
     shapes: list[Shape] = []
     y = TOP
     for text in _wrap(figure.title, TITLE_SIZE, width):
-        shapes.append(Text(20.0, y, text, TITLE_SIZE, is_bold=True))
-        y += 21.0
+        shapes.append(Text(INDENT, y, text, TITLE_SIZE, is_bold=True))
+        y += TITLE_HEIGHT
     for sentence in figure.words:
         for text in _wrap(sentence, SMALL_SIZE, width):
-            shapes.append(Text(20.0, y, text, SMALL_SIZE, colour=GREY))
+            shapes.append(Text(INDENT, y, text, SMALL_SIZE, colour=GREY))
             y += LINE_HEIGHT
     return shapes, y
 
 
 def _wrap(text: str, size: float, width: float) -> list[str]:
     """Wrap a text to lines that fit."""
-    return wrap_text(escape(text), int((width - 40.0) / (LETTER_WIDTH * size)), 0)
+    return wrap_text(escape(text), int((width - 2.0 * INDENT) / (LETTER_WIDTH * size)), 0)
 
 
 def _lay_out_legend(figure: Figure, y: float, width: float) -> tuple[list[Shape], float]:
@@ -119,17 +144,17 @@ def _lay_out_legend(figure: Figure, y: float, width: float) -> tuple[list[Shape]
     entries = [*((name, number, "") for name, number in figure.legend), *figure.marks]
     if not entries:
         return shapes, y
-    x, y = 20.0, y + 4.0
+    x, y = INDENT, y + 4.0
     for name, number, mark in entries:
         text = escape(name)
         entry_width = 34.0 + estimate_width(text, NAME_SIZE) + 14.0
-        if x > 20.0 and x + entry_width > width - 20.0:
-            x, y = 20.0, y + LINE_HEIGHT
+        if x > INDENT and x + entry_width > width - INDENT:
+            x, y = INDENT, y + LINE_HEIGHT
         entry_pen = find_pen(number)
         if mark:
             shapes.append(Mark(x + 14.0, y - 4.0, mark, entry_pen.colour, False, MARK_SIZE))
         else:
-            shapes.append(Line(((x, y - 4.0), (x + 28.0, y - 4.0)), entry_pen.colour, 2.0, entry_pen.dash))
+            shapes.append(Line(((x, y - 4.0), (x + 28.0, y - 4.0)), entry_pen.colour, CURVE_WIDTH, entry_pen.dash))
         shapes.append(Text(x + 34.0, y, text, NAME_SIZE))
         x += entry_width
     return shapes, y + 8.0
@@ -164,27 +189,28 @@ def _lay_out_panel(panel: Panel, box: PanelBox, width: float) -> tuple[list[Shap
 
 
 def _lay_out_axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
-    """Return the grid, which is below all else, and the zero lines, the frame with its numbers, and the labels."""
+    """Return the grid, which is below all else, and the zero lines, the axes with their numbers, and the labels."""
     max_ticks = max(2, int((box.right - box.left) / PER_TICK_X)), max(2, int((box.bottom - box.top) / PER_TICK_Y))
     grid: list[Shape] = []
     axes: list[Shape] = []
     for value, text in choose_ticks(box.x_scaling, max_ticks[0]):
         x = box.to_pixel_x(value)
         is_zero = _is_zero(value, box.x_scaling)
-        (axes if is_zero else grid).append(Line(((x, box.top), (x, box.bottom)), GREY if is_zero else FAINT, 0.8))
-        axes.append(Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8))
+        colour = GREY if is_zero else FAINT
+        (axes if is_zero else grid).append(Line(((x, box.top), (x, box.bottom)), colour, GRID_WIDTH))
+        axes.append(Line(((x, box.bottom), (x, box.bottom + TICK_LENGTH)), GREY, GRID_WIDTH))
         if box.x_scaling.shown_label:
-            axes.append(Text(x, box.bottom + 16.0, escape(text), SMALL_SIZE, "middle"))
+            axes.append(Text(x, box.bottom + 18.0, escape(text), SMALL_SIZE, "middle"))
     for value, text in choose_ticks(box.y_scaling, max_ticks[1]):
         y = box.to_pixel_y(value)
         is_zero = _is_zero(value, box.y_scaling)
-        (axes if is_zero else grid).append(Line(((box.left, y), (box.right, y)), GREY if is_zero else FAINT, 0.8))
+        colour = GREY if is_zero else FAINT
+        (axes if is_zero else grid).append(Line(((box.left, y), (box.right, y)), colour, GRID_WIDTH))
         axes.append(Text(box.left - 7.0, y + 4.0, escape(text), SMALL_SIZE, "end"))
-    corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
-    axes.append(Line((*corners, corners[0]), BLACK, 0.8))
+    axes.append(Line(((box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)), BLACK, AXIS_WIDTH))
     if box.x_scaling.shown_label:
         middle = (box.left + box.right) / 2.0
-        axes.append(Text(middle, box.bottom + 34.0, escape(box.x_scaling.shown_label), NAME_SIZE, "middle"))
+        axes.append(Text(middle, box.bottom + 36.0, escape(box.x_scaling.shown_label), NAME_SIZE, "middle"))
     if box.y_scaling.label:
         label_place = max(box.left - 64.0, 16.0), (box.top + box.bottom) / 2.0
         axes.append(Text(*label_place, escape(box.y_scaling.label), NAME_SIZE, "middle", is_vertical=True))
@@ -208,7 +234,9 @@ def _draw_trace(item: Trace, box: PanelBox) -> Iterator[Shape]:
             yield Mark(float(part[0, 0]), float(part[0, 1]), "circle", trace_pen.colour, True, POINT_SIZE)
             continue
         line = tuple(map(tuple, simplify(part).tolist()))
-        yield Line(line, trace_pen.colour, 0.9 if item.is_thin else 1.5, trace_pen.dash, escape(item.name))
+        yield Line(
+            line, trace_pen.colour, THIN_WIDTH if item.is_thin else CURVE_WIDTH, trace_pen.dash, escape(item.name)
+        )
 
 
 def _draw_band(item: Band, box: PanelBox) -> Iterator[Shape]:
@@ -217,7 +245,7 @@ def _draw_band(item: Band, box: PanelBox) -> Iterator[Shape]:
         if len(part) == 1:
             continue
         outline = np.concatenate([simplify(part[:, :2]), simplify(part[:, 2:])[::-1]])
-        yield Area(tuple(map(tuple, outline.tolist())), find_pen(item.pen).colour, 0.2, escape(item.name))
+        yield Area(tuple(map(tuple, outline.tolist())), find_pen(item.pen).colour, BAND_OPACITY, escape(item.name))
 
 
 def _draw_strokes(item: Strokes, box: PanelBox) -> Iterator[Shape]:
@@ -283,7 +311,7 @@ def _draw_parts(
         else:
             if part.fill:
                 yield Area(points, WHITE)
-            yield Line((*points, points[0]) if part.is_closed else points, colour, 1.2, name=name)
+            yield Line((*points, points[0]) if part.is_closed else points, colour, SYMBOL_WIDTH, name=name)
         name = ""  # only once
 
 
@@ -303,7 +331,7 @@ def _draw_arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
     head = min(ARROW_HEAD, 0.6 * length)
     back = x1 - head * a, y1 - head * b
     name = escape(item.description or item.name)
-    yield Line(((x0, y0), back), colour, 1.6, name=name)
+    yield Line(((x0, y0), back), colour, ARROW_WIDTH, name=name)
     side = 0.4 * head
     left, right = (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)
     yield Area(((x1, y1), left, right), colour, 1.0, name)
@@ -325,7 +353,7 @@ def _draw_words(item: Words, box: PanelBox) -> Iterator[Shape]:
 
 def _draw_vertical_mark(item: VerticalMark, box: PanelBox) -> Iterator[Shape]:
     x = box.to_pixel_x(item.x)
-    yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), escape(item.note or item.text))
+    yield Line(((x, box.top), (x, box.bottom)), DIM, AXIS_WIDTH, (3.0, 3.0), escape(item.note or item.text))
     if item.is_above:  # keep the words within the drawing
         half = min(0.5 * estimate_width(escape(item.text), SMALL_SIZE) + 4.0, 0.5 * (box.right + RIGHT))
         middle = max(half, min(x, box.right + RIGHT - half))
@@ -343,7 +371,7 @@ def _draw_blank(item: Blank, box: PanelBox) -> Iterator[Shape]:
         x = k * HATCH_STEP  # a line that rises to the right from the bottom at x
         low, high = max(left, x), min(right, x + height)
         if low < high:
-            yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, 0.7)
+            yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, HATCH_WIDTH)
     yield Text(
         (left + right) / 2.0, box.top + 0.3 * height, escape(item.text), SMALL_SIZE, "middle", GREY, has_halo=True
     )
@@ -356,7 +384,7 @@ def _draw_bars(item: Bars, box: PanelBox) -> Iterator[Shape]:
     for x, y in box.to_pixels(item.x, item.y).tolist():
         if math.isfinite(y):
             corners = ((x - half, zero), (x - half, y), (x + half, y), (x + half, zero))
-            yield Area(corners, bar_pen.colour, 0.85, escape(item.name))
+            yield Area(corners, bar_pen.colour, BAR_OPACITY, escape(item.name))
 
 
 def _draw_cells(item: Cells, box: PanelBox) -> Iterator[Shape]:

@@ -14,10 +14,11 @@ import numpy as np
 from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
-from heuncli.output.drawing.figure import HEIGHT, Figure, Item, Panel, PlaceLabel, Trace, VerticalMark
+from heuncli.output.drawing.figure import Figure, Item, Panel, PlaceLabel, Trace, VerticalMark
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
 from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.output.drawing.ticks import choose_ticks
 from heuncli.output.drawing.words import order_items
 
@@ -70,7 +71,7 @@ def _draw_legend(figure: Figure, style: TerminalStyle) -> list[str]:
 def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str]]:
     """Return a panel with its axes, and the words that found no room."""
     max_columns = max(style.width - LABEL_WIDTH - 2, 10)
-    rows = max(MIN_ROWS, round(ROWS * panel.height / HEIGHT))
+    rows = max(MIN_ROWS, round(ROWS * panel.height / PANEL_HEIGHT))
     columns = max_columns
     if panel.has_equal_scales:
         x_span, y_span = panel.x.high - panel.x.low, panel.y.high - panel.y.low

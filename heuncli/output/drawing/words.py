@@ -9,15 +9,12 @@ import numpy as np
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing.figure import Item, Spot, VerticalMark
 from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
-from heuncli.output.drawing.pens import BLACK, GREY, find_pen
+from heuncli.output.drawing.pens import find_pen
 from heuncli.output.drawing.scales import PanelBox
 from heuncli.output.drawing.shapes import Line, Mark, Shape, Text
+from heuncli.output.drawing.style import BASE_FACTOR, BLACK, GREY, HEIGHT_FACTOR, MARK_SIZE, SMALL_SIZE, WIDTH_FACTOR
 
-SMALL_SIZE = 11.0  # font size
-WIDTH_FACTOR, HEIGHT_FACTOR = 0.6, 1.2  # of the font size: maximum mean width of letters, height of a line
-BASE_FACTOR = 0.92  # of the font size: from the top of a line to its base
 CELL_SIZE = 3.0  # pixels of a cell of the word field
-MARK_SIZE = 3.0  # pixels, half the size of a mark
 MARK_DISTANCE = 2.0  # pixels from a mark to its words
 MIN_LINE_WIDTH = 1.0  # of a line without a name that is no hatch
 

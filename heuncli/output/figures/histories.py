@@ -9,7 +9,6 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import (
-    HEIGHT,
     Band,
     Blank,
     Figure,
@@ -21,6 +20,7 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     share_x_axis,
 )
+from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.output.drawing.ticks import choose_ends, format_short, is_zero_near
 from heuncli.output.figures.courses import (
     FigureSource,
@@ -48,7 +48,7 @@ from heuncli.study.queries.smoothed_friction import make_friction_warning
 
 MAX_DIGITS = 5  # maximum in labels of extremes
 LABEL_MARGIN = 0.12  # share above and below the curves, for labels
-PANEL_HEIGHTS = (280.0, 210.0, HEIGHT)  # pixels of a panel, by the number of panels: one, two, more
+PANEL_HEIGHTS = (280.0, 210.0, PANEL_HEIGHT)  # pixels of a panel, by the number of panels: one, two, more
 MAX_PATH_HEIGHT = 480.0  # maximum height of the path of a point, pixels
 MAX_TIME_INSTANTS, MAX_NUMBER_INSTANTS = 1_000_000, 20_000  # maxima over time (thinned later), over a number
 BEYOND_HORIZON_NOTE = "past the horizon: no results claimed"
