@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.table_units import parse_units
 from heuncli.study.queries.study import Study
 from tests.shared.drawn_panels import DrawnPanel, panels
 
-SI = Units({})
+SI = parse_units("N,m,N·m")
 HELD_TWICE = """
 heun: 1
 title: Held by two pins

@@ -25,21 +25,28 @@ class Trace(NamedTuple):
 
 
 class Band(NamedTuple):
-    """The area between two courses (n,), lightly filled."""
+    """The area between two courses (n,), lightly filled; has_edges: whether the courses are drawn as thin lines."""
 
     name: str
     x: Array
     low: Array
     high: Array
     pen: int = 0
+    has_edges: bool = False
 
 
 class Strokes(NamedTuple):
-    """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). For hatches, ordinates, symbols."""
+    """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). For hatches, ordinates, symbols.
+
+    is_hatch: whether they fill an area, thin and pale
+    is_faint: whether they are lines of a grid
+    """
 
     ends: Array
     pen: int | None = None
     width: float = 0.7
+    is_hatch: bool = False
+    is_faint: bool = False
 
 
 class Polygon(NamedTuple):
@@ -47,6 +54,7 @@ class Polygon(NamedTuple):
 
     is_opaque: whether it nearly hides what lies below
     has_outline: whether the line itself is drawn
+    is_faint: whether it is a line of a grid
     """
 
     name: str
@@ -56,6 +64,7 @@ class Polygon(NamedTuple):
     is_opaque: bool = False
     width: float = 1.0
     has_outline: bool = True
+    is_faint: bool = False
 
 
 class Arrow(NamedTuple):
@@ -90,12 +99,13 @@ class Spot(NamedTuple):
 
 
 class Words(NamedTuple):
-    """A few words, or a sign, at a place, without a mark."""
+    """A few words at a place, without a mark; is_sign: a + or − in a white disc."""
 
     x: float
     y: float
     text: str
     pen: int | None = None
+    is_sign: bool = False
 
 
 class Symbol(NamedTuple):
@@ -232,6 +242,7 @@ class Panel(NamedTuple):
     has_equal_scales: whether a unit has the same length on both axes
     is_bare: whether it has no axes
     is_layered: whether items cover those before them; else lines are drawn over filled areas
+    legend: names of its pens, shown above it
     """
 
     x: Scaling
@@ -242,6 +253,7 @@ class Panel(NamedTuple):
     is_bare: bool = False
     title: str = ""
     is_layered: bool = False
+    legend: tuple[tuple[str, int], ...] = ()
 
 
 def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:
@@ -249,11 +261,15 @@ def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:
     return [*(panel._replace(x=panel.x._replace(hides_label=True)) for panel in panels[:-1]), *panels[-1:]]
 
 
+LegendEntry = tuple[str, int, str]  # a name, its pen, and the shape of its mark; "" for a stroke
+
+
 class Figure(NamedTuple):
     """Panels below each other, with a title, sentences that describe the figure, and notes below.
 
     legend: names of pens, in their order
     marks: names of marks, with their pens and shapes
+    n_columns: panels in a row
     """
 
     title: str
@@ -261,4 +277,5 @@ class Figure(NamedTuple):
     panels: Sequence[Panel]
     legend: Sequence[tuple[str, int]] = ()
     notes: Sequence[str] = ()
-    marks: Sequence[tuple[str, int, str]] = ()
+    marks: Sequence[LegendEntry] = ()
+    n_columns: int = 1

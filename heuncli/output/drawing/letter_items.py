@@ -108,7 +108,7 @@ def _draw_spot(item: Spot, canvas: Canvas) -> None:
 
 def _draw_words(item: Words, canvas: Canvas) -> None:
     column, row = round(canvas.to_dot_x(item.x)) // canvas.per_x, round(canvas.to_dot_y(item.y)) // canvas.per_y
-    text = escape(item.text if canvas.style.has_braille else item.text.replace("\N{MINUS SIGN}", "-"))
+    text = escape(item.text)
     canvas.write(text, column - count_columns(text) // 2, row)
 
 

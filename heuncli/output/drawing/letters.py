@@ -19,7 +19,7 @@ from heuncli.output.drawing.label_placement import count_columns, make_omitted_n
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
 from heuncli.output.drawing.pens import find_pen
 from heuncli.output.drawing.style import PANEL_HEIGHT
-from heuncli.output.drawing.ticks import choose_ticks
+from heuncli.output.drawing.ticks import MINUS, choose_ticks
 from heuncli.output.drawing.words import order_items
 
 ROWS, MIN_ROWS = 12, 5  # of a panel of default height, minimum
@@ -43,7 +43,8 @@ def draw_text(figure: Figure, style: TerminalStyle) -> str:
         for note in (*figure.notes, *make_omitted_note(omitted))
         for line in wrap_text(escape(note), style.width, 2)
     ]
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    return text if style.has_braille else text.replace(MINUS, "-")
 
 
 def _draw_legend(figure: Figure, style: TerminalStyle) -> list[str]:

@@ -31,12 +31,12 @@ TICK_LENGTH = 4.0
 CURVE_WIDTH, THIN_WIDTH, ENVELOPE_WIDTH = 2.0, 1.0, 0.9
 AXIS_WIDTH, GRID_WIDTH, HATCH_WIDTH, SYMBOL_WIDTH = 1.0, 0.7, 0.6, 1.2
 MARK_SIZE, POINT_SIZE = 3.2, 1.8  # half the size of a mark, and of a single point of a curve
-MARK_EDGE = 1.2
+MARK_EDGE, SIGN_SIZE = 1.2, 8.0  # the second half the disc of a sign
 ARROW_WIDTH, ARROW_HEAD = 1.8, 9.0
 HATCH_STEP = 9.0  # between the lines of a blank area
 
 # Colours; opacities of areas.
-BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#e6e6e6", "#ffffff"
+BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#dedede", "#ffffff"
 BAND_OPACITY, FILL_OPACITY, OPAQUE_OPACITY, BAR_OPACITY = 0.12, 0.14, 0.65, 0.85
 HATCH_SHARE = 0.4  # of the colour in the lines of a hatch, the rest is white
 # From low to high, dark to light, which can be told apart in grey as well.

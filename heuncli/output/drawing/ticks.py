@@ -6,9 +6,10 @@ import math
 
 from heuncli.output.drawing.figure import Scaling
 
+MINUS = "\N{MINUS SIGN}"
 MANTISSAS = (1.0, 2.0, 5.0, 10.0)
 ANGLE_STEPS = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)  # degrees
-MAX_DECIMALS = 4  # decimals; numbers with more have exponents
+MAX_DECIMALS, MIN_LARGE = 4, 1e6  # an axis with more decimals or larger numbers has exponents
 END_MARGIN = 0.06  # of the range, at both ends
 MAX_STEPS = 1e8  # steps from zero: farther numbers are too long for an axis
 
@@ -22,7 +23,7 @@ def choose_ticks(scaling: Scaling, max_ticks: int) -> list[tuple[float, str]]:
         if len(decades) > 1:
             return decades  # else the axis is so short that linear ticks are better
     span = scaling.high - scaling.low
-    is_angle = "[deg]" in scaling.label
+    is_angle = "[deg]" in scaling.label or "[°]" in scaling.label
     step = _choose_step(span / max(max_ticks, 1), is_angle=is_angle)
     first, last = math.ceil(scaling.low / step - 1e-9), math.floor(scaling.high / step + 1e-9)
     if last <= first:  # one number does not show the scale
@@ -32,7 +33,8 @@ def choose_ticks(scaling: Scaling, max_ticks: int) -> list[tuple[float, str]]:
         return []
     values = [k * step for k in range(first, last + 1)]
     places = 0 if is_angle and step in ANGLE_STEPS else -math.floor(math.log10(step) + 1e-9)
-    return [(value, format_tick(value, places)) for value in values]
+    has_exponent = max(map(abs, values)) >= MIN_LARGE or places > MAX_DECIMALS
+    return [(value, format_tick(value, places, has_exponent=has_exponent)) for value in values]
 
 
 def _choose_step(min_step: float, *, is_angle: bool) -> float:
@@ -55,21 +57,26 @@ def _choose_decades(low: float, high: float, max_ticks: int) -> list[tuple[float
     return []
 
 
-def format_tick(value: float, places: int) -> str:
-    """Format a round number with so many decimals; very large or small ones with an exponent."""
+def format_tick(value: float, places: int, *, has_exponent: bool) -> str:
+    """Format a round number with so many decimals, or with an exponent."""
     if value == 0.0:
-        return "0" if places > MAX_DECIMALS else f"{0.0:.{max(places, 0)}f}"
-    if 10.0**-MAX_DECIMALS <= abs(value) < 1e6:
-        return f"{value:.{max(places, 0)}f}"
+        return "0"
+    if not has_exponent:
+        return write_minus(f"{value:.{max(places, 0)}f}")
     digits = max(0, places + math.floor(math.log10(abs(value)) + 1e-9))
     mantissa, _, exponent = f"{value:.{digits}e}".partition("e")
-    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
+    return write_minus(f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}")
 
 
 def format_short(value: float, digits: int = 6) -> str:
     """Format a number with at most six digits and a short exponent, such as 1e7 or 2.5e-6."""
     mantissa, e, exponent = f"{float(f'{value:.{digits}g}'):.6g}".partition("e")
-    return mantissa + (f"e{int(exponent)}" if e else "")
+    return write_minus(mantissa + (f"e{int(exponent)}" if e else ""))
+
+
+def write_minus(text: str) -> str:
+    """Replace the hyphens of a number by minus signs (U+2212)."""
+    return text.replace("-", MINUS)
 
 
 def is_zero_near(low: float, high: float) -> bool:
