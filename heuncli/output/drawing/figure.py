@@ -155,12 +155,14 @@ class VerticalMark(NamedTuple):
 
     note: as of a Spot
     is_above: whether the words stand above the panel
+    is_tick: whether it is only a short stroke on the axis, as of events that repeat often
     """
 
     x: float
     text: str
     note: str = ""
     is_above: bool = False
+    is_tick: bool = False
 
 
 class Blank(NamedTuple):
@@ -172,12 +174,13 @@ class Blank(NamedTuple):
 
 
 class Bars(NamedTuple):
-    """A bar from zero at each place (n,)."""
+    """A bar from zero at each place (n,); width: in units of the axis, None for a share of the smallest step."""
 
     name: str
     x: Array
     y: Array
     pen: int = 0
+    width: float | None = None
 
 
 class Cells(NamedTuple):

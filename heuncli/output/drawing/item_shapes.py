@@ -177,7 +177,11 @@ def _draw_words(item: Words, box: PanelBox) -> Iterator[Shape]:
 
 def _draw_vertical_mark(item: VerticalMark, box: PanelBox) -> Iterator[Shape]:
     x = box.to_pixel_x(item.x)
-    yield Line(((x, box.top), (x, box.bottom)), style.DIM, style.AXIS_WIDTH, (3.0, 3.0), escape(item.note or item.text))
+    name = escape(item.note or item.text)
+    if item.is_tick:
+        yield Line(((x, box.bottom - style.EVENT_LENGTH), (x, box.bottom)), style.DIM, style.AXIS_WIDTH, (), name)
+        return
+    yield Line(((x, box.top), (x, box.bottom)), style.DIM, style.AXIS_WIDTH, (3.0, 3.0), name)
     if item.is_above:  # keep the words within the drawing
         half = min(0.5 * estimate_width(escape(item.text), style.SMALL_SIZE) + 4.0, 0.5 * (box.right + style.RIGHT))
         middle = max(half, min(x, box.right + style.RIGHT - half))
@@ -203,7 +207,8 @@ def _draw_blank(item: Blank, box: PanelBox) -> Iterator[Shape]:
 def _draw_bars(item: Bars, box: PanelBox) -> Iterator[Shape]:
     bar_pen, zero = find_pen(item.pen), box.to_pixel_y(0.0)
     step = float(np.diff(item.x).min()) if len(item.x) > 1 else 1.0
-    half = min(0.3 * abs(box.to_pixel_x(step) - box.to_pixel_x(0.0)), 15.0)
+    pixels = abs(box.to_pixel_x(1.0) - box.to_pixel_x(0.0))
+    half = min(0.3 * step * pixels, 15.0) if item.width is None else min(0.5 * item.width * pixels, 22.0)
     for x, y in box.to_pixels(item.x, item.y).tolist():
         if math.isfinite(y):
             corners = ((x - half, zero), (x - half, y), (x + half, y), (x + half, zero))

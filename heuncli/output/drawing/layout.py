@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing import style
-from heuncli.output.drawing.figure import Figure, LegendEntry, Panel, PlaceLabel, Scaling, VerticalMark
+from heuncli.output.drawing.figure import Bars, Figure, LegendEntry, Panel, PlaceLabel, Scaling, VerticalMark
 from heuncli.output.drawing.item_shapes import draw_item
 from heuncli.output.drawing.label_placement import WordBox, make_omitted_note
 from heuncli.output.drawing.labels import place_labels
@@ -117,7 +117,8 @@ def _lay_out_head(panel: Panel, left: float, top: float, right: float) -> tuple[
         y += style.LINE_HEIGHT
         shapes.append(Text(left, y - 4.0, text, style.NAME_SIZE, is_bold=True))
     if panel.legend:
-        entries = [(name, number, "") for name, number in panel.legend]
+        mark = "square" if any(isinstance(item, Bars) for item in panel.items) else ""
+        entries = [(name, number, mark) for name, number in panel.legend]
         legend, base = _lay_out_legend(entries, left, y + style.LINE_HEIGHT - 4.0, right + style.INDENT)
         shapes += legend
         y = base + 4.0

@@ -25,7 +25,7 @@ LINE_HEIGHT, TITLE_HEIGHT = 18.0, 23.0
 AXIS_SPACE, PANEL_SPACE = 48.0, 20.0  # below a panel with the label of its axis, and without
 PANEL_HEIGHT = 170.0
 PER_TICK_X, PER_TICK_Y = 84.0, 36.0  # smallest distance of ticks
-TICK_LENGTH = 4.0
+TICK_LENGTH, EVENT_LENGTH = 4.0, 9.0  # of a number of an axis, of an event that repeats often
 
 # Strokes and marks, in pixels.
 CURVE_WIDTH, THIN_WIDTH, ENVELOPE_WIDTH = 2.0, 1.0, 0.9

@@ -11,6 +11,7 @@ MANTISSAS = (1.0, 2.0, 5.0, 10.0)
 ANGLE_STEPS = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)  # degrees
 MAX_DECIMALS, MIN_LARGE = 4, 1e6  # an axis with more decimals or larger numbers has exponents
 END_MARGIN = 0.06  # of the range, at both ends
+ZERO_SHARE = 0.3
 MAX_STEPS = 1e8  # steps from zero: farther numbers are too long for an axis
 
 
@@ -80,16 +81,18 @@ def write_minus(text: str) -> str:
 
 
 def is_zero_near(low: float, high: float) -> bool:
-    """Return whether an axis should include zero: it is closer to the values than their range."""
-    return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
+    """Return whether an axis should include zero: the smaller magnitude is below ZERO_SHARE of the larger."""
+    return low <= 0.0 <= high or min(abs(low), abs(high)) < ZERO_SHARE * max(abs(low), abs(high))
 
 
 def choose_ends(low: float, high: float, *, zero: bool = False, margin: float = END_MARGIN) -> tuple[float, float]:
-    """Choose the ends of an axis for values in this range, with a margin; zero: it must be on the axis."""
+    """Choose the ends of an axis for values in this range, with a margin; zero: it must be on the axis, and is its end
+    if all values have one sign.
+    """
     if zero:
         low, high = min(low, 0.0), max(high, 0.0)
     span = high - low
     if not span > 1e-12 * max(abs(low), abs(high)):
         span = abs(low) or 1.0
         return low - 0.5 * span, high + 0.5 * span
-    return low - margin * span, high + margin * span
+    return low - margin * span * (not zero or low < 0.0), high + margin * span * (not zero or high > 0.0)
