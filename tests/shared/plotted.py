@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.output.drawing.style import FAINT
 from heuncli.results.results import Array
 
 PlaceOf = Callable[[float, float], tuple[float, bool]]  # of a number at x, y: where on the axis, whether on it
@@ -96,6 +97,23 @@ def panels_of(svg: str, *, equal: bool = False) -> list[PlottedPanel]:
         found.append(PlottedPanel(left, top, right, bottom, x, y, root))
     named = next((panel.x for panel in reversed(found) if np.isfinite(panel.x.step)), None)
     return [panel._replace(x=named) if named and not np.isfinite(panel.x.step) else panel for panel in found]
+
+
+def polar_panel_of(svg: str) -> PlottedPanel:
+    """The one polar panel of a drawing, by the arcs of its rings, which have their values as names."""
+    root = tree.fromstring(svg.encode())
+    rings = [
+        (float(name.partition(" ")[0].replace("−", "-")), points_of(e))
+        for e in root.iter(f"{SVG}polyline")
+        if e.get("stroke") == FAINT and (name := e.findtext(f"{SVG}title"))
+    ]
+    value, points = max(rings, key=lambda ring: len(ring[1]))
+    # |p - c|² = r²: linear in the centre and in r² - |c|²
+    rows = np.column_stack([2.0 * points, np.ones(len(points))])
+    x, y, rest = np.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)[0]
+    step = value / np.sqrt(rest + x**2 + y**2)
+    width, height = float(root.get("width", "nan")), float(root.get("height", "nan"))
+    return PlottedPanel(0.0, 0.0, width, height, PlottedAxis(-step * x, step), PlottedAxis(step * y, -step), root)
 
 
 def is_frame(points: Array) -> bool:

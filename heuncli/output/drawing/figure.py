@@ -40,6 +40,7 @@ class Strokes(NamedTuple):
 
     is_hatch: whether they fill an area, thin and pale
     is_faint: whether they are lines of a grid
+    name: title shown to readers
     """
 
     ends: Array
@@ -47,6 +48,7 @@ class Strokes(NamedTuple):
     width: float = 0.7
     is_hatch: bool = False
     is_faint: bool = False
+    name: str = ""
 
 
 class Polygon(NamedTuple):

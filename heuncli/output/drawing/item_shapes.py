@@ -77,7 +77,7 @@ def _draw_strokes(item: Strokes, box: PanelBox) -> Iterator[Shape]:
         if len(run):
             points = np.concatenate([first[run], last[run[-1:]]])
             points = simplify(points) if len(points) > MAX_EXACT_CORNERS else points
-            yield Line(tuple(map(tuple, points.tolist())), colour, item.width)
+            yield Line(tuple(map(tuple, points.tolist())), colour, item.width, (), escape(item.name))
 
 
 def _draw_polygon(item: Polygon, box: PanelBox) -> Iterator[Shape]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.text_safety import escape
-from heuncli.output.drawing.canvas import DOT_ROWS, NO_PEN, Canvas, TerminalStyle
+from heuncli.output.drawing.canvas import DIM_PEN, DOT_ROWS, NO_PEN, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import (
     Arrow,
     Band,
@@ -72,10 +72,14 @@ def _draw_band(item: Band, canvas: Canvas) -> None:
 def _draw_strokes(item: Strokes, canvas: Canvas) -> None:
     """Draw strokes; of vertical ordinates only so many that what lies between them is visible.
 
-    If curves are letters, strokes are dots.
+    If curves are letters, strokes are dots, and hatches are left out.
     """
     last = -math.inf
     number = NO_PEN if item.pen is None or not canvas.style.has_braille else item.pen
+    if item.is_hatch:  # it hides the curve where it cannot be dim
+        if not canvas.style.has_colours:
+            return
+        number = DIM_PEN
     for (x0, y0), (x1, y1) in item.ends.tolist():
         if x0 == x1:
             column = canvas.to_dot_x(x0) / canvas.per_x

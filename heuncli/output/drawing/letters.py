@@ -14,7 +14,7 @@ import numpy as np
 from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
-from heuncli.output.drawing.figure import Figure, Item, Panel, PlaceLabel, Trace, VerticalMark
+from heuncli.output.drawing.figure import Band, Figure, Item, LegendEntry, Panel, PlaceLabel, Trace, VerticalMark
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
 from heuncli.output.drawing.pens import find_pen
@@ -32,7 +32,7 @@ ZERO_STRIDE = 4  # columns between dots of the zero line
 def draw_text(figure: Figure, style: TerminalStyle) -> str:
     """Draw the figure as lines of text; ends with a newline."""
     lines = [line for text in (figure.title, *figure.words) if text for line in wrap_text(escape(text), style.width, 0)]
-    lines += _draw_legend(figure, style)
+    lines += _draw_legend([*((name, number, "") for name, number in figure.legend), *figure.marks], style)
     omitted: list[str] = []
     for panel in figure.panels:
         rows, without_words = _draw_panel(panel, style)
@@ -47,10 +47,9 @@ def draw_text(figure: Figure, style: TerminalStyle) -> str:
     return text if style.has_braille else text.replace(MINUS, "-")
 
 
-def _draw_legend(figure: Figure, style: TerminalStyle) -> list[str]:
+def _draw_legend(entries: Sequence[LegendEntry], style: TerminalStyle) -> list[str]:
     """Return the samples of curves and marks with their names, as many in a line as fit."""
     lines, width_left = [""], style.width
-    entries = [*((name, number, "") for name, number in figure.legend), *figure.marks]
     for name, number, mark in entries:
         sample = (
             choose_mark(mark, style, number)
@@ -88,7 +87,10 @@ def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str
             NO_PEN,
             ZERO_STRIDE * canvas.per_x,
         )
+    hides_bands = any(isinstance(item, Trace) for item in panel.items)
     for item in panel.items:
+        if hides_bands and isinstance(item, Band):
+            continue  # its edges could not be told from the curve
         draw: Callable[[Any, Canvas], None] = DRAW_FUNCTIONS[type(item)]
         draw(item, canvas)
     omitted = _write_words(panel.items, canvas)
@@ -100,8 +102,10 @@ def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str
         _mark_curves(panel.items, canvas)
     heads = wrap_text(escape(" ".join(part for part in (panel.title, _find_y_label(panel)) if part)), style.width, 0)
     lines = [*(head for head in heads if head)]
+    lines += _draw_legend([(name, number, "") for name, number in panel.legend], style)
     if panel.is_bare:
-        return lines + canvas.format_lines() + key, omitted
+        indent = "" if panel.has_equal_scales else " " * (LABEL_WIDTH + 2)  # as panels with axes on the same axis
+        return lines + [f"{indent}{line}".rstrip() for line in canvas.format_lines()] + key, omitted
     labels_above = {
         round(canvas.to_dot_x(i.x)) // canvas.per_x: i.text
         for i in panel.items

@@ -36,7 +36,7 @@ ARROW_WIDTH, ARROW_HEAD = 1.8, 9.0
 HATCH_STEP = 9.0  # between the lines of a blank area
 
 # Colours; opacities of areas.
-BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#dedede", "#ffffff"
+BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#d9d9d9", "#ffffff"
 BAND_OPACITY, FILL_OPACITY, OPAQUE_OPACITY, BAR_OPACITY = 0.12, 0.14, 0.65, 0.85
 HATCH_SHARE = 0.4  # of the colour in the lines of a hatch, the rest is white
 # From low to high, dark to light, which can be told apart in grey as well.
