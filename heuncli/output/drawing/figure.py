@@ -247,6 +247,7 @@ class Panel(NamedTuple):
     has_equal_scales: whether a unit has the same length on both axes
     is_bare: whether it has no axes
     is_layered: whether items cover those before them; else lines are drawn over filled areas
+    title: lines after the first are smaller
     legend: names of its pens, shown above it
     """
 

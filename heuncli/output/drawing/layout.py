@@ -113,9 +113,11 @@ def _lay_out_head(panel: Panel, left: float, top: float, right: float) -> tuple[
     """Return the title and the legend of a panel, wrapped to its width, and the y where its field begins."""
     shapes: list[Shape] = []
     y = top + 6.0
-    for text in _wrap(panel.title, style.NAME_SIZE * BOLD, right - left) if panel.title else ():
-        y += style.LINE_HEIGHT
-        shapes.append(Text(left, y - 4.0, text, style.NAME_SIZE, is_bold=True))
+    for k, line in enumerate(panel.title.split("\n") if panel.title else ()):
+        size = style.SMALL_SIZE if k else style.NAME_SIZE
+        for text in _wrap(line, size if k else size * BOLD, right - left):
+            y += style.LINE_HEIGHT
+            shapes.append(Text(left, y - 4.0, text, size, is_bold=not k))
     if panel.legend:
         mark = "square" if any(isinstance(item, Bars) for item in panel.items) else ""
         entries = [(name, number, mark) for name, number in panel.legend]

@@ -35,6 +35,7 @@ from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
 
 PIXELS_PER_DOT = 4.0  # pixels of a symbol for a dot
+FAINT_STRIDE = 4  # dots of a grid line
 MIN_STROKE_DISTANCE = 3.0  # columns between ordinates
 SHADES = "·░▒▓█"  # unknown cells are blank
 PLAIN_SHADES = ".:*#@"
@@ -86,7 +87,8 @@ def _draw_strokes(item: Strokes, canvas: Canvas) -> None:
             if abs(column - last) < MIN_STROKE_DISTANCE:
                 continue
             last = column
-        canvas.draw_line(canvas.to_dot_x(x0), canvas.to_dot_y(y0), canvas.to_dot_x(x1), canvas.to_dot_y(y1), number)
+        ends = canvas.to_dot_x(x0), canvas.to_dot_y(y0), canvas.to_dot_x(x1), canvas.to_dot_y(y1)
+        canvas.draw_line(*ends, number, FAINT_STRIDE if item.is_faint else 1)
 
 
 def _draw_polygon(item: Polygon, canvas: Canvas) -> None:

@@ -100,7 +100,7 @@ def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str
     omitted += omitted_labels
     if style.uses_letters and style.has_braille:
         _mark_curves(panel.items, canvas)
-    heads = wrap_text(escape(" ".join(part for part in (panel.title, _find_y_label(panel)) if part)), style.width, 0)
+    heads = wrap_text(escape(_find_head(panel)), style.width, 0)
     lines = [*(head for head in heads if head)]
     lines += _draw_legend([(name, number, "") for name, number in panel.legend], style)
     if panel.is_bare:
@@ -181,9 +181,13 @@ def _has_one_curve(canvas: Canvas, cell: tuple[int, int], number: int) -> bool:
     return inside and cell not in canvas.words and canvas.pens[row, column] == number
 
 
-def _find_y_label(panel: Panel) -> str:
-    """Return the label of the vertical axis, which stands above the panel."""
-    return "" if panel.is_bare else panel.y.label
+def _find_head(panel: Panel) -> str:
+    """Return the title and the label of the vertical axis, which stand above the panel."""
+    title, label = panel.title.replace("\n", "; "), "" if panel.is_bare else panel.y.label
+    name, _, unit = label.partition(" [")
+    if name and title.endswith(f" {name}"):  # the title names the quantity, too
+        return f"{title} [{unit}"
+    return " ".join(part for part in (title, label) if part)
 
 
 def _draw_x_axis(panel: Panel, canvas: Canvas) -> list[str]:
