@@ -10,10 +10,11 @@ from collections.abc import Iterator, Sequence
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing.figure import PlaceLabel
 from heuncli.output.drawing.label_placement import WordBox, WordField
-from heuncli.output.drawing.pens import GREY, find_colour, mix_with_white
+from heuncli.output.drawing.pens import find_colour, mix_with_white
 from heuncli.output.drawing.scales import PanelBox
 from heuncli.output.drawing.shapes import Line, Mark, Shape, Text
-from heuncli.output.drawing.words import BASE_FACTOR, HEIGHT_FACTOR, SMALL_SIZE, estimate_width
+from heuncli.output.drawing.style import BASE_FACTOR, GREY, HEIGHT_FACTOR, SMALL_SIZE
+from heuncli.output.drawing.words import estimate_width
 
 N_DIRECTIONS = 16  # in which places are tried
 DISTANCES = (9.0, 14.0, 20.0, 28.0, 38.0)  # pixels from the place to the words

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing.figure import Figure, KeyArrow, Panel, SpaceKey
-from heuncli.output.drawing.pens import BLACK, GREY, find_colour
+from heuncli.output.drawing.pens import find_colour
 from heuncli.output.drawing.shapes import Area, Line, Shape, Text
-from heuncli.output.drawing.words import SMALL_SIZE, estimate_width
+from heuncli.output.drawing.style import ARROW_HEAD, ARROW_WIDTH, BLACK, GREY, SMALL_SIZE
+from heuncli.output.drawing.words import estimate_width
 
 INDENT = 20.0  # pixels at both sides of the sheet
 MIN_WIDTH = 420.0  # pixels of a sheet, for its title and key
@@ -17,7 +18,6 @@ AXES_LENGTH, GRAVITY_LENGTH = 20.0, 26.0  # pixels of a unit vector
 AXES_WIDTH, GRAVITY_WIDTH = 64.0, 42.0  # pixels of their places in the key
 KEY_HEIGHT, LINE_HEIGHT = 52.0, 16.0
 GAP = 22.0  # pixels between the entries of the key
-ARROW_HEAD = 8.0  # pixels
 MAX_COLUMNS = 4  # of the names of numbers
 
 
@@ -101,7 +101,15 @@ def _draw_key_arrow(arrow: KeyArrow, x: float, y: float, length: float, text: st
 
 
 def draw_arrow(
-    x: float, y: float, a: float, b: float, colour: str, name: str, *, is_double: bool = False, width: float = 1.6
+    x: float,
+    y: float,
+    a: float,
+    b: float,
+    colour: str,
+    name: str,
+    *,
+    is_double: bool = False,
+    width: float = ARROW_WIDTH,
 ) -> Iterator[Line | Area]:
     """Draw an arrow from a place by (a, b) [pixels]; is_double: with two heads."""
     length = math.hypot(a, b)

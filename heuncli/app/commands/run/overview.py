@@ -52,16 +52,24 @@ def run_overview(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     make_document = _make_hardpoints if request.hardpoints else _make_summary
     document = make_document(task, scenes, solved)
     is_coloured = request.summary and is_rich(task.form, request.output)
-    emit(render_rich_document(document) if is_coloured else render_document(document, task.form, request.output), request.output)
+    emit(
+        render_rich_document(document) if is_coloured else render_document(document, task.form, request.output),
+        request.output,
+    )
     note_si_format(request.units, task.form, request.quiet)
-    codes = [finish(task, scenes[name], study, f"heun: case {name}" if name else "heun") for name, study in solved.items()]
+    codes = [
+        finish(task, scenes[name], study, f"heun: case {name}" if name else "heun") for name, study in solved.items()
+    ]
     return select_exit_code(codes)
 
 
 def _make_facts(task: RunTask, solved: Mapping[str, Study]) -> list[tuple[str, str]]:
     """Make the lines below the title; of several cases those that all have, and the names of the cases."""
     request = task.request
-    headings = [make_heading(study.results, request.verbose, brief=not (request.full or request.verbose)) for study in solved.values()]
+    headings = [
+        make_heading(study.results, request.verbose, brief=not (request.full or request.verbose))
+        for study in solved.values()
+    ]
     if len(headings) == 1:
         return headings[0]
     shared = [line for line in headings[0] if all(line in heading for heading in headings)]
