@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import json
 import re
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,8 +10,9 @@ import numpy as np
 
 from heuncli.results.results import Array
 from tests.shared.chromium import Tab
+from tests.shared.moving_pages import decoded, unpacked
 
-HELD = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+HELD = re.compile(r'<script type="application/octet-stream" id="data">(.*?)</script>', re.DOTALL)
 CELLS = """[...document.querySelectorAll("#numbers td[data-path]")].map(
   cell => [cell.dataset.path, cell.textContent, cell.dataset.value, cell.parentNode.lastChild.textContent])"""
 FRAME = "Number(document.documentElement.dataset.frame)"
@@ -45,8 +44,8 @@ def frames(page: Path) -> Array:
     """The instants of a page's frames, (n,) [s]."""
     held = HELD.search(page.read_text(encoding="utf-8"))
     assert held is not None
-    packed = json.loads(held[1])["time"]
-    return np.frombuffer(base64.b64decode(packed), "<f8") if isinstance(packed, str) else np.array([float(packed)])
+    data = decoded(held[1])
+    return unpacked(data["time"], data["count"])
 
 
 def to_frame(tab: Tab, frame: int) -> None:

@@ -4,6 +4,7 @@ extent.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -14,7 +15,7 @@ from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.symbols import SYMBOLS
 from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_coupling_forces
-from heuncli.output.machine_geometry.machine import BodyGeometry, Machine, make_machine
+from heuncli.output.machine_geometry.machine import BodyGeometry, LineGeometry, Machine, make_machine
 from heuncli.output.machine_geometry.marks import Mark
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, compute_span_ends
@@ -82,14 +83,13 @@ def make_page_scene(
             for j in machine.joints
         ],
         "lines": [
-            {"name": x.name, "kind": LOAD_KINDS[x.kind].symbols[0]} | _pack_ends(x, body_numbers) for x in machine.lines
+            {"name": x.name, "kind": _find_line_symbol(x, spec)} | _pack_ends(x, body_numbers) for x in machine.lines
         ],
         "paths": [pack_points(path) for path in machine.paths],
         "belts": [
             {
                 "body": body_numbers[belt.carrier],
                 "strands": pack_points(belt.strands),
-                "run": pack_points(belt.compute_travel(results.coordinates)),
             }
             for belt in machine.belts
         ],
@@ -110,6 +110,12 @@ def make_page_scene(
     }
 
 
+def _find_line_symbol(line: LineGeometry, spec: Spec) -> str:
+    """Find the symbol of a load between two points; that of a damped one may differ."""
+    is_damped = bool(getattr(spec.forces[line.name], "damping", 0.0))
+    return LOAD_KINDS[line.kind].symbols[-1 if is_damped else 0]
+
+
 def _to_floats(vector: Array) -> list[float]:
     return [float(component) for component in vector]
 
@@ -120,17 +126,20 @@ def _make_body(body: BodyGeometry, results: Results, topologies: Topologies, is_
     is_rolling: whether the body is a wheel or a ball; then two edges of each sphere are drawn, which show its rotation
     """
     pose = results.bodies[body.name]
+    if body.is_ellipsoid:  # its points are close together: a mark at its centre says where it is
+        centre = np.mean(body.surfaces[0].corners, axis=0)
+        points = [*body.points.values(), centre]
+        body = body._replace(surfaces=(), bars=(np.unique(np.array(points).reshape(-1, 3), axis=0),))
     rolling_edges = [
         edge for surface in body.surfaces if is_rolling and surface.ball is not None for edge in surface.edges[:2]
     ]
     return {
         "name": body.name,
         "places": pack_points(pose["position"]),
-        "attitudes": pack_points(pose["quaternion"]),
+        "attitudes": pack_points(pose["quaternion"], 4),
         "surfaces": [_make_surface(surface, topologies) for surface in body.surfaces],
         "bars": [pack_points(line) for line in body.bars],
         "lines": [pack_points(line) for line in (*body.lines, *rolling_edges)],
-        "spread": body.is_ellipsoid,
         "points": [{"name": name, "at": _to_floats(point)} for name, point in body.points.items()],
     }
 
@@ -148,7 +157,7 @@ def _make_rope(rope: RopeGeometry, poses: Poses, body_numbers: Mapping[str, int]
     return {
         "name": rope.name,
         "count": len(rope.spans),
-        "ends": pack_points(compute_span_ends(rope, poses)),
+        "ends": pack_points(compute_span_ends(rope, poses), 6 * len(rope.spans)),
         "arcs": [
             {
                 "before": arc.span, "body": body_numbers[arc.body], "center": _to_floats(arc.centre),
@@ -210,23 +219,30 @@ def collect_corners(body: BodyGeometry) -> Array:
 
 def _compute_extent(machine: Machine, poses: Poses) -> dict[str, Any]:
     """Compute center and half edges of a box that holds the machine at all frames, and the radius of a ball that does
-    [m].
+    [m]. Points of the ground that are farther away than the machine is large do not count.
     """
     instants = np.linspace(0, len(poses.times) - 1, min(len(poses.times), MAX_EXTENT_FRAMES)).round().astype(int)
+    bodies = [
+        poses.locate_points(body.name, collect_corners(body), k) for body in machine.bodies for k in instants.tolist()
+    ]
+    centre, _, radius = _enclose(np.concatenate(bodies)) if bodies else (np.zeros(3), np.zeros(3), math.inf)
     clouds = [point[None] for point in machine.ground_points.values()]
     clouds += machine.paths
     clouds += [compute_span_ends(rope, poses).reshape(-1, 3) for rope in machine.ropes]
     clouds += [mark.locate(poses)[0] for mark in machine.marks]
     clouds += [joint.p[None] for joint in machine.joints if joint.a == GROUND]
     clouds += [joint.q[None] for joint in machine.joints if joint.b == GROUND]
-    for body in machine.bodies:
-        corners = collect_corners(body)
-        clouds += [poses.locate_points(body.name, corners, k) for k in instants.tolist()]
-    cloud = np.concatenate(clouds)
-    low, high = cloud.min(axis=0), cloud.max(axis=0)
-    centre, half = 0.5 * (low + high), 0.5 * (high - low)
-    radius = float(np.sqrt(((cloud - centre) ** 2).sum(axis=1).max()))
+    around = np.concatenate([np.zeros((0, 3)), *clouds])
+    near = around[np.sqrt(((around - centre) ** 2).sum(axis=1)) <= 2.0 * (radius or math.inf)]
+    centre, half, radius = _enclose(np.concatenate([*bodies, near]))
     return {"center": _to_floats(centre), "half": _to_floats(half), "radius": radius or 1.0}
+
+
+def _enclose(cloud: Array) -> tuple[Array, Array, float]:
+    """Compute center and half edges of the box of points (n, 3), and the largest distance from its center."""
+    low, high = cloud.min(axis=0), cloud.max(axis=0)
+    centre = 0.5 * (low + high)
+    return centre, 0.5 * (high - low), float(np.sqrt(((cloud - centre) ** 2).sum(axis=1).max()))
 
 
 def _find_common_pin_axis(machine: Machine, poses: Poses) -> list[float] | None:

@@ -1,4 +1,4 @@
-"""Assemble one page from the files in this folder: template, style, scripts, and the data, escaped so that no name in a
+"""Assemble one page from the files in this folder: template, style, scripts, and the data, encoded so that no name in a
 spec can end the data block.
 
 The scripts are browser modules. Here they are bundled into one script: each becomes a function that returns what it
@@ -11,21 +11,21 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import json
 import re
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from heuncli.base.text_safety import escape
+from heuncli.output.web_page.packing import encode_data
 
 FOLDER = Path(__file__).parent
 TEMPLATE, STYLE, MAIN_SCRIPT = "machine.html", "style.css", "main"
 IMPORT = re.compile(r'^import (\{[^}]*\}) from "\./(\w+)\.js";$', re.MULTILINE)
 EXPORT = re.compile(r"^export ((?:function|class|const) (\w+))", re.MULTILINE)
 PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
-# Characters that could end the data block or be read as markup, with their JSON escapes.
-UNSAFE = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"}
+COMMENT = re.compile(r"^ */\*\*.*?\*/\n", re.MULTILINE | re.DOTALL)  # those of the scripts stay in their files
+INDENT = re.compile(r"^ +", re.MULTILINE)
 
 
 def assemble_page(title: str, data: dict[str, Any]) -> str:
@@ -34,16 +34,10 @@ def assemble_page(title: str, data: dict[str, Any]) -> str:
         "title": html.escape(escape(title)),
         "style": read_page_file(STYLE),
         "script": bundle_scripts(),
-        "data": to_safe_json(data),
+        "data": encode_data(data),
         "policy": make_security_policy(),
     }
     return PLACEHOLDER.sub(lambda place: parts[place[1]], read_page_file(TEMPLATE))
-
-
-def to_safe_json(data: dict[str, Any]) -> str:
-    """Write the data as JSON in ASCII without any character that HTML treats as markup."""
-    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
-    return "".join(UNSAFE.get(letter, letter) for letter in text) if set(text) & UNSAFE.keys() else text
 
 
 @cache
@@ -70,7 +64,7 @@ def _wrap_module(name: str) -> str:
     """Wrap one script in a function that returns what the script exports."""
     text = read_page_file(f"{name}.js")
     exported = ", ".join(found[2] for found in EXPORT.finditer(text))
-    body = EXPORT.sub(r"\1", IMPORT.sub(r"const \1 = \2_js;", text))
+    body = INDENT.sub("", COMMENT.sub("", EXPORT.sub(r"\1", IMPORT.sub(r"const \1 = \2_js;", text))))
     return f"const {name}_js = (() => {{\n{body}return {{ {exported} }};\n}})();\n"
 
 

@@ -48,7 +48,7 @@ def main(request: ShowRequest) -> int:
     with attach_locations(spec):
         study = solve(spec, options)
         require_claimed(study)
-        page = render_moving_page(study, units_shown, frame_count) if output is not None else ""
+        page = render_moving_page({"": study}, units_shown, frame_count) if output is not None else ""
         moving = make_glb(study) if glb is not None else b""
     print_warnings(spec, study.results, request.quiet, later=study.later_warnings)
     if output is not None:
