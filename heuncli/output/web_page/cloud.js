@@ -36,6 +36,27 @@ function outermost(body, directions) {
   return [...new Set(best)];
 }
 
+/**
+ * How much of the machine's bodies stands before its joints, seen from a direction: the larger a body, the more it counts.
+ * @returns {(toward: number[]) => number} positive where large bodies hide the joints
+ */
+export function coverOf(scene) {
+  const poses = posesAt(scene, 0, 0);
+  const joints = scene.joints.map((joint) => stands(poses, joint.b, joint.q));
+  const directions = spreadDirections(20);
+  const looks = scene.bodies.map((body, k) => outermost(body, directions).map((p) => stands(poses, k, p)));
+  const mean = (list, v) => list.reduce((sum, p) => sum + dot(p, v) / list.length, 0);
+  const size = (list) => {
+    const spans = [0, 1, 2].map((i) => Math.max(...list.map((p) => p[i])) - Math.min(...list.map((p) => p[i])));
+    const [, middle, large] = spans.sort((a, b) => a - b);
+    return middle * large;
+  };
+  return (toward) => {
+    const at = mean(joints, toward);
+    return looks.reduce((sum, list) => (list.length ? sum + size(list) * (mean(list, toward) - at) : sum), 0);
+  };
+}
+
 /** What of a scene is fitted into a view: places in the world at some of its frames. @returns {number[][]} */
 export function cloudOf(scene, count) {
   const frames = Math.min(count, MOST_FRAMES);

@@ -158,5 +158,6 @@ export function drawCurve(canvas, data, courses, axis, frame, colours, labels) {
   for (const values of new Set(courses.flatMap((course) => [course.high, course.low]))) {
     if (Number.isFinite(values[frame])) ring(pen, x, panel.y(values[frame]), 4, colours.accent, colours.panel, 1.5);
   }
+  labels.write(colours.panel);
   return panel;
 }

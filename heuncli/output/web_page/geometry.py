@@ -24,6 +24,8 @@ from heuncli.output.web_page.packing import pack_points
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels
 
 FINE_FACES, FEW_BODIES = 48, 8  # faces about an axis, used up to this number of bodies
 DRAWN_PRECISION = 1e-7  # relative precision of points that are drawn (float32)
@@ -60,7 +62,7 @@ def _pack_ends(link: Any, body_numbers: Mapping[str, int]) -> dict[str, Any]:
 
 
 def make_page_scene(
-    machine: Machine, spec: Spec, results: Results, poses: Poses, normal: Array | None = None
+    machine: Machine, spec: Spec, results: Results, poses: Poses, labels: Labels, normal: Array | None = None
 ) -> dict[str, Any]:
     """Make the scene in the form that the page's scripts read; bodies are referred to by number, the ground by -1.
 
@@ -69,7 +71,11 @@ def make_page_scene(
     body_numbers = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
     topologies = Topologies()
     rolling = {wheel.wheel.body for wheel in spec.rolling.values()}
-    bodies = [_make_body(body, results, topologies, body.name in rolling) for body in machine.bodies]
+    bodies = [
+        {"caption": describe_object("bodies", body.name, labels)}
+        | _make_body(body, results, topologies, body.name in rolling)
+        for body in machine.bodies
+    ]
     joint_numbers = {joint.name: k for k, joint in enumerate(machine.joints)}
     belts = {belt.name for belt in machine.belts}
     ropes = {name for name, joint in spec.joints.items() if joint.tension_only}
@@ -77,7 +83,7 @@ def make_page_scene(
         "bodies": bodies,
         "topologies": topologies.to_lists(),
         "joints": [
-            {"name": j.name, "kind": j.kind}
+            {"name": j.name, "caption": describe_object("joints", j.name, labels), "kind": j.kind}
             | _pack_ends(j, body_numbers)
             | {"axis": _to_floats(j.axis), "rope": j.name in ropes}
             for j in machine.joints
@@ -103,7 +109,7 @@ def make_page_scene(
         "ground": [{"name": name, "at": _to_floats(point)} for name, point in machine.ground_points.items()],
         "gravity": _to_floats(np.array(spec.gravity)),
         "pulls": [
-            _make_coupling_force(pull, belts) for pull in iter_coupling_forces(machine, poses, results.couplings)
+            _make_coupling_force(pull, belts, labels) for pull in iter_coupling_forces(machine, poses, results.couplings)
         ],
         "normal": _find_common_pin_axis(machine, poses) if normal is None else _to_floats(normal),
         **_compute_extent(machine, poses),
@@ -185,7 +191,7 @@ def is_constant(vectors: Array) -> bool:
     return bool(np.abs(vectors - vectors[0]).max() <= DRAWN_PRECISION * float(np.abs(vectors[0]).max()))
 
 
-def _make_coupling_force(pull: CouplingForce, belts: Collection[str]) -> dict[str, Any]:
+def _make_coupling_force(pull: CouplingForce, belts: Collection[str], labels: Labels) -> dict[str, Any]:
     """Make the entry of a coupling force ON a body: its point of action at all frames, and the path of the row of its
     values.
 
@@ -196,7 +202,8 @@ def _make_coupling_force(pull: CouplingForce, belts: Collection[str]) -> dict[st
         "row": f"couplings.{pull.name}.{'tight' if belt else f'on.{pull.body}.force'}",
         "at": pack_points(pull.points),
     }
-    return {"name": pull.name, "on": pull.body, **reference, "forces": pack_points(pull.forces) if belt else None}
+    coupling, body = describe_object("couplings", pull.name, labels), describe_object("bodies", pull.body, labels)
+    return {"name": pull.name, "caption": f"{coupling} on {body}", **reference, "forces": pack_points(pull.forces) if belt else None}
 
 
 def _collect_symbols(machine: Machine) -> set[str]:

@@ -1,6 +1,6 @@
 /** @file The page: reads its data, shows the frame of the greatest load, and draws anew whatever changes. */
 
-import { cloudOf } from "./cloud.js";
+import { cloudOf, coverOf } from "./cloud.js";
 import { coloursNow } from "./colours.js";
 import { Chosen, listenToCurve, listenToDrawn, listenToSections, listenToTime, listenToView } from "./controls.js";
 import { drawCurve } from "./curve.js";
@@ -72,6 +72,7 @@ function tellCurve(course, frame, over) {
 /** Begin with the data of a load case. */
 function begin({ data, cases }, run) {
   data.scene.cloud = cloudOf(data.scene, data.count);
+  data.scene.cover = coverOf(data.scene);
   let waiting = false;
   let last = 0;
   let panel = null;

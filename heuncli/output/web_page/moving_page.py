@@ -73,7 +73,7 @@ def make_page_data(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES
         "marks": list(_iter_time_marks(original, frames)),
         "length": list(units.find("m")),
         "scene": make_page_scene(
-            make_page_machine(spec, scene), spec, results, extract_poses(results), find_motion_plane(scene)
+            make_page_machine(spec, scene), spec, results, extract_poses(results), labels, find_motion_plane(scene)
         ),
         "acting": make_acting_loads(study, frames.times, labels, certain),
         "blocks": make_blocks(results, labels, certain),

@@ -31,11 +31,11 @@ function middleOf(body) {
 function drawNames(labels, scene, poses, view, colours, told) {
   scene.bodies.forEach((body, k) => {
     const [x, y] = view.project(stands(poses, k, middleOf(body)));
-    labels.add(`body ${body.name}`, body.name, x, y, colours.ink, 1.2);
+    labels.add(`body ${body.name}`, body.caption, x, y, colours.ink, 1.2);
   });
   for (const joint of told ? [] : scene.joints) {
     const [x, y] = view.project(stands(poses, joint.b, joint.q));
-    labels.add(`joint ${joint.name}`, joint.name, x, y, colours.faint, 1, 10);
+    labels.add(`joint ${joint.name}`, joint.caption, x, y, colours.faint, 1, 10);
   }
 }
 

@@ -43,6 +43,21 @@ function ofSection(section, count) {
   return [...bending.slice(0, 1), ...forces.slice(0, 1)].slice(0, SECTION_ROWS);
 }
 
+/** Loads whose names differ by digits alone in one row, with the greatest of them. */
+function grouped(list) {
+  const groups = new Map();
+  for (const load of list) {
+    const key = load.caption.replace(/\d+/g, "#");
+    if (groups.has(key)) groups.get(key).push(load);
+    else groups.set(key, [load]);
+  }
+  return [...groups.values()].map((group) => {
+    const most = group.reduce((a, b) => (b.size > a.size ? b : a));
+    const others = new Set(group.map(({ caption }) => caption)).size;
+    return others > 1 ? { ...most, caption: `${most.caption} (greatest of ${others})` } : most;
+  });
+}
+
 /** The rows of the summary, the greatest of each kind first. */
 function rowsOf(data) {
   const { count } = data;
@@ -54,9 +69,9 @@ function rowsOf(data) {
     return [forces, moments].flatMap((list) => list.filter(({ size }) => size > LEAST * list[0].size));
   };
   const ground = of("foundation");
+  const loads = grouped([...of("joints.force"), ...of("couplings"), ...of("forces")]);
   const sections = data.sections.flatMap((section) => ofSection(section, count));
   const rest = MOST - Math.min(4, sections.length) - ground.length;
-  const loads = [...of("joints.force"), ...of("couplings"), ...of("forces")];
   const shown = loads.slice(0, Math.max(4, rest));
   return { rows: [...shown, ...ground, ...sections].slice(0, MOST), all: loads.length + ground.length + sections.length };
 }

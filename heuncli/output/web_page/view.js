@@ -7,6 +7,7 @@ const NEAREST = 400;
 const ROOM = 0.14; // of the canvas: for words and arrows beside the machine
 const CORNER = 26; // pixels: kept free below, for axes and scales
 const LEAST = 0.02; // of the scene's radius: what is thinner is not seen larger
+const HIDING = 0.01; // of the scene's radius cubed: bodies before the joints that weigh more are looked at from behind
 const DEEP = 0.6; // of the extent in its plane: a deeper machine is seen from aside (as in heun plot scene)
 const FARTHEST = 0.1;
 const MIDDLE = 0.02; // of the scene's radius: joints that stand no farther off its middle are in it
@@ -38,6 +39,7 @@ export class View {
     [this.first, this.second] = this.up[k] > 0 ? [axis(1), axis(2)] : [axis(2), axis(1)];
     this.normal = normal;
     this.cloud = scene.cloud;
+    this.cover = scene.cover;
     this.side = normal ? sideOf(scene, normal) : 0;
     this.width = 100;
     this.height = 100;
@@ -48,6 +50,7 @@ export class View {
   begin() {
     if (this.normal && !this.deep()) {
       this.along(this.normal.map(Math.abs));
+      if (this.cover && this.cover(this.toward) > HIDING * this.radius ** 3) this.turn(Math.PI, 0);
       this.fit();
     } else {
       this.oblique();

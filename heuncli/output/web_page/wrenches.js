@@ -7,6 +7,7 @@ import { lengthOf, times, unit } from "./vectors.js";
 
 const LONGEST = 0.3; // of the scene's radius: the longest arrow of the run
 const LEAST = 4e-3; // of the largest of the run: what is smaller has no words
+const LEVER = 0.02; // of the scene's radius: moments that are smaller than the largest force on it are not among all loads
 const NUMBER = 3; // rank of the largest number among the words
 
 /** A vector at a frame, SI. @param {object} row @param {number} frame @returns {number[]} */
@@ -38,7 +39,7 @@ const placeOf = (at) => (poses, frame) => at.subarray(3 * frame, 3 * frame + 3);
 /** The arrow of a coupling's force; its components where no row tells them. */
 function ofCoupling(pull, row) {
   const own = pull.forces ? rowOf(pull.forces, row.path, row) : row;
-  return { row: own, at: placeOf(pull.at), name: `${pull.name} on ${pull.on}`, coupling: pull.name };
+  return { row: own, at: placeOf(pull.at), name: pull.caption, coupling: pull.name };
 }
 
 /** The arrow of an applied load: a spring, gas, a bushing, a torque. */
@@ -53,7 +54,7 @@ function ofDrive(joint, row) {
     row: { ...row, path: `${row.path}.${row.unit.includes("·") ? "moment" : "force"}` },
     at: (poses) => stands(poses, joint.b, joint.q),
     vector: (poses, frame) => times(along(poses), row.parts[0].values[frame]),
-    name: `${joint.name} drive`,
+    name: `${joint.caption} drive`,
   };
 }
 
@@ -66,7 +67,7 @@ export function arrowChoices(data) {
   const { rows, scene } = data;
   const of = (path, name, at) => (rows.has(path) ? [{ row: rows.get(path), at, name }] : []);
   const joint = (j) => (poses) => stands(poses, j.b, j.q);
-  const wrench = (begin, what) => scene.joints.flatMap((j) => of(`${begin}joints.${j.name}.${what}`, j.name, joint(j)));
+  const wrench = (begin, what) => scene.joints.flatMap((j) => of(`${begin}joints.${j.name}.${what}`, j.caption, joint(j)));
   const pulls = scene.pulls.filter((pull) => rows.has(pull.row)).map((pull) => ofCoupling(pull, rows.get(pull.row)));
   const drives = scene.joints.flatMap((j) => {
     const row = rows.get(`joints.${j.name}.drive`);
@@ -75,15 +76,17 @@ export function arrowChoices(data) {
   const applied = [...data.acting.map(ofActing), ...drives];
   const single = scene.joints.map((j) => ({
     key: `joints.${j.name}`,
-    label: `${j.name}: force and moment`,
-    rows: ["force", "moment"].flatMap((what) => of(`joints.${j.name}.${what}`, j.name, joint(j))),
+    label: `${j.caption}: force and moment`,
+    rows: ["force", "moment"].flatMap((what) => of(`joints.${j.name}.${what}`, j.caption, joint(j))),
   }));
   const axis = rows.get("foundation.axis.point");
   const about = data.foundation;
   const onAxis = (poses, frame) => (axis ? vectorAt(axis, frame) : about);
   const forces = wrench("", "force");
+  const most = Math.max(0, ...[...forces, ...pulls, ...applied].filter(({ row }) => !turning(row)).map(({ row }) => largestOf(row)));
+  const telling = applied.filter(({ row }) => !turning(row) || largestOf(row) >= LEVER * scene.radius * most);
   return [
-    { key: "all", label: "all loads", rows: [...forces, ...pulls, ...applied], joints: true },
+    { key: "all", label: "all loads", rows: [...forces, ...pulls, ...telling], joints: true },
     { key: "joints.force", label: "joint forces", rows: forces, joints: true },
     { key: "joints.moment", label: "joint moments", rows: wrench("", "moment"), joints: true },
     { key: "couplings", label: "gears, belts, ropes", rows: pulls },
