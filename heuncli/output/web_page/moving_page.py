@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
 from heuncli.output.machine_geometry.poses import extract_poses
@@ -20,7 +21,7 @@ from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_f
 from heuncli.output.web_page.geometry import make_page_machine, make_page_scene
 from heuncli.output.web_page.number_rows import make_blocks, make_impact_page_tables, split_heading
 from heuncli.output.web_page.packing import pack_exact
-from heuncli.output.web_page.page_assembly import assemble_page
+from heuncli.output.web_page.page_assembly import FILM_SCRIPT, assemble_page
 from heuncli.output.web_page.peaks import find_peaks
 from heuncli.results.results import Array, Results
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
@@ -35,6 +36,19 @@ MAX_IMPACTS = 12  # whose tables are included
 HEADING_NOTES = ("stiff", "split", "status", "warning")  # lines of the heading that are shown as notes
 
 
+class Film(NamedTuple):
+    """What is drawn of the machine: one picture (png) or gif, or the pictures (frames) of a video.
+
+    width, height: [pixels]; rate: pictures a second; at: the instant of one picture [s], None: of the greatest load
+    """
+
+    kind: Literal["png", "gif", "frames"]
+    width: int
+    height: int
+    rate: float
+    at: float | None = None
+
+
 def render_moving_page(studies: Mapping[str, Study], units: Units, max_frames: int = MAX_PAGE_FRAMES) -> str:
     """Render the page of studies that are solved for motion and loads, by the names of their load cases.
 
@@ -45,13 +59,25 @@ def render_moving_page(studies: Mapping[str, Study], units: Units, max_frames: i
     return assemble_page(title, runs[0] if len(runs) == 1 else {"runs": runs})
 
 
-def make_page_data(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES, case: str = "") -> dict[str, Any]:
-    """Make all data of a case: plain dictionaries and lists, with arrays packed."""
+def render_film_page(study: Study, units: Units, film: Film, case: str = "") -> str:
+    """Render the page that draws the pictures of a film, or one picture, and leaves them as text."""
+    instants = () if film.at is None else (film.at,)
+    data = {**make_page_data(study, units, case=case, instants=instants), "film": film._asdict()}
+    return assemble_page(study.results.title, data, FILM_SCRIPT)
+
+
+def make_page_data(
+    study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES, case: str = "", instants: Sequence[float] = ()
+) -> dict[str, Any]:
+    """Make all data of a case: plain dictionaries and lists, with arrays packed.
+
+    instants: [s], beside those of the run, at which a frame is needed
+    """
     original, spec, scene = study.results, study.spec, study.setup.scene
     labels = replace(make_labels(spec), units=units)
     certain = find_stated_errors(original, labels, study.magnitudes)
     peaks = find_peaks(study, labels, certain)
-    frames = choose_frames(study, peaks.times, max_frames)
+    frames = choose_frames(study, np.sort([*peaks.times, *instants]), max_frames)
     results = resample_at_frames(study, frames.times)
     horizon = original.horizon
     return {

@@ -7,7 +7,7 @@ import { lengthOf, times, unit } from "./vectors.js";
 
 const LONGEST = 0.3; // of the scene's radius: the longest arrow of the run
 const LEAST = 4e-3; // of the largest of the run: what is smaller has no words
-const LEVER = 0.02; // of the scene's radius: moments that are smaller than the largest force on it are not among all loads
+const LEVER = 0.003; // of the scene's radius: moments that are smaller than the largest force on it are not among all loads
 const NUMBER = 3; // rank of the largest number among the words
 
 /** A vector at a frame, SI. @param {object} row @param {number} frame @returns {number[]} */
