@@ -8,14 +8,14 @@ every row has all kinds.
 from __future__ import annotations
 
 MENDED: dict[str, tuple[str, ...]] = {
-    "overlap": (),  # words over words
+    "overlap": ("page",),  # words over words
     "struck": (),  # a stroke through words
-    "outside": (),  # words beyond the picture or the window
+    "outside": ("page",),  # words beyond the picture or the window
     "empty": (),  # a third of the picture without ink
-    "path": (),  # joints.main.force in place of a name
-    "noise": (),  # 3e-15, 0.000219 kN
-    "digits": (),  # more than five significant ones
-    "folder": (),  # a folder of the machine that drew it
+    "path": ("page",),  # joints.main.force in place of a name
+    "noise": ("page",),  # 3e-15, 0.000219 kN
+    "digits": ("page",),  # more than five significant ones
+    "folder": ("page",),  # a folder of the machine that drew it
     "narrow": (),  # a long table on less than half of the sheet
     "number": (),  # a marked number that is no extreme of the run
 }

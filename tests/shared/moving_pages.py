@@ -13,7 +13,6 @@ import numpy as np
 
 from heuncli.results.results import Array
 
-
 Packed = float | tuple[float, ...]
 
 

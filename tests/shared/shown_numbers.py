@@ -17,7 +17,11 @@ CELLS = """[...document.querySelectorAll("#numbers td[data-path]")].map(
   cell => [cell.dataset.path, cell.textContent, cell.dataset.value, cell.parentNode.lastChild.textContent])"""
 FRAME = "Number(document.documentElement.dataset.frame)"
 DEGREE = np.pi / 180.0
-SIZES = {"kN": 1e3, "MPa": 1e6, "mm": 1e-3, "deg": DEGREE, "deg/s": DEGREE, "deg/s²": DEGREE}  # in SI; all others are 1
+SIZES = {
+    "kN": 1e3, "MN": 1e6, "kN·m": 1e3, "kN·mm": 1.0, "N·mm": 1e-3, "MN·m": 1e6, "kPa": 1e3, "MPa": 1e6, "mm": 1e-3,
+    "mm/s": 1e-3, "mm/s²": 1e-3, "kW": 1e3, "kJ": 1e3, "MW": 1e6, "MJ": 1e6, "rpm": np.pi / 30.0, "deg": DEGREE,
+    "deg/s": DEGREE, "deg/s²": DEGREE,
+}  # in SI; all others are 1  # fmt: skip
 
 
 class ShownNumber(NamedTuple):
@@ -68,3 +72,13 @@ def of_run(results: dict[str, Any], path: str, k: int) -> float:
     if not part:
         return float(np.linalg.norm(number)) if number.ndim else float(number)
     return float(number["xyz".index(part)] if part in "xyz" else number[int(part)])
+
+
+def largest_of_run(results: dict[str, Any], path: str) -> float:
+    """The largest magnitude of a column over the run, with all of its components and cuts."""
+    *keys, last = path.split(".")
+    found: Any = results
+    for key in keys:
+        found = found[int(key)] if isinstance(found, list) else found[key]
+    block = found[last] if isinstance(found, dict) else found
+    return float(np.nanmax(np.abs(np.array(block, dtype=np.float64)), initial=0.0))

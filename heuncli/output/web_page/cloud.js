@@ -37,7 +37,7 @@ function outermost(body, directions) {
 }
 
 /**
- * How much of the machine's bodies stands before its joints, seen from a direction: the larger a body, the more it counts.
+ * How much of the machine's bodies stands before its joints, seen from a direction; large bodies count more.
  * @returns {(toward: number[]) => number} positive where large bodies hide the joints
  */
 export function coverOf(scene) {
@@ -70,7 +70,9 @@ export function cloudOf(scene, count) {
     const poses = posesAt(scene, frame, 0);
     own.forEach((points, body) => points.forEach((p) => cloud.push(stands(poses, body, p))));
     for (const { a, p, b, q } of ends) cloud.push(stands(poses, a, p), stands(poses, b, q));
-    for (const rope of scene.ropes) cloud.push(...pointsOf(rope.ends.subarray(6 * rope.count * frame, 6 * rope.count * (frame + 1))));
+    for (const { ends: found, count: spans } of scene.ropes) {
+      cloud.push(...pointsOf(found.subarray(6 * spans * frame, 6 * spans * (frame + 1))));
+    }
   }
   return cloud.filter((p) => lengthOf(minus(p, scene.center)) <= FARTHEST * scene.radius);
 }

@@ -248,7 +248,8 @@ export function listenToCurve(chosen, player, changed, panel) {
     fill(by("more"), [["", "…"], ...chosen.others.map((course) => [course.path, course.label])]);
     by("more").disabled = !chosen.others.length || chosen.curves.length >= PENS.length;
     const chips = chosen.curves.slice(1).map((path) => {
-      const chip = made("button", `${chosen.courses.find((c) => c.path === path).label} ×`, { type: "button", class: "chip" });
+      const { label } = chosen.courses.find((course) => course.path === path);
+      const chip = made("button", `${label} ×`, { type: "button", class: "chip" });
       chip.addEventListener("click", () => {
         chosen.curves = chosen.curves.filter((other) => other !== path);
         offer();

@@ -65,7 +65,9 @@ export function axesOf(data) {
   });
   return [
     { label: "time", unit: "s", values: data.time },
-    ...cranks.map((row) => ({ label: row.caption.replace(/, angle$/, " angle"), unit: "°", values: row.parts[0].values.map((v) => v * DEGREES) })),
+    ...cranks.map(({ caption, parts }) => {
+      return { label: caption.replace(/, angle$/, " angle"), unit: "°", values: parts[0].values.map((v) => v * DEGREES) };
+    }),
   ];
 }
 

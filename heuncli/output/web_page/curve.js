@@ -22,9 +22,9 @@ export class Panel {
     this.first = Math.min(...ends);
     this.span = Math.max(...ends) - this.first || 1;
     const known = courses.flatMap((course) => [...course.low, ...course.high]).filter(Number.isFinite);
-    let [low, high] = [0, 1];
-    if (known.length) [low, high] = known.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
-    const last = 10 ** -courses[0].style[0]; // what is below the last certain digit is not drawn as if it were something
+    let low = known.length ? known.reduce((a, v) => Math.min(a, v)) : 0;
+    let high = known.length ? known.reduce((a, v) => Math.max(a, v)) : 1;
+    const last = 10 ** -courses[0].style[0]; // what is below the last certain digit is not drawn as a curve
     if (high - low < 20 * last) [low, high] = [low - 10 * last, high + 10 * last];
     const spare = high - low || Math.abs(high) || 1;
     if (low > 0 && low < spare) low = 0;
@@ -45,7 +45,8 @@ export class Panel {
   /** The frame nearest to a place. */
   frame(x) {
     const wanted = this.first + ((x - this.left) / (this.right - this.left)) * this.span;
-    return this.values.reduce((best, v, k) => (Math.abs(v - wanted) < Math.abs(this.values[best] - wanted) ? k : best), 0);
+    const off = (k) => Math.abs(this.values[k] - wanted);
+    return this.values.reduce((best, _, k) => (off(k) < off(best) ? k : best), 0);
   }
 }
 
@@ -83,7 +84,7 @@ function drawAxes(pen, panel, axis, unit, colours, labels) {
   const { left, right, top, bottom } = panel;
   polyline(pen, [[left, top], [left, bottom], [right, bottom]], colours.ink, 1);
   labels.set("unit", unit === "1" ? "-" : unit, left - 6, 10, colours.ink, 9, "right");
-  labels.set("axis", axis.label === "time" ? "time [s]" : `${axis.label} [°]`, right, bottom + 29, colours.ink, 9, "right");
+  labels.set("axis", `${axis.label} [${axis.unit}]`, right, bottom + 29, colours.ink, 9, "right");
 }
 
 /** One line; where it is open it is broken. */
@@ -137,7 +138,8 @@ export function drawCurve(canvas, data, courses, axis, frame, colours, labels) {
   for (const mark of data.marks) {
     const x = panel.x(axis.values[mark.frame]);
     polyline(pen, [[x, panel.top], [x, panel.bottom]], colours.faint, 1, [3, 3]);
-    if (data.marks.length <= MOST_WORDS) labels.set(`mark ${mark.frame}`, mark.words, x, 10, colours.faint, 2, "center");
+    if (data.marks.length > MOST_WORDS) continue;
+    labels.set(`mark ${mark.frame}`, mark.words, x, 10, colours.faint, 2, "center");
   }
   courses.forEach((course, k) => {
     const [name, dash] = PENS[k % PENS.length];

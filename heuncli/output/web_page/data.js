@@ -1,4 +1,4 @@
-/** @file The data of the page: inflated and read once, columns unpacked. Numbers are SI; nan stands for what is open. */
+/** @file The data of the page: inflated and read once, columns unpacked. Numbers are SI; nan is what is open. */
 
 /** @param {string} text base64 @returns {Uint8Array} */
 function bytesOf(text) {
@@ -22,7 +22,8 @@ function unpacked(bytes, [offset, count, lag, order, step]) {
   const found = new Float64Array(count);
   if (step === 0) {
     const view = gathered(bytes, offset, count, order);
-    for (let k = 0; k < count; k += 1) found[k] = order === 8 ? view.getFloat64(8 * k, true) : view.getFloat32(4 * k, true);
+    const read = order === 8 ? (k) => view.getFloat64(8 * k, true) : (k) => view.getFloat32(4 * k, true);
+    for (let k = 0; k < count; k += 1) found[k] = read(k);
     return found;
   }
   const view = gathered(bytes, offset, count, 4);
@@ -49,7 +50,8 @@ function parsed(bytes) {
   const length = new DataView(bytes.buffer).getUint32(0, true);
   const columns = bytes.subarray(4 + length);
   const text = new TextDecoder().decode(bytes.subarray(4, 4 + length));
-  return JSON.parse(text, (_, value) => (value && Array.isArray(value.packed) ? unpacked(columns, value.packed) : value));
+  const revive = (_, value) => (value && Array.isArray(value.packed) ? unpacked(columns, value.packed) : value);
+  return JSON.parse(text, revive);
 }
 
 /** What is inflated. @param {Uint8Array} bytes @returns {Promise<Uint8Array>} */

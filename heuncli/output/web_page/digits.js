@@ -40,7 +40,7 @@ export function short(value) {
   return signed(size >= 1e6 || size < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(4))));
 }
 
-/** An instant, to a part of the run. @param {number} t [s] @param {number} span [s] @param {number} places of the part */
+/** An instant, to a part of the run. @param {number} t [s] @param {number} span [s] @param {number} places of it */
 export function instant(t, span, places = 5) {
   const decimals = span > 0 ? Math.min(20, Math.max(0, places - Math.ceil(Math.log10(span)))) : DIGITS;
   const text = t.toFixed(decimals);

@@ -95,7 +95,8 @@ function draw(data) {
     return canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
   });
   if (kind === "frames") return pictures;
-  return [base64(gifOf(pictures, Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio), 1 / rate))];
+  const [wide, high] = [width, height].map((size) => Math.round(size * devicePixelRatio));
+  return [base64(gifOf(pictures, wide, high, 1 / rate))];
 }
 
 readData(by("data").textContent, 0).then(({ data }) => {

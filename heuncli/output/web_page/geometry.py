@@ -109,7 +109,8 @@ def make_page_scene(
         "ground": [{"name": name, "at": _to_floats(point)} for name, point in machine.ground_points.items()],
         "gravity": _to_floats(np.array(spec.gravity)),
         "pulls": [
-            _make_coupling_force(pull, belts, labels) for pull in iter_coupling_forces(machine, poses, results.couplings)
+            _make_coupling_force(pull, belts, labels)
+            for pull in iter_coupling_forces(machine, poses, results.couplings)
         ],
         "normal": _find_common_pin_axis(machine, poses) if normal is None else _to_floats(normal),
         **_compute_extent(machine, poses),
@@ -203,7 +204,12 @@ def _make_coupling_force(pull: CouplingForce, belts: Collection[str], labels: La
         "at": pack_points(pull.points),
     }
     coupling, body = describe_object("couplings", pull.name, labels), describe_object("bodies", pull.body, labels)
-    return {"name": pull.name, "caption": f"{coupling} on {body}", **reference, "forces": pack_points(pull.forces) if belt else None}
+    return {
+        "name": pull.name,
+        "caption": f"{coupling} on {body}",
+        **reference,
+        "forces": pack_points(pull.forces) if belt else None,
+    }
 
 
 def _collect_symbols(machine: Machine) -> set[str]:

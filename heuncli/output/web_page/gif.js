@@ -41,7 +41,7 @@ function finder(palette) {
   };
 }
 
-/** Numbers of eight bits as GIF packs them (LZW), in blocks of 255 bytes. @param {Uint8Array} numbers @param {number[]} out */
+/** Numbers of eight bits as GIF packs them (LZW), in blocks of 255 bytes. */
 function pack(numbers, out) {
   const bytes = [];
   let [bits, held, size] = [0, 0, 9];

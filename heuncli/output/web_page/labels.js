@@ -30,9 +30,10 @@ export class LabelList {
     this.last = new Map();
   }
 
-  /** Begin a picture. */
-  begin(pen, width, height) {
-    Object.assign(this, { pen, width, height, items: [] });
+  /** Begin a picture; of another view nothing is remembered. @param {number} view its number */
+  begin(pen, width, height, view = 0) {
+    if (view !== this.view) this.last.clear();
+    Object.assign(this, { pen, width, height, view, items: [] });
   }
 
   /** Words that stand about a place. @param {string} key whose they are @param {number} rank the greatest goes first */

@@ -148,5 +148,6 @@ export function drawLoadScale(pen, view, { force: load, size }, colours, line, l
   polyline(pen, [[begin, y], [x, y]], colours.positive, 2.2);
   for (const end of [begin, x]) polyline(pen, [[end, y - 4], [end, y + 4]], colours.positive, 1.5);
   const unit = load.unit === "1" ? "" : ` ${load.unit}`;
-  labels.set("scale of the section", `${load.label} ${short(amount)}${unit} =`, begin - 8, y, colours.positive, 10, "right");
+  const text = `${load.label} ${short(amount)}${unit} =`;
+  labels.set("scale of the section", text, begin - 8, y, colours.positive, 10, "right");
 }

@@ -28,7 +28,7 @@ from heuncli.study.quantities.channels import (
     iter_impulse_channels,
     make_section_channels,
 )
-from heuncli.study.quantities.digits import OPEN, StatedErrors, Style, largest_magnitude
+from heuncli.study.quantities.digits import StatedErrors, Style, largest_magnitude
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.reader_numbers import DIGITS, choose_reader_style
 
@@ -151,7 +151,11 @@ def iter_page_rows(
 def _make_row(item: Channel, labels: Labels, shown: dict[str, Any]) -> dict[str, Any]:
     largest = largest_magnitude(item.values)
     parts = [
-        [name, pack_values(column, largest=largest), describe_path(f"{item.path}.{name}" if name else item.path, labels)]
+        [
+            name,
+            pack_values(column, largest=largest),
+            describe_path(f"{item.path}.{name}" if name else item.path, labels),
+        ]
         for name, column in zip(item.components, item.values.T, strict=True)
     ]
     label = item.quantity.replace("_", " ")

@@ -18,10 +18,11 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.records import record
-from heuncli.results.results import Array
+from heuncli.results.results import Array, Indices
 
 NUMBER_STEPS = 2**22  # steps of a column's largest number: its rounding is 1.2e-7 of it
-POINT_STEPS = 2**17  # steps of the largest coordinate of what is drawn: far less than a pixel
+POINT_STEPS = 2**20  # steps of the range of what is drawn: far less than a pixel
+MAX_STEPS = 2**27  # steps of a coordinate, so that differences fit into 32 bits
 MAX_ORDER = 3  # of the differences that are tried
 FLOAT32, FLOAT64 = "f4", "f8"
 
@@ -67,12 +68,14 @@ def pack_exact(values: Array) -> PackedColumn:
 def pack_points(values: Array, lag: int = 3) -> PackedColumn:
     """Pack points or attitudes that are drawn."""
     flat = np.ascontiguousarray(values, dtype="<f8").ravel()
-    return _pack_steps(flat, lag, (float(np.abs(flat).max(initial=0.0)) or 1.0) / POINT_STEPS)
+    largest = float(np.abs(flat).max(initial=0.0))
+    span = float(np.ptp(flat.reshape(-1, lag), axis=0).max()) if flat.size else 0.0
+    return _pack_steps(flat, lag, max(span / POINT_STEPS, largest / MAX_STEPS) or 1.0)
 
 
 def _pack_steps(flat: Array, lag: int, step: float) -> PackedColumn:
-    whole = np.rint(flat / step).astype(np.int64)
-    differences = [whole]
+    whole = np.rint(flat / step).astype(np.intp)
+    differences: list[Indices] = [whole]
     for _ in range(MAX_ORDER):
         differences.append(_take_differences(differences[-1], lag))
     order = int(np.argmin([np.abs(each).sum() for each in differences]))
@@ -87,7 +90,7 @@ def _pack_floats(flat: Array, form: str) -> PackedColumn:
     return PackedColumn(planes.tobytes(), flat.size, 1, size, 0.0)
 
 
-def _take_differences(whole: Array, lag: int) -> Array:
+def _take_differences(whole: Indices, lag: int) -> Indices:
     differences = whole.copy()
     differences[lag:] -= whole[:-lag]
     return differences

@@ -1,4 +1,4 @@
-/** @file What runs over the machine: belts and ropes, as full lines; and symbols: stops, latches, the ground, what acts in joints. */
+/** @file Belts and ropes, as full lines; symbols: stops, latches, the ground, what acts in joints. */
 
 import { points, stands } from "./poses.js";
 import { polyline, shape } from "./strokes.js";
@@ -61,7 +61,8 @@ export function paintRope(painter, view, poses, rope, shown, colours) {
     const lies = arcs.get(k);
     if (!lies) continue;
     const center = stands(poses, lies.body, lies.center);
-    paintStrand(painter, view, arc(center, points(poses, lies.along, lies.axis), ends[2 * k + 1], ends[2 * k + 2]), colours);
+    const axis = points(poses, lies.along, lies.axis);
+    paintStrand(painter, view, arc(center, axis, ends[2 * k + 1], ends[2 * k + 2]), colours);
   }
 }
 

@@ -62,7 +62,7 @@ function paintMachine(pen, scene, poses, view, shown, colours) {
 export function drawMachine(canvas, data, view, shown, colours, labels) {
   const { pen, width, height } = cleared(canvas);
   view.fill(width, height);
-  labels.begin(pen, width, height);
+  labels.begin(pen, width, height, view.fits);
   const { scene } = data;
   const poses = posesAt(scene, shown.frame, shown.share);
   for (const point of scene.ground) drawGroundPoint(pen, view, point.at, colours);

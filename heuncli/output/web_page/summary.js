@@ -6,7 +6,8 @@ import { arrowChoices, largestOf, vectorAt } from "./wrenches.js";
 import { lengthOf } from "./vectors.js";
 
 const MOST = 12; // rows
-const SECTION_ROWS = 2; // of each section
+const MOMENTS = new Set(["T", "M", "M1", "M2"]);
+const FORCES = new Set(["N", "Q", "Q1", "Q2"]);
 const LEAST = 1e-3; // of the greatest of its kind: what is smaller is left to the tables
 
 /** The frame at which a number is greatest, and how great it is. */
@@ -33,14 +34,17 @@ function ofSection(section, count) {
   const found = section.loads.map((load) => {
     const at = (frame) => {
       let most = 0;
-      for (let k = frame * n; k < (frame + 1) * n; k += 1) if (Math.abs(load.values[k]) > Math.abs(most)) most = load.values[k];
+      for (const value of load.values.subarray(frame * n, (frame + 1) * n)) {
+        if (Math.abs(value) > Math.abs(most)) most = value;
+      }
       return most;
     };
     return { caption: load.caption, path: load.path, row: load, at, ...greatest(count, at) };
   });
-  const bending = found.filter(({ row }) => row.unit.includes("·")).sort((a, b) => b.size - a.size);
-  const forces = found.filter(({ row }) => !row.unit.includes("·") && row.label.length < 3).sort((a, b) => b.size - a.size);
-  return [...bending.slice(0, 1), ...forces.slice(0, 1)].slice(0, SECTION_ROWS);
+  found.sort((a, b) => b.size - a.size);
+  const bending = found.filter(({ row }) => MOMENTS.has(row.label));
+  const forces = found.filter(({ row }) => FORCES.has(row.label));
+  return [...bending.slice(0, 1), ...forces.slice(0, 1)];
 }
 
 /** Loads whose names differ by digits alone in one row, with the greatest of them. */
@@ -73,7 +77,7 @@ function rowsOf(data) {
   const sections = data.sections.flatMap((section) => ofSection(section, count));
   const rest = MOST - Math.min(4, sections.length) - ground.length;
   const shown = loads.slice(0, Math.max(4, rest));
-  return { rows: [...shown, ...ground, ...sections].slice(0, MOST), all: loads.length + ground.length + sections.length };
+  return [...shown, ...ground, ...sections].slice(0, MOST);
 }
 
 /** The table. */
@@ -81,7 +85,6 @@ export class SummaryTable {
   /** @param {HTMLTableElement} table @param {object} data @param {object|null} crank the angle that tells instants */
   constructor(table, data, crank, go) {
     this.cells = [];
-    const { rows, all } = rowsOf(data);
     const moving = data.count > 1;
     const head = made("tr");
     const titles = moving ? ["Load", "greatest", "unit", "at", "now"] : ["Load", "value", "unit"];
@@ -90,10 +93,11 @@ export class SummaryTable {
     top.append(head);
     const body = made("tbody");
     const span = data.time[data.count - 1] - data.time[0];
-    for (const { caption, path, row, at, frame, value } of rows) {
+    for (const { caption, path, row, at, frame, value } of rowsOf(data)) {
       const line = made("tr");
       line.append(made("th", caption, { scope: "row" }));
-      line.append(made("td", written(value * row.size, row.style), { title: `${whole(value * row.size)} ${row.unit}` }));
+      const all = `${whole(value * row.size)} ${row.unit}`;
+      line.append(made("td", written(value * row.size, row.style), { title: all }));
       line.append(made("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
       if (moving) {
         const turn = crank ? `${Math.round(crank.values[frame])}°` : "";
@@ -110,7 +114,6 @@ export class SummaryTable {
       body.append(line);
     }
     table.replaceChildren(top, body);
-    this.rest = all - rows.length;
   }
 
   /** Write the numbers of a frame. @param {number} frame */

@@ -99,6 +99,7 @@ export class View {
 
   /** All of the machine at all frames within the screen, in the middle, with room for words about it. */
   fit() {
+    this.fits = (this.fits ?? 0) + 1;
     this.fitted = true;
     const [left, right] = this.range(this.right);
     const [low, high] = this.range(this.above);

@@ -1,4 +1,4 @@
-/** @file Forces and moments as arrows: of joints, springs, ropes, drives, the foundation, impulses; to one scale a unit. */
+/** @file Forces and moments as arrows, to one scale each: of joints, springs, ropes, drives, the ground, impulses. */
 
 import { roundBelow, short, written } from "./digits.js";
 import { points, stands } from "./poses.js";
@@ -7,7 +7,7 @@ import { lengthOf, times, unit } from "./vectors.js";
 
 const LONGEST = 0.3; // of the scene's radius: the longest arrow of the run
 const LEAST = 4e-3; // of the largest of the run: what is smaller has no words
-const LEVER = 0.003; // of the scene's radius: moments that are smaller than the largest force on it are not among all loads
+const LEVER = 0.003; // of the scene's radius: smaller moments than the largest force on it are not among all loads
 const NUMBER = 3; // rank of the largest number among the words
 
 /** A vector at a frame, SI. @param {object} row @param {number} frame @returns {number[]} */
@@ -44,7 +44,8 @@ function ofCoupling(pull, row) {
 
 /** The arrow of an applied load: a spring, gas, a bushing, a torque. */
 function ofActing(load) {
-  return { row: rowOf(load.forces, `forces.${load.name}.${load.what}`, load), at: placeOf(load.at), name: load.caption };
+  const row = rowOf(load.forces, `forces.${load.name}.${load.what}`, load);
+  return { row, at: placeOf(load.at), name: load.caption };
 }
 
 /** The arrow of a drive, along the axis of its joint. */
@@ -67,7 +68,8 @@ export function arrowChoices(data) {
   const { rows, scene } = data;
   const of = (path, name, at) => (rows.has(path) ? [{ row: rows.get(path), at, name }] : []);
   const joint = (j) => (poses) => stands(poses, j.b, j.q);
-  const wrench = (begin, what) => scene.joints.flatMap((j) => of(`${begin}joints.${j.name}.${what}`, j.caption, joint(j)));
+  const wrench = (begin, what) =>
+    scene.joints.flatMap((j) => of(`${begin}joints.${j.name}.${what}`, j.caption, joint(j)));
   const pulls = scene.pulls.filter((pull) => rows.has(pull.row)).map((pull) => ofCoupling(pull, rows.get(pull.row)));
   const drives = scene.joints.flatMap((j) => {
     const row = rows.get(`joints.${j.name}.drive`);
@@ -83,7 +85,8 @@ export function arrowChoices(data) {
   const about = data.foundation;
   const onAxis = (poses, frame) => (axis ? vectorAt(axis, frame) : about);
   const forces = wrench("", "force");
-  const most = Math.max(0, ...[...forces, ...pulls, ...applied].filter(({ row }) => !turning(row)).map(({ row }) => largestOf(row)));
+  const pushing = [...forces, ...pulls, ...applied].filter(({ row }) => !turning(row));
+  const most = Math.max(0, ...pushing.map(({ row }) => largestOf(row)));
   const telling = applied.filter(({ row }) => !turning(row) || largestOf(row) >= LEVER * scene.radius * most);
   return [
     { key: "all", label: "all loads", rows: [...forces, ...pulls, ...telling], joints: true },
@@ -96,7 +99,11 @@ export function arrowChoices(data) {
       label: "load on the ground",
       rows: ["force", "moment"].flatMap((what) => of(`foundation.${what}`, "ground", () => about)),
     },
-    { key: "foundation.axis", label: "load on the ground, central axis", rows: of("foundation.force", "ground", onAxis) },
+    {
+      key: "foundation.axis",
+      label: "load on the ground, central axis",
+      rows: of("foundation.force", "ground", onAxis),
+    },
     ...data.blows.map((blow) => ({
       key: `blow.${blow.number}`,
       label: `${blow.words}: impulses of all joints`,

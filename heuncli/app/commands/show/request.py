@@ -24,7 +24,11 @@ class ShowRequest(NamedTuple):
     spec: Annotated[str, SPEC]
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Output page x.html, or x.png, x.gif, x.mp4 by programs on PATH; - is standard output.", "FILE"),
+        Option(
+            ("--output", "-o"),
+            "Output page x.html, or x.png, x.gif, x.mp4 by programs on PATH; - is standard output.",
+            "FILE",
+        ),
     ] = None
     glb: Annotated[str | None, Option(("--glb",), "Also write the moving bodies as animated glTF: x.glb.", "FILE")] = (
         None
