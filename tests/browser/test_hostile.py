@@ -64,6 +64,7 @@ def test_the_name_of_a_file_is_text(stem: str, browser: Chromium, page: Pages, t
     with browser.open(page(spec_with(tmp_path, "a title", stem))) as tab:
         assert tab.faults == []
         assert untouched(tab)
+        tab.evaluate("document.querySelector('#about').open = true")
         assert stem.strip() in tab.evaluate("document.body.innerText")
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import base64
 import json
+import struct
+import zlib
 from html.parser import HTMLParser
 from typing import Any
 
@@ -11,17 +13,33 @@ import numpy as np
 
 from heuncli.results.results import Array
 
-
-def unpacked(packed: str | float, count: int) -> Array:
-    """The numbers of a packed array, (count,): float64, least significant byte first."""
-    if isinstance(packed, str):
-        return np.frombuffer(base64.b64decode(packed, validate=True), dtype="<f8").copy()
-    return np.full(count, float(packed))
+Packed = float | tuple[float, ...]
 
 
-def places(packed: str) -> Array:
-    """The numbers of an array of places: float32."""
-    return np.frombuffer(base64.b64decode(packed, validate=True), dtype="<f4").astype(np.float64)
+def unpacked(packed: Packed, count: int) -> Array:
+    """The numbers of a column, (count,)."""
+    return np.array(packed) if isinstance(packed, tuple) else np.full(count, float(packed))
+
+
+def places(packed: tuple[float, ...]) -> Array:
+    """The numbers of a column of places."""
+    return np.array(packed)
+
+
+def unpack(columns: bytes, form: list[float]) -> tuple[float, ...]:
+    """The numbers of a column by its form: offset, count, lag, order of the differences, step; see packing.py."""
+    offset, count, lag, order = (int(part) for part in form[:4])
+    size = order if form[4] == 0 else 4
+    planes = np.frombuffer(columns, np.uint8, count * size, offset).reshape(size, count)
+    bytes_ = np.ascontiguousarray(planes.T).tobytes()
+    if form[4] == 0:
+        return tuple(np.frombuffer(bytes_, f"<f{size}").astype(np.float64).tolist())
+    folded = np.frombuffer(bytes_, "<u4").astype(np.int64)
+    whole = np.where(folded % 2, -(folded + 1) // 2, folded // 2)
+    for _ in range(order):
+        for first in range(min(lag, count)):
+            whole[first::lag] = np.cumsum(whole[first::lag])
+    return tuple((whole * form[4]).tolist())
 
 
 def no_constant(name: str) -> float:
@@ -57,8 +75,19 @@ class PageElements(HTMLParser):
         return [text for name, text in self.texts if name == tag]
 
 
+def decoded(held: str) -> dict[str, Any]:
+    """The data of a page from the text of its data block."""
+    whole = zlib.decompress(base64.b64decode(held, validate=True))
+    (length,) = struct.unpack("<I", whole[:4])
+    columns = whole[4 + length :]
+
+    def hook(found: dict[str, Any]) -> Any:
+        return unpack(columns, found["packed"]) if list(found) == ["packed"] else found
+
+    data: dict[str, Any] = json.loads(whole[4 : 4 + length], parse_constant=no_constant, object_hook=hook)
+    return data
+
+
 def data_of(page: str) -> dict[str, Any]:
     """The data of a page as a browser reads them."""
-    elements = PageElements(page)
-    found: dict[str, Any] = json.loads(elements.text("script")[0], parse_constant=no_constant)
-    return found
+    return decoded(PageElements(page).text("script")[0])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import json
 import re
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,13 +10,18 @@ import numpy as np
 
 from heuncli.results.results import Array
 from tests.shared.chromium import Tab
+from tests.shared.moving_pages import decoded, unpacked
 
-HELD = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+HELD = re.compile(r'<script type="application/octet-stream" id="data">(.*?)</script>', re.DOTALL)
 CELLS = """[...document.querySelectorAll("#numbers td[data-path]")].map(
   cell => [cell.dataset.path, cell.textContent, cell.dataset.value, cell.parentNode.lastChild.textContent])"""
 FRAME = "Number(document.documentElement.dataset.frame)"
 DEGREE = np.pi / 180.0
-SIZES = {"kN": 1e3, "MPa": 1e6, "mm": 1e-3, "deg": DEGREE, "deg/s": DEGREE, "deg/s²": DEGREE}  # in SI; all others are 1
+SIZES = {
+    "kN": 1e3, "MN": 1e6, "kN·m": 1e3, "kN·mm": 1.0, "N·mm": 1e-3, "MN·m": 1e6, "kPa": 1e3, "MPa": 1e6, "mm": 1e-3,
+    "mm/s": 1e-3, "mm/s²": 1e-3, "kW": 1e3, "kJ": 1e3, "MW": 1e6, "MJ": 1e6, "rpm": np.pi / 30.0, "deg": DEGREE,
+    "deg/s": DEGREE, "deg/s²": DEGREE,
+}  # in SI; all others are 1  # fmt: skip
 
 
 class ShownNumber(NamedTuple):
@@ -45,8 +48,8 @@ def frames(page: Path) -> Array:
     """The instants of a page's frames, (n,) [s]."""
     held = HELD.search(page.read_text(encoding="utf-8"))
     assert held is not None
-    packed = json.loads(held[1])["time"]
-    return np.frombuffer(base64.b64decode(packed), "<f8") if isinstance(packed, str) else np.array([float(packed)])
+    data = decoded(held[1])
+    return unpacked(data["time"], data["count"])
 
 
 def to_frame(tab: Tab, frame: int) -> None:
@@ -69,3 +72,13 @@ def of_run(results: dict[str, Any], path: str, k: int) -> float:
     if not part:
         return float(np.linalg.norm(number)) if number.ndim else float(number)
     return float(number["xyz".index(part)] if part in "xyz" else number[int(part)])
+
+
+def largest_of_run(results: dict[str, Any], path: str) -> float:
+    """The largest magnitude of a column over the run, with all of its components and cuts."""
+    *keys, last = path.split(".")
+    found: Any = results
+    for key in keys:
+        found = found[int(key)] if isinstance(found, list) else found[key]
+    block = found[last] if isinstance(found, dict) else found
+    return float(np.nanmax(np.abs(np.array(block, dtype=np.float64)), initial=0.0))

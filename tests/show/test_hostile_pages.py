@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from heuncli.base.text_safety import escape
-from heuncli.output.web_page.page_assembly import assemble_page, to_safe_json
+from heuncli.output.web_page.packing import encode_data
+from heuncli.output.web_page.page_assembly import assemble_page
 from tests.shared.command import TURNED, Heun
-from tests.shared.moving_pages import PageElements, data_of
+from tests.shared.moving_pages import PageElements, data_of, decoded
 
 TITLES = [
     "</script><script>alert(1)</script>",
@@ -40,14 +41,14 @@ def test_a_title_is_shown_and_never_interpreted(title: str) -> None:
 
 @pytest.mark.parametrize("text", [*TITLES, "\ud800 half a pair"])
 def test_data_are_ascii_without_marks(text: str) -> None:
-    data = to_safe_json({text: [text]})
+    data = encode_data({text: [text]})
     assert data.isascii() and not set(data) & set("<>&")
-    assert json.loads(data) == {text: [text]}
+    assert decoded(data) == {text: [text]}
 
 
 def test_nan_is_no_data() -> None:
     with pytest.raises(ValueError, match="JSON"):
-        to_safe_json({"a": float("nan")})
+        encode_data({"a": float("nan")})
 
 
 def test_a_spec_cannot_put_anything_into_its_page(heun: Heun, folder: Path) -> None:

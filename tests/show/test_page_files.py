@@ -50,11 +50,17 @@ def test_wheels_carry_all_of_its_files() -> None:
 
 
 def test_every_script_is_used_once_and_after_what_it_needs() -> None:
-    order = sort_scripts()
-    assert sorted(order) == SCRIPTS and order[-1] == page_assembly.MAIN_SCRIPT
-    for place, name in enumerate(order):
-        needed = {found[2] for found in IMPORT.finditer(read_page_file(f"{name}.js"))}
-        assert needed <= set(order[:place])
+    orders = [sort_scripts(main) for main in page_assembly.TEMPLATES]
+    assert sorted(set().union(*orders)) == SCRIPTS
+    for main, order in zip(page_assembly.TEMPLATES, orders, strict=True):
+        assert order[-1] == main and len(set(order)) == len(order)
+        for place, name in enumerate(order):
+            needed = {found[2] for found in IMPORT.finditer(read_page_file(f"{name}.js"))}
+            assert needed <= set(order[:place])
+
+
+def test_the_page_is_without_what_draws_films() -> None:
+    assert {"gif", "film"} & set(sort_scripts()) == set()
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
@@ -113,7 +119,7 @@ def test_every_control_has_a_name() -> None:
 def test_the_ids_that_scripts_look_for_are_there() -> None:
     there = re.findall(r'\bid="([\w-]+)"', read_page_file("machine.html"))
     assert len(there) == len(set(there))
-    asked = {found for name in SCRIPTS for found in re.findall(r'\bby\("([\w-]+)"\)', read_page_file(f"{name}.js"))}
+    asked = {found for name in sort_scripts() for found in re.findall(r'\bby\("([\w-]+)"\)', read_page_file(f"{name}.js"))}
     assert asked and asked <= set(there)
 
 

@@ -23,6 +23,19 @@ export function coloursNow() {
 
 const made = new Map();
 
+/** The number of a body's kind: bodies whose names differ by digits alone have one colour. Made once. */
+export function kindsOf(scene) {
+  if (!scene.kinds) {
+    const known = new Map();
+    scene.kinds = scene.bodies.map(({ name }) => {
+      const kind = name.replace(/[\d_ .-]+/g, "") || name;
+      if (!known.has(kind)) known.set(kind, known.size);
+      return known.get(kind);
+    });
+  }
+  return scene.kinds;
+}
+
 /** The colours of a body: shades from dark to bright, and one for its edges. @param {number} k @param {boolean} dark */
 export function tints(k, dark) {
   const key = 2 * (k % HUES.length) + Number(dark);

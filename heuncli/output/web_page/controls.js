@@ -1,6 +1,7 @@
 /** @file The controls of the page: what they offer, and what they do when they are used. */
 
-import { coursesOf, peakOf } from "./courses.js";
+import { axesOf, coursesOf, peakOf } from "./courses.js";
+import { PENS } from "./curve.js";
 import { instant } from "./digits.js";
 import { by, fill, made } from "./elements.js";
 import { ZOOM, listenToPointers, viewKey } from "./pointing.js";
@@ -13,7 +14,7 @@ const LOOKS = [
   [0.35, "transparent"],
   [0, "wireframe"],
 ];
-const MANY_ARROWS = 40;
+const MANY_ARROWS = 40; // joints
 const MANY_NAMES = 7;
 const MOST_BUTTONS = 8;
 const TRIED = 12;
@@ -27,6 +28,10 @@ export class Chosen {
     this.changed = changed;
     this.choices = arrowChoices(data);
     this.courses = coursesOf(data);
+    this.axes = axesOf(data);
+    this.axis = this.axes[1] ?? this.axes[0];
+    /** @type {string[]} paths of the curves that are shown, the first of them chosen by itself */
+    this.curves = [];
     this.names = data.scene.bodies.length + data.scene.joints.length <= MANY_NAMES;
     this.values = true;
     this.paths = false;
@@ -39,7 +44,7 @@ export class Chosen {
       data.sections.find((section) => section.loads.length && section.s) ??
       data.sections.find((section) => section.loads.length) ??
       null;
-    this.load = this.section && this.governing();
+    this.load = null;
   }
 
   /** The load of the section that is looked at first: the bending that is largest, else the first there is. */
@@ -52,26 +57,40 @@ export class Chosen {
   /** What is drawn of the machine beside its bodies, and how. */
   get shown() {
     const { names, values, paths, look, size, choice, section } = this;
-    const load = section && this.load ? { section, load: this.load, cut: section.chosen ?? 0 } : null;
+    const load = section && this.load ? { section, force: this.load, cut: section.chosen ?? 0 } : null;
     return { names, values, paths, look, size, choice, load };
   }
 
-  /** The path of the curve that is shown first: of a joint if one is known and varies, else of whatever does. */
+  /** The path of the curve that is shown first: of the joint with the greatest force, else of whatever varies. */
   telling() {
-    const joints = this.courses.filter((course) => course.path.startsWith("joints."));
-    const some = [...joints.slice(0, TRIED), ...this.courses.slice(0, TRIED)];
-    const found = some.find((course) => {
-      course.made ??= course.make();
-      const known = course.made.high.filter(Number.isFinite);
-      return known.length > 1 && known.some((value) => value !== known[0]);
-    });
-    return (found ?? some[0])?.path ?? "";
+    const joints = this.courses.filter(({ path }) => /^joints\..*\.force$/.test(path)).slice(0, TRIED);
+    const some = joints.length ? joints : this.courses.slice(0, TRIED);
+    const most = ({ high }) => high.reduce((best, v) => (Math.abs(v) > best ? Math.abs(v) : best), 0);
+    const found = some.map((course) => this.made(course)).sort((a, b) => most(b) - most(a));
+    return found[0]?.path ?? "";
   }
 
-  /** The curve of a path. @param {string} path */
+  /** A curve, made when it is first needed. */
+  made(course) {
+    course.made ??= course.make();
+    return course.made;
+  }
+
+  /** Show the curve of a path alone. @param {string} path */
   setCourse(path) {
     const found = this.courses.find((course) => course.path === path) ?? this.courses[0];
-    this.course = found ? (found.made ??= found.make()) : null;
+    this.curves = found ? [found.path] : [];
+  }
+
+  /** The curves that are shown. @returns {import("./courses.js").Course[]} */
+  get shownCourses() {
+    return this.curves.map((path) => this.made(this.courses.find((course) => course.path === path)));
+  }
+
+  /** The curves that may be added: of the unit of the first. */
+  get others() {
+    const unit = this.shownCourses[0]?.unit;
+    return this.courses.filter((course) => course.unit === unit && !this.curves.includes(course.path));
   }
 }
 
@@ -98,7 +117,7 @@ export function listenToView(view, player, changed) {
       view.fit();
     }),
   );
-  act("view-oblique", () => view.begin());
+  act("view-oblique", () => view.oblique());
   act("closer", () => view.magnify(ZOOM));
   act("farther", () => view.magnify(1 / ZOOM));
   const frames = player.time.length;
@@ -122,13 +141,14 @@ export function listenToView(view, player, changed) {
 export function listenToTime(data, player) {
   const { count, time, marks } = data;
   const moving = count > 1;
-  for (const id of ["moving", "over", "marks"]) by(id).hidden = !moving || (id === "marks" && !marks.length);
+  for (const id of ["moving", "over", "marks", "worst"]) by(id).hidden = !moving || (id === "marks" && !marks.length);
   if (!moving) return;
   const slider = by("time");
   slider.max = String(count - 1);
   slider.addEventListener("input", () => player.halt(Number(slider.value)));
   by("ticks").append(...marks.map((mark) => made("option", "", { value: String(mark.frame) })));
   by("play").addEventListener("click", () => player.toggle());
+  by("worst").addEventListener("click", () => player.halt(data.worst));
   fill(
     by("speed"),
     SPEEDS.map(([speed, label]) => [String(speed), label]),
@@ -143,7 +163,7 @@ export function listenToTime(data, player) {
     button.addEventListener("click", () => player.halt(mark.frame));
     return button;
   });
-  by("marks").replaceChildren(made("span", "events and impulses", { class: "word" }), ...buttons);
+  by("marks").replaceChildren(made("span", "Events and impulses", { class: "word" }), ...buttons);
   if (marks.length > MOST_BUTTONS) by("marks").append(made("span", `and ${marks.length - MOST_BUTTONS} more`));
 }
 
@@ -220,30 +240,55 @@ export function listenToSections(chosen, changed) {
   offer();
 }
 
-/** Which curve; a click into it goes to the frame there. @param {() => import("./curve.js").Panel|null} panel */
+/** Which curves; a click into them goes to the frame there. @param {() => import("./curve.js").Panel|null} panel */
 export function listenToCurve(chosen, player, changed, panel) {
   const select = by("path");
-  fill(
-    select,
-    chosen.courses.map((course) => [course.path, course.label]),
-  );
-  chosen.setCourse(chosen.load?.path ?? chosen.telling());
-  if (chosen.course) select.value = chosen.course.path;
-  else by("over").hidden = true;
-  select.addEventListener("change", () => {
-    chosen.setCourse(select.value);
+  fill(select, chosen.courses.map((course) => [course.path, course.label]));
+  const offer = () => {
+    fill(by("more"), [["", "…"], ...chosen.others.map((course) => [course.path, course.label])]);
+    by("more").disabled = !chosen.others.length || chosen.curves.length >= PENS.length;
+    const chips = chosen.curves.slice(1).map((path) => {
+      const { label } = chosen.courses.find((course) => course.path === path);
+      const chip = made("button", `${label} ×`, { type: "button", class: "chip" });
+      chip.addEventListener("click", () => {
+        chosen.curves = chosen.curves.filter((other) => other !== path);
+        offer();
+      });
+      return chip;
+    });
+    by("added").replaceChildren(...chips);
+    changed();
+  };
+  const show = (path) => {
+    chosen.setCourse(path);
+    if (chosen.curves.length) select.value = chosen.curves[0];
+    offer();
+  };
+  select.addEventListener("change", () => show(select.value));
+  by("more").addEventListener("change", () => {
+    if (by("more").value) chosen.curves.push(by("more").value);
+    offer();
+  });
+  fill(by("across"), chosen.axes.map((axis, k) => [String(k), axis.label]));
+  by("across").value = String(chosen.axes.indexOf(chosen.axis));
+  by("acrosslabel").hidden = chosen.axes.length < 2;
+  by("across").addEventListener("change", () => {
+    chosen.axis = chosen.axes[Number(by("across").value)];
     changed();
   });
-  const go = (highest) => () => chosen.course && player.halt(Math.max(0, peakOf(chosen.course, highest)));
+  const go = (highest) => () => player.halt(Math.max(0, peakOf(chosen.shownCourses[0], highest)));
   by("lowest").addEventListener("click", go(false));
   by("highest").addEventListener("click", go(true));
   const canvas = by("curve");
   const follow = (event) => {
-    if (event.buttons && panel()) player.halt(player.nearest(panel().instant(event.offsetX)));
+    if (event.buttons && panel()) player.halt(panel().frame(event.offsetX));
   };
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
     follow(event);
   });
   canvas.addEventListener("pointermove", follow);
+  show(chosen.telling());
+  if (!chosen.courses.length) by("over").hidden = true;
+  return show;
 }

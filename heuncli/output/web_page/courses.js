@@ -1,6 +1,10 @@
 /** @file Numbers over the frames: what curves can be drawn, each as a lowest and a highest value at every frame. */
 
 import { along } from "./loads.js";
+import { lengthOf } from "./vectors.js";
+
+const ROUND = 2 * Math.PI * 0.98; // rad: an angle that goes as far and never back is that of a crank
+const DEGREES = 180 / Math.PI;
 
 /**
  * @typedef {object} Course
@@ -11,36 +15,25 @@ import { along } from "./loads.js";
 
 /** @param {object} row @param {number} count */
 function ofRow(row, count) {
-  const whole = (pick) => {
-    const values = new Float64Array(count);
-    for (let k = 0; k < count; k += 1) values[k] = pick(k) * row.size;
-    return values;
-  };
   const course = (path, label, pick) => {
     const make = () => {
-      const values = whole(pick);
+      const values = new Float64Array(count);
+      for (let k = 0; k < count; k += 1) values[k] = pick(k) * row.size;
       return { path, label, unit: row.unit, style: row.style, low: values, high: values };
     };
-    return { path, label, make };
+    return { path, label, unit: row.unit, make };
   };
-  const parts = row.parts;
-  if (parts.length === 1) return [course(row.path, row.path, (k) => parts[0].values[k])];
-  if (!row.sized)
-    return parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k]));
-  const size = course(row.path, `${row.path} (magnitude)`, (k) => Math.hypot(...parts.map((part) => part.values[k])));
-  return [
-    size,
-    ...parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k])),
-  ];
+  const { parts } = row;
+  if (parts.length === 1) return [course(row.path, row.caption, (k) => parts[0].values[k])];
+  const own = parts.map((part) => course(`${row.path}.${part.name}`, part.caption, (k) => part.values[k]));
+  if (!row.sized) return own;
+  return [course(row.path, row.caption, (k) => lengthOf(parts.map((part) => part.values[k]))), ...own];
 }
 
 /** @param {object} section @param {object} load @param {number} count */
 function ofLoad(section, load, count) {
+  const label = section.s ? `${load.caption}, least and greatest` : load.caption;
   const make = () => {
-    if (!section.s) {
-      const values = load.values.map((value) => value * load.size);
-      return { path: load.path, label: load.path, unit: load.unit, style: load.style, low: values, high: values };
-    }
     const low = new Float64Array(count);
     const high = new Float64Array(count);
     for (let k = 0; k < count; k += 1) {
@@ -48,9 +41,9 @@ function ofLoad(section, load, count) {
       low[k] = values.length ? Math.min(...values) * load.size : NaN;
       high[k] = values.length ? Math.max(...values) * load.size : NaN;
     }
-    return { path: load.path, label: load.path, unit: load.unit, style: load.style, low, high };
+    return { path: load.path, label, unit: load.unit, style: load.style, low, high: section.s ? high : low };
   };
-  return { path: load.path, label: section.s ? `${load.path} (min, max)` : load.path, make };
+  return { path: load.path, label, unit: load.unit, make };
 }
 
 /** All curves there are; each is made when it is asked for. @param {object} data */
@@ -59,6 +52,22 @@ export function coursesOf(data) {
   return [
     ...rows.flatMap((row) => ofRow(row, data.count)),
     ...data.sections.flatMap((section) => section.loads.map((load) => ofLoad(section, load, data.count))),
+  ];
+}
+
+/** Over what curves can be drawn: time, and the angles of cranks. @returns {{label: string, values: Float64Array}[]} */
+export function axesOf(data) {
+  const cranks = [...data.rows.values()].filter((row) => /^coordinates\..*\.angle$/.test(row.path)).filter((row) => {
+    const { values } = row.parts[0];
+    const way = Math.sign(values[values.length - 1] - values[0]);
+    const turns = Math.abs(values[values.length - 1] - values[0]) >= ROUND;
+    return turns && values.every((value, k) => k === 0 || (value - values[k - 1]) * way >= 0);
+  });
+  return [
+    { label: "time", unit: "s", values: data.time },
+    ...cranks.map(({ caption, parts }) => {
+      return { label: caption.replace(/, angle$/, " angle"), unit: "°", values: parts[0].values.map((v) => v * DEGREES) };
+    }),
   ];
 }
 

@@ -1,31 +1,36 @@
-/** @file A curve over time: axes, events and blows, extremes, and a cursor at the frame that is shown. */
+/** @file Curves over time or an angle: axes, events and impulses, extremes, and a cursor at the frame that is shown. */
 
 import { cleared } from "./canvases.js";
 import { peakOf } from "./courses.js";
 import { roundBelow, short, written } from "./digits.js";
-import { polyline, ring, words } from "./strokes.js";
+import { polyline, ring } from "./strokes.js";
 
-const MARGIN = { left: 62, right: 14, top: 20, bottom: 34 };
+const MARGIN = { left: 66, right: 14, top: 24, bottom: 38 };
 const MOST_WORDS = 8;
+/** Names of the colours of the curves, and the dashes that tell them apart without colour. */
+export const PENS = [["positive", []], ["negative", [7, 3]], ["force", [2, 2]], ["moment", [9, 3, 2, 3]]];
 
 /** Where instants and values stand in a panel [pixels]. */
 export class Panel {
-  constructor(width, height, time, course) {
+  constructor(width, height, axis, courses) {
     this.left = MARGIN.left;
     this.right = width - MARGIN.right;
     this.top = MARGIN.top;
     this.bottom = height - MARGIN.bottom;
-    this.first = time[0];
-    this.span = time[time.length - 1] - time[0] || 1;
-    const known = [...course.low, ...course.high].filter(Number.isFinite);
-    let [low, high] = known.length ? [Math.min(...known), Math.max(...known)] : [0, 1];
-    const last = 10 ** -course.style[0]; // what is below the last certain digit is not drawn as if it were something
+    this.values = axis.values;
+    const ends = [axis.values[0], axis.values[axis.values.length - 1]];
+    this.first = Math.min(...ends);
+    this.span = Math.max(...ends) - this.first || 1;
+    const known = courses.flatMap((course) => [...course.low, ...course.high]).filter(Number.isFinite);
+    let low = known.length ? known.reduce((a, v) => Math.min(a, v)) : 0;
+    let high = known.length ? known.reduce((a, v) => Math.max(a, v)) : 1;
+    const last = 10 ** -courses[0].style[0]; // what is below the last certain digit is not drawn as a curve
     if (high - low < 20 * last) [low, high] = [low - 10 * last, high + 10 * last];
     const spare = high - low || Math.abs(high) || 1;
     if (low > 0 && low < spare) low = 0;
     if (high < 0 && -high < spare) high = 0;
-    this.low = low - (low === 0 ? 0 : 0.08 * spare);
-    this.high = high + (high === 0 ? 0 : 0.12 * spare);
+    this.low = low - (low === 0 ? 0 : 0.1 * spare);
+    this.high = high + (high === 0 ? 0 : 0.14 * spare);
     if (this.high === this.low) this.high += 1;
   }
 
@@ -37,9 +42,11 @@ export class Panel {
     return this.bottom - ((value - this.low) / (this.high - this.low)) * (this.bottom - this.top);
   }
 
-  /** The instant under a place [s]. */
-  instant(x) {
-    return this.first + ((x - this.left) / (this.right - this.left)) * this.span;
+  /** The frame nearest to a place. */
+  frame(x) {
+    const wanted = this.first + ((x - this.left) / (this.right - this.left)) * this.span;
+    const off = (k) => Math.abs(this.values[k] - wanted);
+    return this.values.reduce((best, _, k) => (off(k) < off(best) ? k : best), 0);
   }
 }
 
@@ -61,55 +68,31 @@ function told(tick, all) {
 }
 
 /** Axes, with the unit and numbers. */
-function drawAxes(pen, panel, course, colours) {
+function drawAxes(pen, panel, axis, unit, colours, labels) {
   const up = ticks(panel.low, panel.high, 5);
   for (const tick of up) {
     const y = panel.y(tick);
-    polyline(
-      pen,
-      [
-        [panel.left, y],
-        [panel.right, y],
-      ],
-      colours.line,
-      tick === 0 ? 1.6 : 0.7,
-    );
-    words(pen, told(tick, up), panel.left - 6, y, colours.ink, colours.panel, "right");
+    polyline(pen, [[panel.left, y], [panel.right, y]], colours.line, tick === 0 ? 1.6 : 0.7);
+    labels.set(`up ${tick}`, told(tick, up), panel.left - 6, y, colours.ink, 8, "right");
   }
   const across = ticks(panel.first, panel.first + panel.span, Math.max(2, Math.floor((panel.right - panel.left) / 80)));
   for (const tick of across) {
     const x = panel.x(tick);
-    polyline(
-      pen,
-      [
-        [x, panel.bottom],
-        [x, panel.bottom + 4],
-      ],
-      colours.ink,
-      1,
-    );
-    words(pen, told(tick, across), x, panel.bottom + 13, colours.ink, colours.panel, "center");
+    polyline(pen, [[x, panel.bottom], [x, panel.bottom + 4]], colours.ink, 1);
+    labels.set(`across ${tick}`, told(tick, across), x, panel.bottom + 13, colours.ink, 8, "center");
   }
-  polyline(
-    pen,
-    [
-      [panel.left, panel.top],
-      [panel.left, panel.bottom],
-      [panel.right, panel.bottom],
-    ],
-    colours.ink,
-    1,
-  );
-  words(pen, `[${course.unit === "1" ? "-" : course.unit}]`, panel.left - 6, 9, colours.ink, colours.panel, "right");
-  words(pen, "t [s]", panel.right, panel.bottom + 26, colours.ink, colours.panel, "right");
+  const { left, right, top, bottom } = panel;
+  polyline(pen, [[left, top], [left, bottom], [right, bottom]], colours.ink, 1);
+  labels.set("unit", unit === "1" ? "-" : unit, left - 6, 10, colours.ink, 9, "right");
+  labels.set("axis", `${axis.label} [${axis.unit}]`, right, bottom + 29, colours.ink, 9, "right");
 }
 
-/** One line over time; where it is open it is broken. */
-function drawValues(pen, panel, time, values, colour, dash) {
+/** One line; where it is open it is broken. */
+function drawValues(pen, panel, values, colour, dash) {
   let run = [];
   for (let k = 0; k <= values.length; k += 1) {
     if (k < values.length && Number.isFinite(values[k])) {
-      run.push([panel.x(time[k]), panel.y(values[k])]);
+      run.push([panel.x(panel.values[k]), panel.y(values[k])]);
     } else {
       if (run.length > 1) polyline(pen, run, colour, 1.8, dash);
       run = [];
@@ -117,76 +100,66 @@ function drawValues(pen, panel, time, values, colour, dash) {
   }
 }
 
-/** The highest or the lowest, with its number. */
-function drawPeak(pen, panel, time, course, highest, colours) {
+/** What lies between the least and the greatest, as a band. */
+function drawBand(pen, panel, { low, high }, colour) {
+  const known = [...low.keys()].filter((k) => Number.isFinite(low[k]));
+  pen.beginPath();
+  known.forEach((k, i) => pen[i ? "lineTo" : "moveTo"](panel.x(panel.values[k]), panel.y(high[k])));
+  known.reverse().forEach((k) => pen.lineTo(panel.x(panel.values[k]), panel.y(low[k])));
+  pen.closePath();
+  pen.globalAlpha = 0.18;
+  pen.fillStyle = colour;
+  pen.fill();
+  pen.globalAlpha = 1;
+}
+
+/** The highest or the lowest, with its number and unit. */
+function drawPeak(pen, panel, course, highest, colour, colours, labels, rank) {
   const k = peakOf(course, highest);
   if (k < 0) return;
   const value = (highest ? course.high : course.low)[k];
-  const [x, y] = [panel.x(time[k]), panel.y(value)];
-  ring(pen, x, y, 3, colours.panel, colours.positive, 1.5);
-  const right = x > (panel.left + panel.right) / 2;
-  words(
-    pen,
-    written(value, course.style),
-    x + (right ? -6 : 6),
-    y + (highest || y > panel.bottom - 16 ? -9 : 9),
-    colours.ink,
-    colours.panel,
-    right ? "right" : "left",
-  );
+  const [x, y] = [panel.x(panel.values[k]), panel.y(value)];
+  ring(pen, x, y, 3, colours.panel, colour, 1.5);
+  const text = `${written(value, course.style)} ${course.unit === "1" ? "" : course.unit}`.trim();
+  labels.add(`peak ${course.path} ${highest}`, text, x, y, colours.ink, rank, 7);
 }
 
 /**
  * The whole picture.
- * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./courses.js").Course} course
- * @param {number} frame @returns {Panel}
+ * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./courses.js").Course[]} courses of one unit
+ * @param {{label: string, values: Float64Array}} axis @param {number} frame
+ * @param {import("./labels.js").LabelList} labels @returns {Panel}
  */
-export function drawCurve(canvas, data, course, frame, colours) {
+export function drawCurve(canvas, data, courses, axis, frame, colours, labels) {
   const { pen, width, height } = cleared(canvas);
-  const { time, marks } = data;
-  const panel = new Panel(width, height, time, course);
-  drawAxes(pen, panel, course, colours);
-  for (const mark of marks) {
-    const x = panel.x(mark.time);
-    polyline(
-      pen,
-      [
-        [x, panel.top],
-        [x, panel.bottom],
-      ],
-      colours.faint,
-      1,
-      [3, 3],
-    );
-    if (marks.length <= MOST_WORDS) words(pen, mark.words, x, panel.top - 9, colours.faint, colours.panel, "center");
+  labels.begin(pen, width, height);
+  const panel = new Panel(width, height, axis, courses);
+  drawAxes(pen, panel, axis, courses[0].unit, colours, labels);
+  for (const mark of data.marks) {
+    const x = panel.x(axis.values[mark.frame]);
+    polyline(pen, [[x, panel.top], [x, panel.bottom]], colours.faint, 1, [3, 3]);
+    if (data.marks.length > MOST_WORDS) continue;
+    labels.set(`mark ${mark.frame}`, mark.words, x, 10, colours.faint, 2, "center");
   }
-  drawValues(pen, panel, time, course.high, colours.positive, []);
-  if (course.low !== course.high) drawValues(pen, panel, time, course.low, colours.negative, [6, 3]);
-  if (!course.high.some(Number.isFinite)) {
-    words(
-      pen,
-      "open at all times",
-      (panel.left + panel.right) / 2,
-      panel.top + 24,
-      colours.faint,
-      colours.panel,
-      "center",
-    );
-  }
-  drawPeak(pen, panel, time, course, true, colours);
-  drawPeak(pen, panel, time, course, false, colours);
-  const x = panel.x(time[frame]);
-  polyline(
-    pen,
-    [
-      [x, panel.top],
-      [x, panel.bottom],
-    ],
-    colours.accent,
-    1.5,
-  );
-  for (const values of new Set([course.high, course.low])) {
+  courses.forEach((course, k) => {
+    const [name, dash] = PENS[k % PENS.length];
+    if (course.low !== course.high) {
+      drawBand(pen, panel, course, colours[name]);
+      drawValues(pen, panel, course.low, colours[name], dash);
+    }
+    drawValues(pen, panel, course.high, colours[name], dash);
+    if (!course.high.some(Number.isFinite)) {
+      const middle = (panel.left + panel.right) / 2;
+      labels.set(`open ${k}`, "open at all times", middle, panel.top + 24 + 18 * k, colours.faint, 3, "center");
+    }
+    drawPeak(pen, panel, course, true, colours[name], colours, labels, 5 - k);
+    drawPeak(pen, panel, course, false, colours[name], colours, labels, 4.5 - k);
+  });
+  const x = panel.x(axis.values[frame]);
+  polyline(pen, [[x, panel.top], [x, panel.bottom]], colours.accent, 1.5);
+  for (const values of new Set(courses.flatMap((course) => [course.high, course.low]))) {
     if (Number.isFinite(values[frame])) ring(pen, x, panel.y(values[frame]), 4, colours.accent, colours.panel, 1.5);
   }
+  labels.write(colours.panel);
   return panel;
 }

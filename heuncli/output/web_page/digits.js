@@ -1,4 +1,4 @@
-/** @file Numbers as text, to the digits that the run can stand behind: the same rules as in the tables of heun run. */
+/** @file Numbers as text, to the digits that a reader compares and the run can stand behind. */
 
 const DIGITS = 6;
 
@@ -28,6 +28,11 @@ function signed(text) {
   return text.startsWith("-") ? `−${text.slice(1)}` : text;
 }
 
+/** A number with as many digits as the page holds. @param {number} value @returns {string} */
+export function whole(value) {
+  return signed(String(Number(value.toPrecision(DIGITS))));
+}
+
 /** A number of an axis or a scale, short. @param {number} value @returns {string} */
 export function short(value) {
   if (value === 0) return "0";
@@ -35,9 +40,9 @@ export function short(value) {
   return signed(size >= 1e6 || size < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(4))));
 }
 
-/** An instant, to a hundred-thousandth of the run. @param {number} t [s] @param {number} span [s] @returns {string} */
-export function instant(t, span) {
-  const decimals = span > 0 ? Math.min(20, Math.max(0, 5 - Math.ceil(Math.log10(span)))) : DIGITS;
+/** An instant, to a part of the run. @param {number} t [s] @param {number} span [s] @param {number} places of it */
+export function instant(t, span, places = 5) {
+  const decimals = span > 0 ? Math.min(20, Math.max(0, places - Math.ceil(Math.log10(span)))) : DIGITS;
   const text = t.toFixed(decimals);
   return signed(text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text);
 }

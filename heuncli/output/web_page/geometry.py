@@ -4,6 +4,7 @@ extent.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -14,7 +15,7 @@ from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.symbols import SYMBOLS
 from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_coupling_forces
-from heuncli.output.machine_geometry.machine import BodyGeometry, Machine, make_machine
+from heuncli.output.machine_geometry.machine import BodyGeometry, LineGeometry, Machine, make_machine
 from heuncli.output.machine_geometry.marks import Mark
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, compute_span_ends
@@ -23,6 +24,8 @@ from heuncli.output.web_page.packing import pack_points
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels
 
 FINE_FACES, FEW_BODIES = 48, 8  # faces about an axis, used up to this number of bodies
 DRAWN_PRECISION = 1e-7  # relative precision of points that are drawn (float32)
@@ -59,7 +62,7 @@ def _pack_ends(link: Any, body_numbers: Mapping[str, int]) -> dict[str, Any]:
 
 
 def make_page_scene(
-    machine: Machine, spec: Spec, results: Results, poses: Poses, normal: Array | None = None
+    machine: Machine, spec: Spec, results: Results, poses: Poses, labels: Labels, normal: Array | None = None
 ) -> dict[str, Any]:
     """Make the scene in the form that the page's scripts read; bodies are referred to by number, the ground by -1.
 
@@ -68,7 +71,11 @@ def make_page_scene(
     body_numbers = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
     topologies = Topologies()
     rolling = {wheel.wheel.body for wheel in spec.rolling.values()}
-    bodies = [_make_body(body, results, topologies, body.name in rolling) for body in machine.bodies]
+    bodies = [
+        {"caption": describe_object("bodies", body.name, labels)}
+        | _make_body(body, results, topologies, body.name in rolling)
+        for body in machine.bodies
+    ]
     joint_numbers = {joint.name: k for k, joint in enumerate(machine.joints)}
     belts = {belt.name for belt in machine.belts}
     ropes = {name for name, joint in spec.joints.items() if joint.tension_only}
@@ -76,20 +83,19 @@ def make_page_scene(
         "bodies": bodies,
         "topologies": topologies.to_lists(),
         "joints": [
-            {"name": j.name, "kind": j.kind}
+            {"name": j.name, "caption": describe_object("joints", j.name, labels), "kind": j.kind}
             | _pack_ends(j, body_numbers)
             | {"axis": _to_floats(j.axis), "rope": j.name in ropes}
             for j in machine.joints
         ],
         "lines": [
-            {"name": x.name, "kind": LOAD_KINDS[x.kind].symbols[0]} | _pack_ends(x, body_numbers) for x in machine.lines
+            {"name": x.name, "kind": _find_line_symbol(x, spec)} | _pack_ends(x, body_numbers) for x in machine.lines
         ],
         "paths": [pack_points(path) for path in machine.paths],
         "belts": [
             {
                 "body": body_numbers[belt.carrier],
                 "strands": pack_points(belt.strands),
-                "run": pack_points(belt.compute_travel(results.coordinates)),
             }
             for belt in machine.belts
         ],
@@ -103,11 +109,18 @@ def make_page_scene(
         "ground": [{"name": name, "at": _to_floats(point)} for name, point in machine.ground_points.items()],
         "gravity": _to_floats(np.array(spec.gravity)),
         "pulls": [
-            _make_coupling_force(pull, belts) for pull in iter_coupling_forces(machine, poses, results.couplings)
+            _make_coupling_force(pull, belts, labels)
+            for pull in iter_coupling_forces(machine, poses, results.couplings)
         ],
         "normal": _find_common_pin_axis(machine, poses) if normal is None else _to_floats(normal),
         **_compute_extent(machine, poses),
     }
+
+
+def _find_line_symbol(line: LineGeometry, spec: Spec) -> str:
+    """Find the symbol of a load between two points; that of a damped one may differ."""
+    is_damped = bool(getattr(spec.forces[line.name], "damping", 0.0))
+    return LOAD_KINDS[line.kind].symbols[-1 if is_damped else 0]
 
 
 def _to_floats(vector: Array) -> list[float]:
@@ -126,7 +139,7 @@ def _make_body(body: BodyGeometry, results: Results, topologies: Topologies, is_
     return {
         "name": body.name,
         "places": pack_points(pose["position"]),
-        "attitudes": pack_points(pose["quaternion"]),
+        "attitudes": pack_points(pose["quaternion"], 4),
         "surfaces": [_make_surface(surface, topologies) for surface in body.surfaces],
         "bars": [pack_points(line) for line in body.bars],
         "lines": [pack_points(line) for line in (*body.lines, *body.pitch_circles, *rolling_edges)],
@@ -147,7 +160,7 @@ def _make_rope(rope: RopeGeometry, poses: Poses, body_numbers: Mapping[str, int]
     return {
         "name": rope.name,
         "count": len(rope.spans),
-        "ends": pack_points(compute_span_ends(rope, poses)),
+        "ends": pack_points(compute_span_ends(rope, poses), 6 * len(rope.spans)),
         "arcs": [
             {
                 "before": arc.span, "body": body_numbers[arc.body], "center": _to_floats(arc.centre),
@@ -175,7 +188,7 @@ def is_constant(vectors: Array) -> bool:
     return bool(np.abs(vectors - vectors[0]).max() <= DRAWN_PRECISION * float(np.abs(vectors[0]).max()))
 
 
-def _make_coupling_force(pull: CouplingForce, belts: Collection[str]) -> dict[str, Any]:
+def _make_coupling_force(pull: CouplingForce, belts: Collection[str], labels: Labels) -> dict[str, Any]:
     """Make the entry of a coupling force ON a body: its point of action at all frames, and the path of the row of its
     values.
 
@@ -186,7 +199,13 @@ def _make_coupling_force(pull: CouplingForce, belts: Collection[str]) -> dict[st
         "row": f"couplings.{pull.name}.{'tight' if belt else f'on.{pull.body}.force'}",
         "at": pack_points(pull.points),
     }
-    return {"name": pull.name, "on": pull.body, **reference, "forces": pack_points(pull.forces) if belt else None}
+    coupling, body = describe_object("couplings", pull.name, labels), describe_object("bodies", pull.body, labels)
+    return {
+        "name": pull.name,
+        "caption": f"{coupling} on {body}",
+        **reference,
+        "forces": pack_points(pull.forces) if belt else None,
+    }
 
 
 def _collect_symbols(machine: Machine) -> set[str]:
@@ -209,23 +228,30 @@ def collect_corners(body: BodyGeometry) -> Array:
 
 def _compute_extent(machine: Machine, poses: Poses) -> dict[str, Any]:
     """Compute center and half edges of a box that holds the machine at all frames, and the radius of a ball that does
-    [m].
+    [m]. Points of the ground that are farther away than the machine is large do not count.
     """
     instants = np.linspace(0, len(poses.times) - 1, min(len(poses.times), MAX_EXTENT_FRAMES)).round().astype(int)
+    bodies = [
+        poses.locate_points(body.name, collect_corners(body), k) for body in machine.bodies for k in instants.tolist()
+    ]
+    centre, _, radius = _enclose(np.concatenate(bodies)) if bodies else (np.zeros(3), np.zeros(3), math.inf)
     clouds = [point[None] for point in machine.ground_points.values()]
     clouds += machine.paths
     clouds += [compute_span_ends(rope, poses).reshape(-1, 3) for rope in machine.ropes]
     clouds += [mark.locate(poses)[0] for mark in machine.marks]
     clouds += [joint.p[None] for joint in machine.joints if joint.a == GROUND]
     clouds += [joint.q[None] for joint in machine.joints if joint.b == GROUND]
-    for body in machine.bodies:
-        corners = collect_corners(body)
-        clouds += [poses.locate_points(body.name, corners, k) for k in instants.tolist()]
-    cloud = np.concatenate(clouds)
-    low, high = cloud.min(axis=0), cloud.max(axis=0)
-    centre, half = 0.5 * (low + high), 0.5 * (high - low)
-    radius = float(np.sqrt(((cloud - centre) ** 2).sum(axis=1).max()))
+    around = np.concatenate([np.zeros((0, 3)), *clouds])
+    near = around[np.sqrt(((around - centre) ** 2).sum(axis=1)) <= 2.0 * (radius or math.inf)]
+    centre, half, radius = _enclose(np.concatenate([*bodies, near]))
     return {"center": _to_floats(centre), "half": _to_floats(half), "radius": radius or 1.0}
+
+
+def _enclose(cloud: Array) -> tuple[Array, Array, float]:
+    """Compute center and half edges of the box of points (n, 3), and the largest distance from its center."""
+    low, high = cloud.min(axis=0), cloud.max(axis=0)
+    centre = 0.5 * (low + high)
+    return centre, 0.5 * (high - low), float(np.sqrt(((cloud - centre) ** 2).sum(axis=1).max()))
 
 
 def _find_common_pin_axis(machine: Machine, poses: Poses) -> list[float] | None:

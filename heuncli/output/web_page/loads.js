@@ -2,7 +2,7 @@
 
 import { roundBelow, short, written } from "./digits.js";
 import { points, stands } from "./poses.js";
-import { arrow, polyline, ring, words } from "./strokes.js";
+import { arrow, polyline, ring } from "./strokes.js";
 import { plus, times } from "./vectors.js";
 
 const HIGHEST = 0.28; // of the scene's radius: the largest load of the run
@@ -54,13 +54,13 @@ function piecesOf(cuts, values) {
 }
 
 /** The diagram along a run of cuts. */
-function drawDiagram(pen, view, poses, section, load, frame, colours, metres) {
+function drawDiagram(pen, view, poses, section, load, frame, colours, metres, labels) {
   const axis = section[DRAWN_ALONG[load.label] ?? "first"];
   const off = view
     .direct(points(poses, section.body, axis))
     .slice(0, 2)
     .map((c) => c * metres);
-  for (const piece of piecesOf(section.cuts, along(section, load, frame))) {
+  for (const [number, piece] of piecesOf(section.cuts, along(section, load, frame)).entries()) {
     const positive = piece.reduce((sum, [, value]) => sum + value, 0) >= 0;
     const colour = positive ? colours.positive : colours.negative;
     const feet = piece.map(([at]) => view.project(stands(poses, section.body, at)).slice(0, 2));
@@ -78,15 +78,8 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres) {
     const middle = tops[Math.floor(tops.length / 2)];
     const foot = feet[Math.floor(tops.length / 2)];
     if (Math.hypot(middle[0] - foot[0], middle[1] - foot[1]) > 20) {
-      words(
-        pen,
-        positive ? "+" : "−",
-        (middle[0] + foot[0]) / 2,
-        (middle[1] + foot[1]) / 2,
-        colour,
-        colours.panel,
-        "center",
-      );
+      const [x, y] = [(middle[0] + foot[0]) / 2, (middle[1] + foot[1]) / 2];
+      labels.set(`sign ${number}`, positive ? "+" : "−", x, y, colour, 0.5, "center");
     }
   }
   polyline(
@@ -98,8 +91,13 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres) {
   return off;
 }
 
+/** A load with its number and unit. */
+function textOf(load, value) {
+  return `${load.label} ${written(value * load.size, load.style)} ${load.unit === "1" ? "" : load.unit}`.trim();
+}
+
 /** The largest of a frame, with its number. */
-function tellLargest(pen, view, poses, section, load, frame, colours, off) {
+function tellLargest(pen, view, poses, section, load, frame, colours, off, labels) {
   const values = along(section, load, frame);
   let best = -1;
   for (let k = 0; k < values.length; k += 1) {
@@ -110,23 +108,22 @@ function tellLargest(pen, view, poses, section, load, frame, colours, off) {
   const [tx, ty] = [x + values[best] * off[0], y + values[best] * off[1]];
   const colour = values[best] < 0 ? colours.negative : colours.positive;
   ring(pen, tx, ty, 3, colour, colours.panel, 1);
-  const text = `${load.label} ${written(values[best] * load.size, load.style)} ${load.unit === "1" ? "" : load.unit}`;
-  const left = tx > view.width / 2 && view.width < 600;
-  words(pen, text, tx + (left ? -8 : 8), ty + (ty > y ? 10 : -10), colour, colours.panel, left ? "right" : "left");
+  labels.add(`load ${load.path}`, textOf(load, values[best]), tx, ty, colour, 4);
 }
 
 /**
  * A load of a section at a frame.
- * @param {{section: object, load: object, cut: number, size: number, tell: boolean}} chosen
+ * @param {{section: object, load: object, cut: number, size: number, values: boolean, frame: number}} chosen
  */
-export function drawLoad(pen, view, poses, chosen, frame, colours) {
-  const { section, load, cut, size, tell } = chosen;
+export function drawLoad(pen, view, poses, chosen, colours, labels) {
+  const { section, cut, size, values: tell, frame } = chosen;
+  const load = chosen.force;
   const metres = largest(load) > 0 ? (HIGHEST * view.radius * size) / largest(load) : 0;
   const at = stands(poses, section.body, section.cuts[cut] ?? section.cuts[0]);
   const [x, y] = view.project(at);
   if (section.s) {
-    const off = drawDiagram(pen, view, poses, section, load, frame, colours, metres);
-    if (tell) tellLargest(pen, view, poses, section, load, frame, colours, off);
+    const off = drawDiagram(pen, view, poses, section, load, frame, colours, metres, labels);
+    if (tell) tellLargest(pen, view, poses, section, load, frame, colours, off, labels);
     ring(pen, x, y, 4.5, "transparent", colours.accent, 2);
     return;
   }
@@ -138,43 +135,19 @@ export function drawLoad(pen, view, poses, chosen, frame, colours) {
   const colour = value < 0 ? colours.negative : colours.positive;
   const heads = load.unit.includes("·") ? 2 : 1;
   arrow(pen, [x, y], [x + dx, y + dy], near * view.scale, colour, colours.panel, heads, value < 0 ? [6, 3] : []);
-  const text = `${load.label} ${written(value * load.size, load.style)} ${load.unit === "1" ? "" : load.unit}`;
-  if (tell) words(pen, text, x + dx + 8, y + dy - 9, colour, colours.panel);
+  if (tell) labels.add(`load ${load.path}`, textOf(load, value), x + dx, y + dy, colour, 4);
 }
 
 /** How high how much of a load is, in the corner. @param {number} line which from below */
-export function drawLoadScale(pen, view, { load, size }, colours, line) {
+export function drawLoadScale(pen, view, { force: load, size }, colours, line, labels) {
   if (!(largest(load) > 0)) return;
   const pixels = (HIGHEST * view.radius * size * view.scale) / largest(load) / load.size;
   const amount = roundBelow(90 / pixels);
   const [x, y] = [view.width - 14, view.height - 16 - 20 * line];
-  polyline(
-    pen,
-    [
-      [x - amount * pixels, y],
-      [x, y],
-    ],
-    colours.positive,
-    2.2,
-  );
-  for (const end of [x - amount * pixels, x])
-    polyline(
-      pen,
-      [
-        [end, y - 4],
-        [end, y + 4],
-      ],
-      colours.positive,
-      1.5,
-    );
+  const begin = x - amount * pixels;
+  polyline(pen, [[begin, y], [x, y]], colours.positive, 2.2);
+  for (const end of [begin, x]) polyline(pen, [[end, y - 4], [end, y + 4]], colours.positive, 1.5);
   const unit = load.unit === "1" ? "" : ` ${load.unit}`;
-  words(
-    pen,
-    `${load.label} ${short(amount)}${unit} =`,
-    x - amount * pixels - 8,
-    y,
-    colours.positive,
-    colours.panel,
-    "right",
-  );
+  const text = `${load.label} ${short(amount)}${unit} =`;
+  labels.set("scale of the section", text, begin - 8, y, colours.positive, 10, "right");
 }

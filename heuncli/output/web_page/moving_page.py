@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import PurePath
+from typing import Any, Literal
 
 import numpy as np
 
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
 from heuncli.output.machine_geometry.poses import extract_poses
 from heuncli.output.machine_geometry.views import find_motion_plane
 from heuncli.output.tables.heading import make_heading
 from heuncli.output.tables.table_plans import SECTIONS
+from heuncli.output.web_page.acting import make_acting_loads
 from heuncli.output.web_page.cuts import make_sections
 from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_frames, resample_at_frames
 from heuncli.output.web_page.geometry import make_page_machine, make_page_scene
-from heuncli.output.web_page.number_rows import make_blocks, make_impact_page_tables
-from heuncli.output.web_page.packing import pack_values
-from heuncli.output.web_page.page_assembly import assemble_page
+from heuncli.output.web_page.number_rows import make_blocks, make_impact_page_tables, split_heading
+from heuncli.output.web_page.packing import pack_exact
+from heuncli.output.web_page.page_assembly import FILM_SCRIPT, assemble_page
 from heuncli.output.web_page.peaks import find_peaks
 from heuncli.results.results import Array, Results
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
@@ -28,22 +31,53 @@ from heuncli.study.queries.study import Study
 
 MAX_TIME_MARKS = 400  # events and impacts on the time line
 PEAKS_NOTE = "Too many loads to search for maxima between output times: loads may be larger there."
+DIGEST_DIGITS = 12
 MAX_IMPACTS = 12  # whose tables are included
 HEADING_NOTES = ("stiff", "split", "status", "warning")  # lines of the heading that are shown as notes
 
 
-def render_moving_page(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES) -> str:
-    """Render the page of a study that is solved for motion and loads, with at most `max_frames` frames."""
-    return assemble_page(study.results.title, make_page_data(study, units, max_frames))
+class Film(NamedTuple):
+    """What is drawn of the machine: one picture (png) or gif, or the pictures (frames) of a video.
+
+    width, height: [pixels]; rate: pictures a second; at: the instant of one picture [s], None: of the greatest load
+    """
+
+    kind: Literal["png", "gif", "frames"]
+    width: int
+    height: int
+    rate: float
+    at: float | None = None
 
 
-def make_page_data(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES) -> dict[str, Any]:
-    """Make all data of a page: plain dictionaries and lists, with arrays packed as text."""
+def render_moving_page(studies: Mapping[str, Study], units: Units, max_frames: int = MAX_PAGE_FRAMES) -> str:
+    """Render the page of studies that are solved for motion and loads, by the names of their load cases.
+
+    max_frames: instants that the page holds of each case
+    """
+    runs = [make_page_data(study, units, max_frames, case) for case, study in studies.items()]
+    title = next(iter(studies.values())).results.title
+    return assemble_page(title, runs[0] if len(runs) == 1 else {"runs": runs})
+
+
+def render_film_page(study: Study, units: Units, film: Film, case: str = "") -> str:
+    """Render the page that draws the pictures of a film, or one picture, and leaves them as text."""
+    instants = () if film.at is None else (film.at,)
+    data = {**make_page_data(study, units, case=case, instants=instants), "film": film._asdict()}
+    return assemble_page(study.results.title, data, FILM_SCRIPT)
+
+
+def make_page_data(
+    study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES, case: str = "", instants: Sequence[float] = ()
+) -> dict[str, Any]:
+    """Make all data of a case: plain dictionaries and lists, with arrays packed.
+
+    instants: [s], beside those of the run, at which a frame is needed
+    """
     original, spec, scene = study.results, study.spec, study.setup.scene
     labels = replace(make_labels(spec), units=units)
     certain = find_stated_errors(original, labels, study.magnitudes)
     peaks = find_peaks(study, labels, certain)
-    frames = choose_frames(study, peaks.times, max_frames)
+    frames = choose_frames(study, np.sort([*peaks.times, *instants]), max_frames)
     results = resample_at_frames(study, frames.times)
     horizon = original.horizon
     return {
@@ -54,28 +88,46 @@ def make_page_data(study: Study, units: Units, max_frames: int = MAX_PAGE_FRAMES
             if text
         ],
         "version": original.version,
-        "file": escape(str(original.spec.get("path", ""))),
+        "file": escape(_find_file_name(original)),
+        "case": escape(case),
+        "alerts": sum(1 for _ in _iter_notes(original, horizon)),
+        "worst": _find_worst_frame(results),
         "told": [*frames.notes, *[PEAKS_NOTE] * (not peaks.is_searched), *_iter_notes(original, horizon)],
         "horizon": horizon,
         "count": len(frames.times),
-        "time": pack_values(frames.times),
+        "time": pack_exact(frames.times),
         "marks": list(_iter_time_marks(original, frames)),
         "length": list(units.find("m")),
         "scene": make_page_scene(
-            make_page_machine(spec, scene), spec, results, extract_poses(results), find_motion_plane(scene)
+            make_page_machine(spec, scene), spec, results, extract_poses(results), labels, find_motion_plane(scene)
         ),
+        "acting": make_acting_loads(study, frames.times, labels, certain),
         "blocks": make_blocks(results, labels, certain),
         "blows": list(_iter_impacts(original, frames, labels, certain)),
         "sections": make_sections(spec, results, labels, certain),
-        "cutting": SECTIONS.heading(results, labels),
+        "cutting": split_heading(SECTIONS.heading(results, labels)),
         "foundation": _find_moment_center(results),
     }
 
 
 def _format_spec_digest(results: Results) -> str:
-    """Format the path and the digest of the spec that was solved."""
+    """Format the name and the first digits of the digest of the spec that was solved."""
     digest = results.spec.get("sha256")
-    return f"{results.spec.get('path', '')}, sha256 {digest}" if digest else ""
+    return f"{_find_file_name(results)}, sha256 {digest[:DIGEST_DIGITS]}" if digest else ""
+
+
+def _find_file_name(results: Results) -> str:
+    """Return the name of the spec's file, without its folder."""
+    return PurePath(str(results.spec.get("path", ""))).name
+
+
+def _find_worst_frame(results: Results) -> int:
+    """Find the frame at which the sum of all joint forces, each relative to its own largest, is greatest."""
+    sums = np.zeros(len(results.time))
+    for joint in results.joints.values():
+        sizes = np.nan_to_num(np.sqrt((np.asarray(joint["force"]) ** 2).sum(axis=1))) if "force" in joint else sums
+        sums = sums + sizes
+    return int(np.argmax(sums))
 
 
 def _iter_notes(results: Results, horizon: float | None) -> Iterator[str]:

@@ -1,13 +1,15 @@
 """The numbers of a page: the rows of the tables of a run, each with its path, all digits, and the style to show them
 in.
 
-A row is one quantity over the frames: a number, or a vector with its components. Its style is that of the tables: no
-more digits than the stated error of the run justifies (study/quantities/digits.py). Values are in SI; each row also has
-its display unit.
+A row is one quantity over the frames: a number, or a vector with its components. It is shown as a reader needs it, with
+four significant digits of the largest number of its object (study/quantities/reader_numbers.py), and fewer where the
+stated error of the run does not justify them. Values are in SI; each row also has its display unit.
 """
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -18,6 +20,7 @@ from heuncli.output.tables.table_blocks import choose_styles
 from heuncli.output.tables.table_plans import AXIS, IMPULSES, PLANS, TablePlan
 from heuncli.output.web_page.packing import pack_values
 from heuncli.results.results import Block, Results
+from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.channels import (
     POSITIONS,
     Channel,
@@ -25,11 +28,15 @@ from heuncli.study.quantities.channels import (
     iter_impulse_channels,
     make_section_channels,
 )
-from heuncli.study.quantities.digits import OPEN, StatedErrors, Style
+from heuncli.study.quantities.digits import StatedErrors, Style, largest_magnitude
 from heuncli.study.quantities.labels import Labels
+from heuncli.study.quantities.reader_numbers import DIGITS, choose_reader_style
 
 ZERO_ROWS_PREFIX = "All values 0: "
 EXCLUDED_KINDS = frozenset({"bodies", "points", "sections"})  # sections have rows of their own
+HEADING = re.compile(r"[A-Z][A-Z ]*[A-Z](?![a-z])")  # the words that head a table; its signs and axes follow
+LARGE, SMALL = 1e7, 1e-3  # families beyond these are written with an exponent
+RPM = 30.0 / math.pi  # of a rad/s
 
 
 def make_blocks(results: Results, labels: Labels, certain: StatedErrors) -> list[dict[str, Any]]:
@@ -39,7 +46,7 @@ def make_blocks(results: Results, labels: Labels, certain: StatedErrors) -> list
     found = [_make_block(plan, channels, plan.heading(results, labels), labels, certain) for plan in plans]
     sums = make_sums_table(results, certain)
     if sums is not None:
-        found.append({"heading": sums.heading, "groups": [], "told": list(sums.notes), "missing": OPEN})
+        found.append({**split_heading(sums.heading), "kind": "joints", "groups": [], "told": list(sums.notes)})
     return [block for block in found if block["groups"] or block["told"]]
 
 
@@ -48,12 +55,12 @@ def make_impact_page_tables(
 ) -> list[dict[str, Any]]:
     """Make the tables of one impact; their numbers hold only at its instant."""
     channels = [item for item in iter_impulse_channels(impact, labels) if not item.cause]
-    prefix = f"AT {float(impact['time']):.6g} s, {', '.join(impact['names']) or 'impulse'}: "
     tables = []
     for plan in IMPULSES:
         if plan.kind in ("foundation", "joints", "stops", "sections") and plan.only is None:
             plan_channels = [item for item in channels if item.quantity in plan.quantities and not item.has_cuts]
-            block = _make_block(plan, plan_channels, prefix + plan.heading(results, labels), labels, certain)
+            block = _make_block(plan, plan_channels, plan.heading(results, labels), labels, certain)
+            block["heading"] += f" at {float(impact['time']):.6g} s, {', '.join(impact['names']) or 'impulse'}"
             tables += [_prefix_paths(block, number)] if block["groups"] else []
     return tables
 
@@ -72,6 +79,7 @@ def _make_block(
     """Make one table: heading, groups of rows by object, the list of rows that are zero at all times, and the text for
     nan.
     """
+    head = {**split_heading(heading), "kind": plan.kind, "missing": plan.missing[0]}
     channels_by_name: dict[str, list[Channel]] = {}
     for item in channels:
         if item.kind == plan.kind and item.quantity in plan.quantities and _is_in_plan(plan, item.name):
@@ -89,7 +97,7 @@ def _make_block(
         and channels_by_name
         and all(np.isnan(item.values).all() for members in channels_by_name.values() for item in members)
     ):
-        return {"heading": heading, "groups": [], "told": [plan.missing[1]], "missing": plan.missing[0]}
+        return {**head, "groups": [], "told": [plan.missing[1]]}
     groups, zero_labels = [], []
     for name, members in channels_by_name.items():
         label = name.replace("supports.", "support ", 1).replace("elements.", "element ", 1)
@@ -101,7 +109,15 @@ def _make_block(
             title = "" if plan.only else label or ("total" if plan.is_foundation else "")
             groups.append({"name": title, "note": plan.note(label, labels), "rows": shown})
     notes += [f"{ZERO_ROWS_PREFIX}{', '.join(zero_labels)}"] if zero_labels else []
-    return {"heading": heading, "groups": groups, "told": notes, "missing": plan.missing[0]}
+    return {**head, "groups": groups, "told": notes}
+
+
+def split_heading(heading: str) -> dict[str, str]:
+    """Split the heading of a table into its words and what it says of signs and axes."""
+    words = HEADING.match(heading)
+    if words is None:
+        return {"heading": heading, "note": ""}
+    return {"heading": words[0].capitalize(), "note": heading[words.end() :].strip()}
 
 
 def _is_in_plan(plan: TablePlan, name: str) -> bool:
@@ -118,27 +134,76 @@ def iter_page_rows(
     numbers_of = [channel.numbers for channel in channels]
     all_numbers = [number for numbers in numbers_of for number in numbers]
     styles = iter(choose_styles(all_numbers, np.zeros((0, len(all_numbers))), certain))
+    scales: dict[str, float] = {}
+    for channel in channels:
+        scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest_magnitude(channel.values))
+    is_turning = any(
+        channel.quantity == "angle" and float(np.ptp(channel.values)) >= 2.0 * math.pi for channel in channels
+    )
     for channel, numbers in zip(channels, numbers_of, strict=True):
         style, *_ = [next(styles) for _ in numbers]
-        yield _make_row(channel, labels, style), any(not is_zero(number, style, certain) for number in numbers)
+        shown = choose_shown_style(channel, scales[channel.unit], style, labels, certain)
+        if is_turning and channel.unit == "rad/s" and not labels.units.is_chosen("rad/s"):
+            shown = choose_rotational_speed(scales[channel.unit], certain.find_error(channel))
+        yield _make_row(channel, labels, shown), any(not is_zero(number, style, certain) for number in numbers)
 
 
-def _make_row(item: Channel, labels: Labels, style: Style) -> dict[str, Any]:
-    unit, size = labels.units.find(item.unit)
-    parts = [[name, pack_values(column)] for name, column in zip(item.components, item.values.T, strict=True)]
+def _make_row(item: Channel, labels: Labels, shown: dict[str, Any]) -> dict[str, Any]:
+    largest = largest_magnitude(item.values)
+    parts = [
+        [
+            name,
+            pack_values(column, largest=largest),
+            describe_path(f"{item.path}.{name}" if name else item.path, labels),
+        ]
+        for name, column in zip(item.components, item.values.T, strict=True)
+    ]
     label = item.quantity.replace("_", " ")
     has_magnitude = len(parts) > 1 and item.quantity not in POSITIONS
     return {
-        "path": item.path, "label": label, "unit": unit, "size": size, "style": to_style_list(style), "parts": parts,
+        "path": item.path, "label": label, "caption": describe_path(item.path, labels), **shown, "parts": parts,
         "sized": has_magnitude,
     }  # fmt: skip
 
 
-def to_style_list(style: Style) -> list[Any]:
-    """Return a style in the form that the page reads: decimals, use of an exponent, rounding threshold, any digit
-    known.
+def choose_shown_style(
+    channel: Channel, scale: float, style: Style, labels: Labels, certain: StatedErrors
+) -> dict[str, Any]:
+    """Choose unit, size and style of a family of numbers whose largest magnitude is `scale`, SI.
+
+    style: the one of the tables, which says what is rounding, and whether any digit is known
     """
-    return [style.decimals, style.has_exponent, style.rounding, style.is_known]
+    reader = choose_reader_style(channel.unit, scale, labels.units, certain.find_error(channel))
+    rounding = style.rounding * reader.size / labels.units.find(channel.unit)[1]
+    return _to_shown(reader.unit, reader.size, scale, reader.error, (rounding, style.is_known))
+
+
+def choose_family_style(kind: str, unit: str, scale: float, labels: Labels, certain: StatedErrors) -> dict[str, Any]:
+    """Choose unit, size and style of numbers of a kind and unit whose largest magnitude is `scale`, SI."""
+    reader = choose_reader_style(unit, scale, labels.units, certain.error_of(kind, unit))
+    rounding = reader.size * certain.rounding_of(unit)
+    return _to_shown(reader.unit, reader.size, scale, reader.error, (rounding, reader.error < reader.size * scale))
+
+
+def choose_rotational_speed(scale: float, error: float) -> dict[str, Any]:
+    """Choose the style of the speed of a shaft that turns round and round: rpm."""
+    return _to_shown("rpm", RPM, scale, RPM * error, (0.0, error < scale))
+
+
+def _to_shown(unit: str, size: float, scale: float, error: float, known: tuple[float, bool]) -> dict[str, Any]:
+    """Return unit, size and style in the form that the page reads: decimals, use of an exponent, rounding threshold,
+    any digit known.
+
+    error: in the display unit; known: rounding in the display unit, and whether any digit is known
+    """
+    shown = size * scale
+    decimals = DIGITS - 1 - math.floor(math.log10(shown)) if shown > 0.0 else 0
+    if 0.0 < error < math.inf:
+        decimals = min(decimals, math.floor(-math.log10(error)))
+    has_exponent = shown > 0.0 and not SMALL <= shown < LARGE
+    return {
+        "unit": unit, "size": size, "style": [decimals if has_exponent else max(decimals, 0), has_exponent, *known],
+    }  # fmt: skip
 
 
 def is_zero(channel: Channel, style: Style, certain: StatedErrors) -> bool:
@@ -156,12 +221,15 @@ def make_section_loads(
     """
     channels = make_section_channels(name, section)
     styles = choose_styles(channels, np.zeros((0, len(channels))), certain)
+    scales: dict[str, float] = {}
+    for channel in channels:
+        scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest_magnitude(channel.values))
     loads = []
     for channel, style in zip(channels, styles, strict=True):
         if not is_zero(channel, style, certain):
-            unit, size = labels.units.find(channel.unit)
             loads.append({
-                "path": channel.path, "label": channel.label, "unit": unit,
-                "size": size, "style": to_style_list(style), "values": pack_values(channel.values),
+                "path": channel.path, "label": channel.label, "caption": describe_path(channel.path, labels),
+                **choose_shown_style(channel, scales[channel.unit], style, labels, certain),
+                "values": pack_values(channel.values, channel.values[0].size),
             })  # fmt: skip
     return loads

@@ -1,4 +1,4 @@
-"""Assemble one page from the files in this folder: template, style, scripts, and the data, escaped so that no name in a
+"""Assemble one page from the files in this folder: template, style, scripts, and the data, encoded so that no name in a
 spec can end the data block.
 
 The scripts are browser modules. Here they are bundled into one script: each becomes a function that returns what it
@@ -11,46 +11,42 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import json
 import re
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from heuncli.base.text_safety import escape
+from heuncli.output.web_page.packing import encode_data
 
 FOLDER = Path(__file__).parent
-TEMPLATE, STYLE, MAIN_SCRIPT = "machine.html", "style.css", "main"
+STYLE = "style.css"
+TEMPLATES = {"main": "machine.html", "film": "film.html"}  # main script -> its page
+MAIN_SCRIPT, FILM_SCRIPT = TEMPLATES
 IMPORT = re.compile(r'^import (\{[^}]*\}) from "\./(\w+)\.js";$', re.MULTILINE)
 EXPORT = re.compile(r"^export ((?:function|class|const) (\w+))", re.MULTILINE)
 PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
-# Characters that could end the data block or be read as markup, with their JSON escapes.
-UNSAFE = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"}
+COMMENT = re.compile(r"^ */\*\*.*?\*/\n", re.MULTILINE | re.DOTALL)  # those of the scripts stay in their files
+INDENT = re.compile(r"^ +", re.MULTILINE)
 
 
-def assemble_page(title: str, data: dict[str, Any]) -> str:
-    """Assemble the page as text. Raises ValueError if the data hold nan or infinity."""
+def assemble_page(title: str, data: dict[str, Any], main_script: str = MAIN_SCRIPT) -> str:
+    """Assemble the page of a main script as text. Raises ValueError if the data hold nan or infinity."""
     parts = {
         "title": html.escape(escape(title)),
         "style": read_page_file(STYLE),
-        "script": bundle_scripts(),
-        "data": to_safe_json(data),
-        "policy": make_security_policy(),
+        "script": bundle_scripts(main_script),
+        "data": encode_data(data),
+        "policy": make_security_policy(main_script),
     }
-    return PLACEHOLDER.sub(lambda place: parts[place[1]], read_page_file(TEMPLATE))
-
-
-def to_safe_json(data: dict[str, Any]) -> str:
-    """Write the data as JSON in ASCII without any character that HTML treats as markup."""
-    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
-    return "".join(UNSAFE.get(letter, letter) for letter in text) if set(text) & UNSAFE.keys() else text
+    return PLACEHOLDER.sub(lambda place: parts[place[1]], read_page_file(TEMPLATES[main_script]))
 
 
 @cache
-def make_security_policy() -> str:
+def make_security_policy(main_script: str = MAIN_SCRIPT) -> str:
     """Make the page's content security policy: only its own style and script are permitted, by their digests."""
     return (
-        f"default-src 'none'; script-src '{_compute_digest(bundle_scripts())}'; style-src "
+        f"default-src 'none'; script-src '{_compute_digest(bundle_scripts(main_script))}'; style-src "
         f"'{_compute_digest(read_page_file(STYLE))}'; "
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
@@ -61,21 +57,21 @@ def _compute_digest(text: str) -> str:
 
 
 @cache
-def bundle_scripts() -> str:
-    """Bundle all scripts into one, inside a function, so that none of their names is global."""
-    return '(() => {\n"use strict";\n' + "".join(map(_wrap_module, sort_scripts())) + "})();\n"
+def bundle_scripts(main_script: str = MAIN_SCRIPT) -> str:
+    """Bundle a main script and all that it needs into one, inside a function, so that none of their names is global."""
+    return '(() => {\n"use strict";\n' + "".join(map(_wrap_module, sort_scripts(main_script))) + "})();\n"
 
 
 def _wrap_module(name: str) -> str:
     """Wrap one script in a function that returns what the script exports."""
     text = read_page_file(f"{name}.js")
     exported = ", ".join(found[2] for found in EXPORT.finditer(text))
-    body = EXPORT.sub(r"\1", IMPORT.sub(r"const \1 = \2_js;", text))
+    body = INDENT.sub("", COMMENT.sub("", EXPORT.sub(r"\1", IMPORT.sub(r"const \1 = \2_js;", text))))
     return f"const {name}_js = (() => {{\n{body}return {{ {exported} }};\n}})();\n"
 
 
-def sort_scripts() -> list[str]:
-    """Sort the names of the scripts so that each follows those that it imports from."""
+def sort_scripts(main_script: str = MAIN_SCRIPT) -> list[str]:
+    """Sort the names of a main script and all that it needs so that each follows those that it imports from."""
     found: dict[str, None] = {}
 
     def add(name: str) -> None:
@@ -84,7 +80,7 @@ def sort_scripts() -> list[str]:
                 add(needed[2])
         found[name] = None
 
-    add(MAIN_SCRIPT)
+    add(main_script)
     return list(found)
 
 

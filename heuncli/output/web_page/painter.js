@@ -111,6 +111,11 @@ export class Painter {
     });
   }
 
+  /** Anything else, by what paints it. @param {number} near [m] @param {() => void} paint */
+  add(near, paint) {
+    this.items.push({ near, paint });
+  }
+
   /** Paint all that was gathered, the farthest first. @param {number} opaque how opaque bodies are, 0 to 1 */
   paint(opaque) {
     this.items.sort((a, b) => a.near - b.near);

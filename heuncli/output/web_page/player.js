@@ -7,14 +7,14 @@ const LONG_ENOUGH = 1.5;
 
 /** The speeds to choose from: times true speed, as words. */
 export const SPEEDS = [
-  [100, "100×"],
-  [10, "10×"],
+  [100, "100 times faster"],
+  [10, "10 times faster"],
   [1, "real time"],
-  [0.5, "1/2×"],
-  [0.1, "1/10×"],
-  [0.01, "1/100×"],
-  [0.001, "1/1000×"],
-  [0.0001, "1/10000×"],
+  [0.5, "2 times slower"],
+  [0.1, "10 times slower"],
+  [0.01, "100 times slower"],
+  [0.001, "1000 times slower"],
+  [0.0001, "10000 times slower"],
 ];
 
 /** The speed that is proposed for a run that lasts so long [s]: true speed, unless nothing could be seen. */

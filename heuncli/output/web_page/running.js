@@ -1,12 +1,10 @@
-/** @file What runs over the machine: belts, ropes; and symbols: stops, latches, the ground, what acts in joints. */
+/** @file Belts and ropes, as full lines; symbols: stops, latches, the ground, what acts in joints. */
 
 import { points, stands } from "./poses.js";
-import { polyline, shape, words } from "./strokes.js";
+import { polyline, shape } from "./strokes.js";
 import { cross, dot, minus, plus, times, unit } from "./vectors.js";
 
 const STEP = 0.1; // rad: of an arc as it is drawn
-const DASHES = 14; // in the scene's radius: by which it is seen that a rope runs
-const GAP = 0.16; // of a dash
 const WIDTH = 2;
 const SIDE = 0.2; // of a direction that is seen: what shows less of it has no side on the screen
 
@@ -22,28 +20,17 @@ function placeOf(values, width, i, shown) {
   return [0, 1, 2].map((k) => between(values, width, i + k, shown));
 }
 
-/** A line through world places as a rope, whose dashes run with it; run: what has gone through its beginning [m]. */
-function drawRunning(pen, view, line, run, colours) {
+/** A line through world places, given to the painter as nearly as its middle is. */
+function paintStrand(painter, view, line, colours) {
   const seen = line.map((place) => view.project(place));
-  let [long, pixels] = [0, 0];
-  for (let k = 1; k < line.length; k += 1) {
-    long += Math.hypot(...minus(line[k], line[k - 1]));
-    pixels += Math.hypot(seen[k][0] - seen[k - 1][0], seen[k][1] - seen[k - 1][1]);
-  }
-  if (!(long > 0)) return 0;
-  const dash = (view.radius / DASHES) * (pixels / long);
-  pen.lineDashOffset = -run * (pixels / long);
-  polyline(pen, seen, colours.ink, WIDTH, [dash * (1 - GAP), dash * GAP]);
-  pen.lineDashOffset = 0;
-  return long;
+  const near = seen.reduce((sum, place) => sum + place[2], 0) / seen.length;
+  painter.add(near, (pen) => polyline(pen, seen, colours.ink, WIDTH));
 }
 
-/** A belt: its strands in the axes of what carries its pulleys, each as it runs. */
-export function drawBelt(pen, view, poses, { body, strands, run }, shown, colours) {
-  const ran = between(run, 1, 0, shown);
+/** A belt: its strands in the axes of what carries its pulleys. */
+export function paintBelt(painter, view, poses, { body, strands }, colours) {
   for (let i = 0; i < strands.length; i += 6) {
-    const line = [i, i + 3].map((k) => stands(poses, body, strands.subarray(k, k + 3)));
-    drawRunning(pen, view, line, ran, colours);
+    paintStrand(painter, view, [i, i + 3].map((k) => stands(poses, body, strands.subarray(k, k + 3))), colours);
   }
 }
 
@@ -63,20 +50,19 @@ function arc(center, axis, start, end) {
   return found;
 }
 
-/** A rope: its strands and arcs from end to end; its dashes are counted from its first end. */
-export function drawRope(pen, view, poses, rope, shown, colours) {
+/** A rope: its strands and arcs from end to end. */
+export function paintRope(painter, view, poses, rope, shown, colours) {
   const width = 6 * rope.count;
   const ends = [];
   for (let i = 0; i < width; i += 3) ends.push(placeOf(rope.ends, width, i, shown));
   const arcs = new Map(rope.arcs.map((each) => [each.before, each]));
-  let run = 0;
   for (let k = 0; k < rope.count; k += 1) {
-    run -= drawRunning(pen, view, [ends[2 * k], ends[2 * k + 1]], run, colours);
+    paintStrand(painter, view, [ends[2 * k], ends[2 * k + 1]], colours);
     const lies = arcs.get(k);
     if (!lies) continue;
     const center = stands(poses, lies.body, lies.center);
-    const line = arc(center, points(poses, lies.along, lies.axis), ends[2 * k + 1], ends[2 * k + 2]);
-    run -= drawRunning(pen, view, line, run, colours);
+    const axis = points(poses, lies.along, lies.axis);
+    paintStrand(painter, view, arc(center, axis, ends[2 * k + 1], ends[2 * k + 2]), colours);
   }
 }
 
@@ -113,9 +99,8 @@ export function drawActing(pen, view, poses, scene, own, colours) {
 }
 
 /** The name of a mark that has one, beside it. */
-export function nameMark(pen, view, mark, shown, colours) {
+export function nameMark(labels, view, mark, shown, colours) {
   if (!mark.name) return;
   const [x, y] = view.project(placeOf(mark.places, 3, 0, whenOf(mark, shown)));
-  const [aside, align] = mark.symbol === "latch" ? [-10, "right"] : [10, "left"]; // it may stand where its stop does
-  words(pen, mark.name, x + aside, y - 11, colours.faint, colours.panel, align);
+  labels.add(`mark ${mark.name} ${mark.symbol}`, mark.name, x, y, colours.faint, 1, 10);
 }

@@ -1,12 +1,13 @@
 /** @file Bodies: faces of their shapes with light from above left, their edges; bars where a body has no shapes. */
 
-import { SHADES, tints } from "./colours.js";
+import { SHADES, kindsOf, tints } from "./colours.js";
 import { stands } from "./poses.js";
 import { sidesOf } from "./surfaces.js";
 
 const LIGHT = [-0.37, 0.56, 0.74];
 const BAR = 6; // pixels: how thick a body without shapes is drawn
 const ARM = 2; // pixels: lines on a body, and from its shapes to a point that lies off them
+const LIGHT_AS_AIR = 0.45; // how opaque the plate is that is drawn between the points of a body without shapes
 const BEFORE = 0.004; // of the scene: how much nearer a bar is taken than its rim
 
 /**
@@ -51,7 +52,7 @@ function areaOf(c, face) {
 }
 
 /** The faces of a surface that look at the viewer, with the edges between them and at the outline. */
-function paintFaces(painter, surface, pose, view, { shades, edge }, opaque) {
+function paintFaces(painter, surface, pose, view, { shades, edge }) {
   const { faces } = surface;
   const sides = sidesOf(surface);
   const c = seen(surface.corners, pose, view);
@@ -71,7 +72,7 @@ function paintFaces(painter, surface, pose, view, { shades, edge }, opaque) {
       if (sharp || !looks[beyond]) drawn.push(c[i], c[i + 1], c[j], c[j + 1]);
     }
     const bright = Math.round(brightness(c, face, view.scale) * (SHADES - 1));
-    painter.face(near, points, shades[bright], drawn, edge, opaque);
+    painter.face(near, points, shades[bright], drawn, edge, 1);
   });
 }
 
@@ -83,8 +84,36 @@ function paintPieces(line, pose, view, paint) {
   }
 }
 
-/** A body without shapes: bars through its points; one of a single point is a dot. */
-function paintBars(painter, line, pose, view, { edge, bar }) {
+/** The corners of the outline of points on the screen, counter-clockwise. @param {number[][]} points */
+function outlineOf(points) {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = (list) => {
+    const found = [];
+    for (const p of list) {
+      for (;;) {
+        const [a, b] = found.slice(-2);
+        if (!b || (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0) break;
+        found.pop();
+      }
+      found.push(p);
+    }
+    return found.slice(0, -1);
+  };
+  return [...half(sorted), ...half(sorted.reverse())];
+}
+
+/** A body without shapes: bars through its points, and a plate between three and more; a single point is a dot. */
+function paintBars(painter, line, pose, view, { edge, bar, shades }) {
+  if (line.length > 6) {
+    const c = seen(line, pose, view);
+    const places = [];
+    let near = 0;
+    for (let i = 0; i < c.length; i += 3) {
+      places.push([c[i], c[i + 1]]);
+      near += (3 * c[i + 2]) / c.length;
+    }
+    painter.face(near, outlineOf(places).flat(), shades[SHADES - 3], [], edge, LIGHT_AS_AIR);
+  }
   paintPieces(line, pose, view, (near, points) => {
     painter.line(near, points, edge, BAR + 2);
     painter.line(near + BEFORE * view.radius, points, bar, BAR);
@@ -98,13 +127,13 @@ function paintBars(painter, line, pose, view, { edge, bar }) {
 /** All bodies, given to the painter. */
 export function paintBodies(painter, scene, poses, view, colours) {
   scene.bodies.forEach((body, k) => {
-    const own = tints(k, colours.dark);
+    const own = tints(kindsOf(scene)[k], colours.dark);
     for (const surface of body.surfaces) {
       if (surface.ball) {
         const [x, y, near] = view.project(stands(poses, k, surface.ball.center));
         painter.ball(near, x, y, surface.ball.radius * view.scale, own.shades, own.edge);
       } else {
-        paintFaces(painter, surface, poses[k], view, own, 1);
+        paintFaces(painter, surface, poses[k], view, own);
       }
     }
     const thin = (line) =>

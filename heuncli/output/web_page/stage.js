@@ -1,4 +1,4 @@
-/** @file The machine on its canvas: objects behind, bodies, what stands on top. */
+/** @file The machine on its canvas: bodies and symbols by depth, then arrows and loads, then all words. */
 
 import { cleared } from "./canvases.js";
 import { drawLoad, drawLoadScale } from "./loads.js";
@@ -6,9 +6,8 @@ import { Painter } from "./painter.js";
 import { drawPaths } from "./paths.js";
 import { posesAt, stands } from "./poses.js";
 import { paintBodies } from "./solids.js";
-import { words } from "./strokes.js";
-import { drawActing, drawBelt, drawMark, drawRope, nameMark } from "./running.js";
-import { drawCorner, drawGroundPoint, drawJoint, drawLine, drawPath } from "./symbols.js";
+import { drawActing, drawMark, nameMark, paintBelt, paintRope } from "./running.js";
+import { drawCorner, drawGroundPoint, paintJoint, paintLine, paintPath } from "./symbols.js";
 import { drawArrows, drawScale } from "./wrenches.js";
 
 const MANY = 40; // joints
@@ -29,50 +28,57 @@ function middleOf(body) {
 }
 
 /** Names of bodies and joints. @param {boolean} told whether the arrows tell those of the joints */
-function drawNames(pen, scene, poses, view, colours, told) {
+function drawNames(labels, scene, poses, view, colours, told) {
   scene.bodies.forEach((body, k) => {
     const [x, y] = view.project(stands(poses, k, middleOf(body)));
-    words(pen, body.name, x, y, colours.ink, colours.panel, "center");
+    labels.add(`body ${body.name}`, body.caption, x, y, colours.ink, 1.2);
   });
   for (const joint of told ? [] : scene.joints) {
     const [x, y] = view.project(stands(poses, joint.b, joint.q));
-    words(pen, joint.name, x + 10, y + 11, colours.faint, colours.panel);
+    labels.add(`joint ${joint.name}`, joint.caption, x, y, colours.faint, 1, 10);
   }
+}
+
+/** What is hidden by what is before it: bodies, symbols, ropes. */
+function paintMachine(pen, scene, poses, view, shown, colours) {
+  const painter = new Painter(pen);
+  const small = scene.joints.length > MANY;
+  paintBodies(painter, scene, poses, view, colours);
+  for (const path of scene.paths) paintPath(painter, view, path, colours);
+  for (const belt of scene.belts) paintBelt(painter, view, poses, belt, colours);
+  for (const rope of scene.ropes) paintRope(painter, view, poses, rope, shown, colours);
+  for (const line of scene.lines) paintLine(painter, view, poses, scene, line, colours);
+  for (const joint of scene.joints) paintJoint(painter, view, poses, scene, joint, colours, small);
+  painter.paint(shown.look);
+  for (const mark of scene.marks) drawMark(pen, view, scene.symbols[mark.symbol], mark, shown, colours);
+  for (const own of small ? [] : scene.acting) drawActing(pen, view, poses, scene, own, colours);
 }
 
 /**
  * The machine at a frame.
  * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./view.js").View} view
- * @param {object} shown the frame and what is chosen to be drawn
+ * @param {object} shown the frame and what is chosen to be drawn @param {import("./labels.js").LabelList} labels
  */
-export function drawMachine(canvas, data, view, shown, colours) {
+export function drawMachine(canvas, data, view, shown, colours, labels) {
   const { pen, width, height } = cleared(canvas);
   view.fill(width, height);
+  labels.begin(pen, width, height, view.fits);
   const { scene } = data;
   const poses = posesAt(scene, shown.frame, shown.share);
   for (const point of scene.ground) drawGroundPoint(pen, view, point.at, colours);
   if (shown.paths) drawPaths(pen, view, data, colours);
-  const painter = new Painter(pen);
-  paintBodies(painter, scene, poses, view, colours);
-  painter.paint(shown.look);
-  for (const path of scene.paths) drawPath(pen, view, path, colours);
-  for (const belt of scene.belts) drawBelt(pen, view, poses, belt, shown, colours);
-  for (const rope of scene.ropes) drawRope(pen, view, poses, rope, shown, colours);
-  for (const line of scene.lines) drawLine(pen, view, poses, line, colours);
-  for (const mark of scene.marks) drawMark(pen, view, scene.symbols[mark.symbol], mark, shown, colours);
-  if (shown.names) for (const mark of scene.marks) nameMark(pen, view, mark, shown, colours);
-  const small = scene.joints.length > MANY;
-  for (const own of small ? [] : scene.acting) drawActing(pen, view, poses, scene, own, colours);
-  for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours, small);
-  if (shown.load)
-    drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);
-  if (shown.names)
-    drawNames(pen, scene, poses, view, colours, shown.values && shown.choice?.key.startsWith("joints.force"));
+  paintMachine(pen, scene, poses, view, shown, colours);
+  if (shown.names) {
+    for (const mark of scene.marks) nameMark(labels, view, mark, shown, colours);
+    drawNames(labels, scene, poses, view, colours, shown.values && shown.choice?.joints);
+  }
+  if (shown.load) drawLoad(pen, view, poses, { ...shown.load, ...shown }, colours, labels);
   let line = 0;
   if (shown.choice) {
-    drawArrows(pen, view, poses, shown.choice, shown.frame, colours, shown.size, shown.values);
-    line = drawScale(pen, view, shown.choice, colours, shown.size);
+    drawArrows(pen, view, poses, shown, colours, labels);
+    line = drawScale(pen, view, shown.choice, colours, shown.size, labels);
   }
-  if (shown.load) drawLoadScale(pen, view, { ...shown.load, size: shown.size }, colours, line);
-  drawCorner(pen, view, scene.gravity, colours);
+  if (shown.load) drawLoadScale(pen, view, { ...shown.load, size: shown.size }, colours, line, labels);
+  drawCorner(pen, view, scene.gravity, colours, labels);
+  labels.write(colours.panel);
 }

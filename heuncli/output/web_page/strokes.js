@@ -38,28 +38,17 @@ export function ring(pen, x, y, radius, fill, line, width = 1.6) {
   pen.stroke();
 }
 
-const SPARE = 4; // pixels: words keep so far from the rim of their canvas
-
-/** Where words begin, so that all of them are on the canvas. */
-function inside(pen, text, x, align) {
-  const share = { left: 0, center: 0.5, right: 1 }[align];
-  const { width } = pen.measureText(text);
-  const left = Math.min(x - share * width, pen.canvas.clientWidth - SPARE - width);
-  return Math.max(SPARE, left) + share * width;
-}
-
-/** Words with a rim of the ground's colour, so that they can be read on anything. */
-export function words(pen, text, x, y, colour, paper, align = "left") {
+/** Words with a rim of the ground's colour, so that they can be read on anything; x: where they begin. */
+export function words(pen, text, x, y, colour, paper) {
   pen.font = FONT;
-  pen.textAlign = align;
+  pen.textAlign = "left";
   pen.textBaseline = "middle";
   pen.lineJoin = "round";
   pen.lineWidth = 3.5;
   pen.strokeStyle = paper;
-  const at = inside(pen, text, x, align);
-  pen.strokeText(text, at, y);
+  pen.strokeText(text, x, y);
   pen.fillStyle = colour;
-  pen.fillText(text, at, y);
+  pen.fillText(text, x, y);
 }
 
 /**

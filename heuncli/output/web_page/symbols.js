@@ -1,7 +1,7 @@
 /** @file The field's symbols: joints, the ground, springs, ropes; the axes of the world and gravity in the corner. */
 
 import { points, stands } from "./poses.js";
-import { arrow, polyline, ring, shape, words } from "./strokes.js";
+import { arrow, polyline, ring, shape } from "./strokes.js";
 import { cross, lengthOf, unit } from "./vectors.js";
 
 const R = 5.5; // pixels: radius of a joint
@@ -10,6 +10,8 @@ const STAND = 15; // pixels: from a joint to the ground that holds it
 const HALF = 12; // pixels: half of the line of ground under a joint
 const GUIDE = 0.11; // of the scene: half of a guide's rails
 const COILS = 7;
+const BEFORE = 0.3; // of the scene's radius: a symbol is drawn before no body that is nearer than that
+const CLEAR = 0.01; // of the scene's radius, beyond the face
 const CORNER = 30; // pixels: length of the axes of the world
 
 /** A direction on the screen of unit length; one that looks at the viewer has none. */
@@ -115,7 +117,7 @@ const SLIDING = {
 
 /** A bar or rope between two points. */
 function drawRod(pen, joint, from, at, colours) {
-  polyline(pen, [from, at], colours.ink, 2, joint.rope ? [8, 3] : []);
+  polyline(pen, [from, at], colours.ink, 2, []);
   for (const [[x, y], other, body] of [
     [from, at, joint.a],
     [at, from, joint.b],
@@ -127,8 +129,45 @@ function drawRod(pen, joint, from, at, colours) {
   }
 }
 
+/** Half of the smallest edge of a body's box [m]: so far before its middle its face is. Made once. */
+function halfThickness(body) {
+  if (body.thickness === undefined) {
+    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    for (const { corners, ball } of body.surfaces) {
+      const points = ball ? [-1, 1].flatMap((s) => ball.center.map((c) => c + s * ball.radius)) : corners;
+      for (let i = 0; i < points.length; i += 1) {
+        low[i % 3] = Math.min(low[i % 3], points[i]);
+        high[i % 3] = Math.max(high[i % 3], points[i]);
+      }
+    }
+    body.thickness = body.surfaces.length ? Math.min(...high.map((h, i) => h - low[i])) / 2 : 0;
+  }
+  return body.thickness;
+}
+
+/** How near what joins two bodies is drawn [m]: before the faces of both. @param {number[][]} places on the screen */
+function nearOf(view, scene, a, b, places) {
+  const thick = [a, b].map((k) => (k < 0 ? 0 : halfThickness(scene.bodies[k])));
+  const middle = places.reduce((sum, place) => sum + place[2], 0) / places.length;
+  return middle + Math.min(BEFORE * view.radius, 1.3 * Math.max(...thick)) + CLEAR * view.radius;
+}
+
+/** A joint, given to the painter. */
+export function paintJoint(painter, view, poses, scene, joint, colours, small) {
+  const ends = [view.project(stands(poses, joint.a, joint.p)), view.project(stands(poses, joint.b, joint.q))];
+  const places = joint.kind in AT_POINT || joint.kind in SLIDING ? ends.slice(1) : ends;
+  const near = nearOf(view, scene, joint.a, joint.b, places);
+  painter.add(near, (pen) => drawJoint(pen, view, poses, joint, colours, small));
+}
+
+/** A load between two points, given to the painter. */
+export function paintLine(painter, view, poses, scene, line, colours) {
+  const ends = [view.project(stands(poses, line.a, line.p)), view.project(stands(poses, line.b, line.q))];
+  painter.add(nearOf(view, scene, line.a, line.b, ends), (pen) => drawLine(pen, view, poses, line, colours));
+}
+
 /** A joint. @param {boolean} small whether there are so many that symbols would hide the machine */
-export function drawJoint(pen, view, poses, joint, colours, small) {
+function drawJoint(pen, view, poses, joint, colours, small) {
   const from = view.project(stands(poses, joint.a, joint.p)).slice(0, 2);
   const at = view.project(stands(poses, joint.b, joint.q)).slice(0, 2);
   const axis = points(poses, joint.a, joint.axis);
@@ -169,12 +208,29 @@ function drawBushing(pen, view, line, a, b, colours) {
   ring(pen, b[0], b[1], 3.4, colours.paper, colours.ink, 1.8);
 }
 
+/** The zigzag of a spring, beside the line between its ends. */
+function coil(pen, at, aside, wide, colours) {
+  const turns = [];
+  for (let k = 0; k < 2 * COILS; k += 1) {
+    turns.push(at(0.15 + (0.7 * (k + 0.5)) / (2 * COILS), aside + (k % 2 ? wide : -wide)));
+  }
+  polyline(pen, [at(0), at(0.12), at(0.15, aside), ...turns, at(0.85, aside), at(0.88), at(1)], colours.ink, 1.5);
+}
+
+/** The cup and the plate of a damper. */
+function dashpot(pen, at, aside, colours) {
+  polyline(pen, [at(0.12), at(0.12, aside), at(0.4, aside)], colours.ink, 1.5);
+  polyline(pen, [at(0.62, aside + 5), at(0.4, aside + 5), at(0.4, aside - 5), at(0.62, aside - 5)], colours.ink, 1.5);
+  polyline(pen, [at(0.55, aside + 3.5), at(0.55, aside - 3.5)], colours.ink, 1.8);
+  polyline(pen, [at(0.55, aside), at(0.88, aside), at(0.88)], colours.ink, 1.5);
+}
+
 /** By symbol of the kinds of loads (base/load_kinds.py): between two points, at(share, aside) of the way. */
 const LINES = {
-  spring: (pen, at, colours) => {
-    const turns = [];
-    for (let k = 0; k < 2 * COILS; k += 1) turns.push(at(0.15 + (0.7 * (k + 0.5)) / (2 * COILS), k % 2 ? 6 : -6));
-    polyline(pen, [at(0), at(0.15), ...turns, at(0.85), at(1)], colours.ink, 1.5);
+  spring: (pen, at, colours) => coil(pen, at, 0, 6, colours),
+  "damped spring": (pen, at, colours) => {
+    coil(pen, at, -8, 5, colours);
+    dashpot(pen, at, 8, colours);
   },
   actuator: (pen, at, colours) => {
     polyline(pen, [at(0), at(1)], colours.ink, 1.8);
@@ -184,7 +240,7 @@ const LINES = {
 };
 
 /** A load between two points by its symbol, a bushing as two sleeves. */
-export function drawLine(pen, view, poses, line, colours) {
+function drawLine(pen, view, poses, line, colours) {
   const a = view.project(stands(poses, line.a, line.p));
   const b = view.project(stands(poses, line.b, line.q));
   if (line.kind === "bushing") {
@@ -194,18 +250,19 @@ export function drawLine(pen, view, poses, line, colours) {
   const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
   const place = placer(a, [(b[0] - a[0]) / long, (b[1] - a[1]) / long]);
   LINES[line.kind](pen, (share, aside = 0) => place(share * long, aside), colours);
-  for (const [x, y] of [a, b]) ring(pen, x, y, 2.5, colours.ink, colours.ink, 1);
+  for (const [x, y] of [a, b]) ring(pen, x, y, 2.5, colours.paper, colours.ink, 1.3);
 }
 
 /** A line on the ground: a path along which a point runs, the circle of a ring. */
-export function drawPath(pen, view, path, colours) {
+export function paintPath(painter, view, path, colours) {
   const ends = [];
   for (let i = 0; i < path.length; i += 3) ends.push(view.project(path.subarray(i, i + 3)));
-  polyline(pen, ends, colours.ink, 1.5);
+  const near = ends.reduce((sum, end) => sum + end[2], 0) / ends.length;
+  painter.add(near, (pen) => polyline(pen, ends, colours.ink, 1.5));
 }
 
 /** The axes of the world, and gravity beside them. */
-export function drawCorner(pen, view, gravity, colours) {
+export function drawCorner(pen, view, gravity, colours, labels) {
   const [x, y] = [44, view.height - 44];
   const told = (direction) => view.direct(direction).map((component) => (CORNER * component) / view.scale);
   ["x", "y", "z"].forEach((name, k) => {
@@ -222,13 +279,13 @@ export function drawCorner(pen, view, gravity, colours) {
     const size = Math.hypot(dx, dy);
     if (size < 6) return;
     const [nx, ny] = placer([x, y], [dx / size, dy / size])(size + 9);
-    words(pen, name, nx, ny, colours.ink, colours.panel, "center");
+    labels.set(`axis ${name}`, name, nx, ny, colours.ink, 10, "center");
   });
   if (lengthOf(gravity) > 0) {
     const [dx, dy, near] = told(unit(gravity));
     const from = [x + 62, y - 16];
     arrow(pen, from, [from[0] + dx, from[1] + dy], near * view.scale, colours.faint, colours.panel);
-    words(pen, "g", from[0] + 10, from[1] + 6, colours.faint, colours.panel);
+    labels.set("g", "g", from[0] + 10, from[1] + 6, colours.faint, 10);
   }
 }
 

@@ -1,6 +1,6 @@
 /** @file The numbers of the frame that is shown: a cell for each, with its path and all its digits in SI. */
 
-import { short, written } from "./digits.js";
+import { short, whole, written } from "./digits.js";
 import { made } from "./elements.js";
 import { along } from "./loads.js";
 import { lengthOf } from "./vectors.js";
@@ -12,6 +12,7 @@ class Cell {
   /** @param {string} path @param {(frame: number) => number} value SI @param {string} missing what stands for nan */
   constructor(path, value, size, style, missing = "open") {
     this.element = made("td", "", { "data-path": path });
+    this.element.addEventListener("pointerenter", () => this.tell());
     Object.assign(this, { value, size, style, missing });
   }
 
@@ -21,6 +22,12 @@ class Cell {
     const text = Number.isNaN(value) ? this.missing : written(value * this.size, this.style);
     if (this.text !== text) this.element.textContent = this.text = text;
     this.element.dataset.value = Number.isFinite(value) ? String(value) : "";
+  }
+
+  /** All digits that the page holds, where somebody points at the number. */
+  tell() {
+    const value = Number(this.element.dataset.value) * this.size;
+    this.element.title = this.element.dataset.value ? whole(value) : "";
   }
 }
 
@@ -57,10 +64,20 @@ export class NumberTable {
     for (const blow of data.blows) blow.blocks.forEach((block) => this.addBlock(block));
   }
 
+  /** Show the tables of a kind alone. @param {string} kind joints, sections or all */
+  choose(kind) {
+    for (const body of this.table.tBodies) body.hidden = kind !== "all" && body.dataset.kind !== kind;
+  }
+
+  /** Whether there are tables of a kind. */
+  has(kind) {
+    return [...this.table.tBodies].some((body) => body.dataset.kind === kind);
+  }
+
   /** A block of rows under its heading, which tells axes and signs. */
   addBlock(block) {
-    const body = made("tbody");
-    headed(body, block.heading, "heading");
+    const body = made("tbody", "", { "data-kind": block.kind });
+    headed(body, block.heading, "heading", block.note);
     for (const group of block.groups) {
       if (group.name || group.note) headed(body, group.name, "group", group.note);
       for (const row of group.rows) body.append(this.rowOf(row, block.missing));
@@ -97,8 +114,8 @@ export class NumberTable {
 
   /** The loads of a section: of a run of cuts those of the chosen cut, with the least and the greatest along it. */
   addSection(section, number) {
-    const body = made("tbody");
-    if (number === 0) headed(body, this.data.cutting, "heading");
+    const body = made("tbody", "", { "data-kind": "sections" });
+    if (number === 0) headed(body, this.data.cutting.heading, "heading", this.data.cutting.note);
     headed(body, section.name, "group", section.note);
     section.spoken = body.lastChild.firstChild.lastChild;
     section.chosen = 0;

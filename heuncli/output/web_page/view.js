@@ -4,7 +4,11 @@ import { cross, dot, unit } from "./vectors.js";
 
 const STEEPEST = Math.PI / 2;
 const NEAREST = 400;
-const ROOM = 0.12; // of the scene: for arrows and loads beside the machine
+const ROOM = 0.14; // of the canvas: for words and arrows beside the machine
+const CORNER = 26; // pixels: kept free below, for axes and scales
+const LEAST = 0.02; // of the scene's radius: what is thinner is not seen larger
+const HIDING = 0.01; // of the scene's radius cubed: bodies before the joints that weigh more are looked at from behind
+const DEEP = 0.6; // of the extent in its plane: a deeper machine is seen from aside (as in heun plot scene)
 const FARTHEST = 0.1;
 const MIDDLE = 0.02; // of the scene's radius: joints that stand no farther off its middle are in it
 
@@ -34,15 +38,27 @@ export class View {
     const axis = (i) => [0, 1, 2].map((j) => (j === (k + i) % 3 ? 1 : 0));
     [this.first, this.second] = this.up[k] > 0 ? [axis(1), axis(2)] : [axis(2), axis(1)];
     this.normal = normal;
-    this.half = scene.half;
+    this.cloud = scene.cloud;
+    this.cover = scene.cover;
     this.side = normal ? sideOf(scene, normal) : 0;
     this.width = 100;
     this.height = 100;
     this.begin();
   }
 
-  /** As at the start: a little from the side of the plane in which the machine moves. */
+  /** As at the start: along the normal of the plane in which the machine moves, unless it is too deep for that. */
   begin() {
+    if (this.normal && !this.deep()) {
+      this.along(this.normal.map(Math.abs));
+      if (this.cover && this.cover(this.toward) > HIDING * this.radius ** 3) this.turn(Math.PI, 0);
+      this.fit();
+    } else {
+      this.oblique();
+    }
+  }
+
+  /** From aside and above. */
+  oblique() {
     if (this.normal && Math.abs(dot(this.normal, this.up)) < 0.5) {
       this.along(this.normal.map(Math.abs));
       if (this.side * dot(this.normal, this.toward) < 0) this.turn(Math.PI, 0);
@@ -55,6 +71,25 @@ export class View {
     this.fit();
   }
 
+  /** Whether the machine goes far along the normal of its plane, as an engine of several cylinders does. */
+  deep() {
+    const span = (v) => this.range(v)[1] - this.range(v)[0];
+    const across = [0, 1, 2].filter((i) => !this.normal[i]).map((i) => span([0, 1, 2].map((j) => Number(i === j))));
+    return span(this.normal) > DEEP * Math.max(...across);
+  }
+
+  /** From where to where the machine goes along a direction, from its middle [m]. @param {number[]} v */
+  range(v) {
+    let [low, high] = [Infinity, -Infinity];
+    for (const p of this.cloud) {
+      const at = dot(p, v);
+      if (at < low) low = at;
+      if (at > high) high = at;
+    }
+    const middle = dot(this.center, v);
+    return [low - middle, high - middle];
+  }
+
   /** On a canvas of this size [pixels]: all of the machine is kept on it until somebody zooms or shifts. */
   fill(width, height) {
     if (width === this.width && height === this.height) return;
@@ -62,15 +97,18 @@ export class View {
     if (this.fitted) this.fit();
   }
 
-  /** All of the machine at all frames within the screen, in the middle. */
+  /** All of the machine at all frames within the screen, in the middle, with room for words about it. */
   fit() {
+    this.fits = (this.fits ?? 0) + 1;
     this.fitted = true;
-    this.shift = [0, 0];
+    const [left, right] = this.range(this.right);
+    const [low, high] = this.range(this.above);
+    const least = LEAST * this.radius;
+    const across = (this.width * (1 - ROOM)) / Math.max(right - left, least);
+    const up = (this.height * (1 - ROOM) - CORNER) / Math.max(high - low, least);
     this.zoom = 1;
-    const reach = (v) => [0, 1, 2].reduce((sum, i) => sum + this.half[i] * Math.abs(v[i]), 0) + ROOM * this.radius;
-    const [wide, high] = [reach(this.right), reach(this.above)];
-    const room = Math.max(1, Math.min((this.width - 50) / (2 * wide), (this.height - 50) / (2 * high)));
-    this.zoom = Math.min(NEAREST, Math.max(FARTHEST, room / this.scale));
+    this.zoom = Math.min(NEAREST, Math.max(FARTHEST, Math.min(across, up) / this.scale));
+    this.shift = [(-this.scale * (left + right)) / 2, (this.scale * (low + high)) / 2 - CORNER / 2];
   }
 
   /** Seen along a world axis, so that the axes to the right and up are positive. @param {number[]} axis */

@@ -1,17 +1,18 @@
-"""`heun show`: solve a scene, and write a page that shows its motion."""
+"""`heun show`: solve a scene, and write a page that shows its motion, or a picture or film of it."""
 
 from __future__ import annotations
 
 from pathlib import PurePath
 
 from heuncli.app.cli import timeout
-from heuncli.app.cli.captions import apply_captions
+from heuncli.app.cli.captions import apply_captions_to_cases
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, save
-from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
+from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_cases
 from heuncli.app.cli.target import require_writable
 from heuncli.app.cli.units import parse_units
+from heuncli.app.commands.show.film import FORMATS, FilmFormat, draw_film, find_format, find_programs, make_film
 from heuncli.app.commands.show.moving_glb import make_glb
 from heuncli.app.commands.show.request import ShowRequest
 from heuncli.base.errors import LimitError, Problem
@@ -20,13 +21,16 @@ from heuncli.base.records import replace
 from heuncli.output.figures.courses import require_claimed
 from heuncli.output.tables.page import TABLE_DEFAULT
 from heuncli.output.web_page.frames import MAX_PAGE_FRAMES
-from heuncli.output.web_page.moving_page import render_moving_page
-from heuncli.scene.file_format.load import load
+from heuncli.output.web_page.moving_page import render_film_page, render_moving_page
+from heuncli.scene.file_format.load import load, load_with_cases
 from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.study.model.error_places import attach_locations
+from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 
-ENDINGS = (".html", ".htm")
+PAGE_ENDINGS = (".html", ".htm")
+ENDINGS = (*PAGE_ENDINGS, *FORMATS)
 GLB = ".glb"
 MIN_FRAMES, MAX_FRAMES = 2, 5000
 MAX_BODIES = 500  # more cannot be moved smoothly in a browser
@@ -36,28 +40,62 @@ REPORTS = TABLE_DEFAULT | {"motion"}
 def main(request: ShowRequest) -> int:
     """Run the command; returns the exit code."""
     output, glb = _require_output(request), _require_glb(request)
-    _require_page(request)
+    form, at = find_format(output), _parse_instant(request)
+    _require_page(request, form)
     outputs = [(name, option) for name, option in ((output, "-o"), (glb, "--glb")) if name is not None]
     for name, option in outputs:
         require_other_file(name, [request.spec], option)
+    programs = None if form is None else find_programs(form)
     units_shown, frame_count = parse_units(request.units), _parse_frame_count(request.frames)
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
-    spec = apply_captions(spec, request)
+    specs = apply_captions_to_cases(_load_cases(request), request)
     for name, option in outputs:
         require_other_file(name, [request.spec], option)
-    _require_few_bodies(spec)
-    options = replace(make_solver_options(request), requested_reports=REPORTS, time_limit=timeout.remaining_time())
-    with attach_locations(spec):
-        study = solve(spec, options)
-        require_claimed(study)
-        page = render_moving_page(study, units_shown, frame_count) if output is not None else ""
-        moving = make_glb(study) if glb is not None else b""
-    print_warnings(spec, study.results, request.quiet, later=study.later_warnings)
-    if output is not None:
+    studies = {case: _solve_case(spec, request) for case, spec in specs.items()}
+    case, study = next(iter(studies.items()))
+    moving = make_glb(study) if glb is not None else b""
+    if output is not None and form is not None and programs is not None:
+        page = render_film_page(study, units_shown, make_film(form, at), case)
+        film = draw_film(page, form, programs, PurePath(output).suffix.lower())
+    elif output is not None:
+        page = render_moving_page(studies, units_shown, frame_count)
+    for name, solved in studies.items():
+        print_warnings(specs[name], solved.results, request.quiet, later=solved.later_warnings)
+    if output is not None and form is not None:
+        save(film, output)
+    elif output is not None:
         emit(page, output)
     if glb is not None:
         save(moving, glb)
     return 0
+
+
+def _load_cases(request: ShowRequest) -> dict[str, Spec]:
+    """Load the spec in the requested case, or in all, by the names of the cases; "" is the spec as it is."""
+    settings = parse_overrides(request.set)
+    if request.case == ALL_CASES:
+        specs = load_with_cases(request.spec, settings, checking=False)[1]
+        require_cases(specs)
+    else:
+        specs = {request.case or "": load(request.spec, overrides=settings, checking=False, case=request.case)}
+    _require_few_bodies(next(iter(specs.values())))
+    return specs
+
+
+def _solve_case(spec: Spec, request: ShowRequest) -> Study:
+    """Solve a spec for motion and loads."""
+    options = replace(make_solver_options(request), requested_reports=REPORTS, time_limit=timeout.remaining_time())
+    with attach_locations(spec):
+        study = solve(spec, options)
+        require_claimed(study)
+    return study
+
+
+def _parse_instant(request: ShowRequest) -> float | None:
+    """Return the instant of the picture [s]; None: of the greatest load. Raises UsageError."""
+    if request.at is not None and find_format(request.output) is not FORMATS[".png"]:
+        message = "--at: only for a picture, -o x.png"
+        raise UsageError(Problem("bad-option", message, hint="leave it out; a page shows all instants"))
+    return request.at
 
 
 def _require_output(request: ShowRequest) -> str | None:
@@ -70,7 +108,7 @@ def _require_output(request: ShowRequest) -> str | None:
         return None
     if name != STDOUT:
         if name and PurePath(name).suffix.lower() not in ENDINGS:
-            hint = f"accepted: {', '.join(ENDINGS)}; heun plot draws .svg, .png and .pdf"
+            hint = f"accepted: {', '.join(ENDINGS)}; heun plot draws .svg and .pdf"
             raise UsageError(Problem("bad-option", f"-o {name}: unknown file extension", hint=hint))
         require_writable(name)
     return name
@@ -92,8 +130,13 @@ def _require_glb(request: ShowRequest) -> str | None:
     return name
 
 
-def _require_page(request: ShowRequest) -> None:
-    """Raise UsageError for options of the page if none is written."""
+def _require_page(request: ShowRequest, form: FilmFormat | None) -> None:
+    """Raise UsageError for options of the page if none is written, and for all cases where one is drawn."""
+    if request.case == ALL_CASES and (form is not None or request.glb is not None):
+        message = "--case all: a page shows all load cases; a picture, a film or a glTF file shows one"
+        raise UsageError(Problem("bad-option", message, hint="name one of the cases"))
+    if form is not None and request.frames is not None:
+        raise UsageError(Problem("bad-option", "--frames: only for the page", hint="leave it out"))
     page_options = [("--frames", request.frames), ("--units", request.units)]
     unused = [option for option, value in page_options if value is not None] if request.output is None else []
     if unused:

@@ -26,13 +26,20 @@ class ShowRequest(NamedTuple):
     spec: Annotated[str, SPEC]
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Output page, written atomically: x.html; - is standard output.", "FILE"),
+        Option(
+            ("--output", "-o"),
+            "Output page x.html, or x.png, x.gif, x.mp4 by programs on PATH; - is standard output.",
+            "FILE",
+        ),
     ] = None
     glb: Annotated[str | None, Option(("--glb",), "Also write the moving bodies as animated glTF: x.glb.", "FILE")] = (
         None
     )
     frames: Annotated[
         int | None, Option(("--frames",), "Maximum number of instants on the page. Default: 600.", "NUMBER")
+    ] = None
+    at: Annotated[
+        float | None, Option(("--at",), "Instant of x.png [s]. Default: when the joint forces are greatest.", "T")
     ] = None
     units: Annotated[str | None, Option(("--units",), "Units of the page, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()

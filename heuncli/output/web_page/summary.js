@@ -1,0 +1,126 @@
+/** @file The summary: the greatest loads of the run, when they occur, and what they are at the frame that is shown. */
+
+import { instant, whole, written } from "./digits.js";
+import { made } from "./elements.js";
+import { arrowChoices, largestOf, vectorAt } from "./wrenches.js";
+import { lengthOf } from "./vectors.js";
+
+const MOST = 12; // rows
+const MOMENTS = new Set(["T", "M", "M1", "M2"]);
+const FORCES = new Set(["N", "Q", "Q1", "Q2"]);
+const LEAST = 1e-3; // of the greatest of its kind: what is smaller is left to the tables
+
+/** The frame at which a number is greatest, and how great it is. */
+function greatest(count, at) {
+  let [best, most] = [0, 0];
+  for (let k = 0; k < count; k += 1) {
+    const size = Math.abs(at(k));
+    if (size > most) [best, most] = [k, size];
+  }
+  return { frame: best, value: at(best), size: most };
+}
+
+/** What is told of vectors: their size. */
+function ofVector({ row, name, vector }, count) {
+  const at = (frame) => (vector ? row.parts[0].values[frame] : lengthOf(vectorAt(row, frame)));
+  const own = row.path.startsWith("joints.") || row.path.startsWith("foundation.");
+  const caption = own && !vector ? row.caption : row.path.endsWith("moment") && !vector ? `${name}, moment` : name;
+  return { caption, path: row.path, row, at, ...greatest(count, at) };
+}
+
+/** The greatest loads of a section: over all of its cuts. */
+function ofSection(section, count) {
+  const n = section.cuts.length;
+  const found = section.loads.map((load) => {
+    const at = (frame) => {
+      let most = 0;
+      for (const value of load.values.subarray(frame * n, (frame + 1) * n)) {
+        if (Math.abs(value) > Math.abs(most)) most = value;
+      }
+      return most;
+    };
+    return { caption: load.caption, path: load.path, row: load, at, ...greatest(count, at) };
+  });
+  found.sort((a, b) => b.size - a.size);
+  const bending = found.filter(({ row }) => MOMENTS.has(row.label));
+  const forces = found.filter(({ row }) => FORCES.has(row.label));
+  return [...bending.slice(0, 1), ...forces.slice(0, 1)];
+}
+
+/** Loads whose names differ by digits alone in one row, with the greatest of them. */
+function grouped(list) {
+  const groups = new Map();
+  for (const load of list) {
+    const key = load.caption.replace(/\d+/g, "#");
+    if (groups.has(key)) groups.get(key).push(load);
+    else groups.set(key, [load]);
+  }
+  return [...groups.values()].map((group) => {
+    const most = group.reduce((a, b) => (b.size > a.size ? b : a));
+    const others = new Set(group.map(({ caption }) => caption)).size;
+    return others > 1 ? { ...most, caption: `${most.caption} (greatest of ${others})` } : most;
+  });
+}
+
+/** The rows of the summary, the greatest of each kind first. */
+function rowsOf(data) {
+  const { count } = data;
+  const choices = new Map(arrowChoices(data).map((choice) => [choice.key, choice.rows]));
+  const of = (key) => {
+    const rows = (choices.get(key) ?? []).filter(({ row }) => largestOf(row) > 0).map((each) => ofVector(each, count));
+    const forces = rows.filter(({ path }) => !path.endsWith("moment")).sort((a, b) => b.size - a.size);
+    const moments = rows.filter(({ path }) => path.endsWith("moment")).sort((a, b) => b.size - a.size);
+    return [forces, moments].flatMap((list) => list.filter(({ size }) => size > LEAST * list[0].size));
+  };
+  const ground = of("foundation");
+  const loads = grouped([...of("joints.force"), ...of("couplings"), ...of("forces")]);
+  const sections = data.sections.flatMap((section) => ofSection(section, count));
+  const rest = MOST - Math.min(4, sections.length) - ground.length;
+  const shown = loads.slice(0, Math.max(4, rest));
+  return [...shown, ...ground, ...sections].slice(0, MOST);
+}
+
+/** The table. */
+export class SummaryTable {
+  /** @param {HTMLTableElement} table @param {object} data @param {object|null} crank the angle that tells instants */
+  constructor(table, data, crank, go) {
+    this.cells = [];
+    const moving = data.count > 1;
+    const head = made("tr");
+    const titles = moving ? ["Load", "greatest", "unit", "at", "now"] : ["Load", "value", "unit"];
+    head.append(...titles.map((name) => made("th", name, { scope: "col", class: name })));
+    const top = made("thead");
+    top.append(head);
+    const body = made("tbody");
+    const span = data.time[data.count - 1] - data.time[0];
+    for (const { caption, path, row, at, frame, value } of rowsOf(data)) {
+      const line = made("tr");
+      line.append(made("th", caption, { scope: "row" }));
+      const all = `${whole(value * row.size)} ${row.unit}`;
+      line.append(made("td", written(value * row.size, row.style), { title: all }));
+      line.append(made("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
+      if (moving) {
+        const turn = crank ? `${Math.round(crank.values[frame])}°` : "";
+        const when = `${instant(data.time[frame], span, 3)} s`;
+        const button = made("button", turn || when, { type: "button", title: when });
+        button.setAttribute("aria-label", `Go to the greatest ${caption}, ${when}`);
+        button.addEventListener("click", () => go(frame, path));
+        const place = made("td");
+        place.append(button);
+        const now = made("td");
+        this.cells.push({ now, at, row });
+        line.append(place, now);
+      }
+      body.append(line);
+    }
+    table.replaceChildren(top, body);
+  }
+
+  /** Write the numbers of a frame. @param {number} frame */
+  show(frame) {
+    for (const cell of this.cells) {
+      const text = written(cell.at(frame) * cell.row.size, cell.row.style);
+      if (cell.text !== text) cell.now.textContent = cell.text = text;
+    }
+  }
+}
