@@ -86,3 +86,13 @@ def is_far_from_value(course: MeasureCourse, left: Sample, right: Sample) -> boo
         return False
     smallest = min(abs((sample.gap or 0.0) + course.value) for sample in (left, right))
     return smallest > FAR_FACTOR * max(course.usual, abs(course.value))
+
+
+def has_pole(course: MeasureCourse) -> bool:
+    """Return whether the measure jumps somewhere between values beyond all usual ones, from one sign to the other."""
+    ends = {x for pair in course.jumps for x in pair}
+    sizes = {sample.x: (sample.gap or 0.0) + course.value for sample in course.samples if sample.x in ends}
+    least = FAR_FACTOR * max(course.usual, abs(course.value))
+    return any(
+        sizes[low] * sizes[high] < 0.0 and min(abs(sizes[low]), abs(sizes[high])) > least for low, high in course.jumps
+    )

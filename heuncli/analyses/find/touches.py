@@ -55,10 +55,11 @@ def follow_minimum(course: MeasureCourse, x: float) -> None:
         if minimum is None:
             return
         left, middle, right = minimum
-        if is_narrow(course, left, middle, right):
+        predicted = predict_minimum(left, middle, right)
+        is_there = predicted is None or abs(predicted - middle.x) <= MAX_DISTANCE * course.finest
+        if is_there and is_narrow(course, left, middle, right):
             confirm_touch(course, middle)
             return
-        predicted = predict_minimum(left, middle, right)
         if predicted is None:
             return
         sample = course.sample_at(min(max(predicted, left.x + 0.25 * course.finest), right.x - 0.25 * course.finest))

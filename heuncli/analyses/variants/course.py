@@ -124,6 +124,7 @@ class MeasureCourse:
         self.value = value
         self.searched_pairs: set[tuple[float, float]] = set()
         self.usual = math.inf  # magnitude of the measure over the scan
+        self.followed: set[float] = set()  # minima of |g| that were followed
         self.certain: set[tuple[float, ...]] = set()
         self._evaluate, self._max_samples = evaluate, max_samples
         self.low, self.high = low, high
@@ -291,12 +292,15 @@ class MeasureCourse:
         """Whether the measure runs through several magnitudes, as towards a pole, and its logarithm may be
         interpolated.
 
-        Not where it may touch a value at or beyond 0, which no logarithm reaches.
+        Not where it may touch a value at or beyond 0, which no logarithm reaches: towards a zero the logarithm falls
+        ever faster, towards a pole it rises ever faster.
         """
         m = [_gap(sample) + self.value for sample in samples]
         if min(m) <= 0.0 <= max(m) or max(map(abs, m)) < LOG_RATIO * min(map(abs, m)):
             return False
         steps = [abs(b) - abs(a) for a, b in pairwise(m)]
+        if self.value == 0.0 and not _rises_convexly(samples):
+            return False
         return m[0] * self.value > 0.0 or (on_both_sides and (min(steps) > 0.0 or max(steps) < 0.0))
 
     def _interpolate_logarithm(self, samples: list[Sample], x: Array) -> Array:
@@ -392,6 +396,12 @@ def interpolate_slope(samples: list[Sample], x: float) -> float:
         derivative = derivative * (x - node) + value
         value = value * (x - node) + head
     return derivative
+
+
+def _rises_convexly(samples: list[Sample]) -> bool:
+    """Return whether the slopes of the logarithm of |g| rise from sample to sample."""
+    slopes = [(math.log(_size(b)) - math.log(_size(a))) / (b.x - a.x) for a, b in pairwise(samples)]
+    return all(before <= after for before, after in pairwise(slopes))
 
 
 def _gap(sample: Sample) -> float:
