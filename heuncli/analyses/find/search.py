@@ -28,15 +28,14 @@ from heuncli.analyses.variants.course import (
     interpolate,
 )
 from heuncli.analyses.variants.course_extremes import clip_inside
+from heuncli.base import tolerances
 
-END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: closer to failing variants edges.py takes over
-FINE_GAP = 1.0 / 32.0  # of the scan's spacing: before neighbours closer than this are parted, minima of |g| are followed
-NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: closer to a jump or an edge predictions are never certain
+FINE_GAP = (
+    1.0 / 32.0
+)  # of the scan's spacing: before neighbours closer than this are parted, minima of |g| are followed
 MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
-MAX_STEEPNESS = 10.0  # times the change predicted by the slope outside: more across the narrowest bracket is a jump
 WIDE_BRACKET = 1000.0  # times the narrowest bracket: a wider one, across which a jump has the same size
 MIN_BRACKET = 10.0  # times the narrowest bracket: a comparison bracket that is not wider proves no jump
-MIN_JUMP_RATIO = 0.8  # of the change across the wide bracket: less across the narrowest one is no jump
 WIDE_GAP = 0.5  # of the scan's spacing: neighbours farther apart count as an interval of the scan
 CHECK_OFFSET = 0.1  # of a scan interval: offset from its middle, so that no wave is hidden by aliasing
 PEAK_GROWTH = 2.0  # times the predicted rise of a peak: its possible rise
@@ -114,7 +113,7 @@ def is_uncertain(course: MeasureCourse, i: int, ends: list[tuple[float, float]])
     left, right = course.samples[i], course.samples[i + 1]
     width = right.x - left.x
     if left.gap is None or right.gap is None:
-        return (left.gap is None) != (right.gap is None) and width > END_OF_SOLVED * course.spacing
+        return (left.gap is None) != (right.gap is None) and width > tolerances.EDGE_BRACKET * course.spacing
     if course.is_interrupted(i) or width <= 2.0 * course.finest:
         return False
     if find_possible_peak(course, i) is not None:
@@ -143,7 +142,11 @@ def check_scan(course: MeasureCourse) -> None:
     while intervals:
         low, high = intervals.pop()
         i = next(i for i, one, _ in course.iter_pairs() if one.x == low)
-        if course.samples[i + 1].x != high or high - low <= NEAR_JUMP * course.spacing or not may_hide_wave(course, i):
+        if (
+            course.samples[i + 1].x != high
+            or high - low <= tolerances.DOUBTED_NEAR_JUMP * course.spacing
+            or not may_hide_wave(course, i)
+        ):
             continue
         x = low + (high - low) * (0.5 + CHECK_OFFSET * (2.0 * (len(places) * GOLDEN % 1.0) - 1.0))
         prediction = course.predict(i, np.array([x]))
@@ -278,7 +281,7 @@ def is_near_jump(course: MeasureCourse, left: Sample, right: Sample, ends: list[
     """Return whether the measure jumps or ends close to two neighbours; predictions towards a pole are never
     certain.
     """
-    margin = NEAR_JUMP * course.spacing
+    margin = tolerances.DOUBTED_NEAR_JUMP * course.spacing
     return any(low - margin <= left.x and right.x <= high + margin for low, high in ends)
 
 
@@ -362,7 +365,9 @@ def is_steep(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     slopes = [
         ((far.gap or 0.0) - (near.gap or 0.0)) / (far.x - near.x) * (right.side or 0) for near, far in outer_pairs
     ]
-    return slope_inside == 0.0 or (bool(slopes) and min(slopes) > 0.0 and slope_inside <= MAX_STEEPNESS * max(slopes))
+    return slope_inside == 0.0 or (
+        bool(slopes) and min(slopes) > 0.0 and slope_inside <= tolerances.STEEPER_THAN_SLOPE * max(slopes)
+    )
 
 
 def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
@@ -375,7 +380,7 @@ def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     if outer_right.x - outer_left.x < MIN_BRACKET * (right.x - left.x):
         return False
     inner_change = abs((right.gap or 0.0) - (left.gap or 0.0)) + left.error + right.error
-    return inner_change >= MIN_JUMP_RATIO * abs((outer_right.gap or 0.0) - (outer_left.gap or 0.0))
+    return inner_change >= tolerances.JUMP_KEEPS * abs((outer_right.gap or 0.0) - (outer_left.gap or 0.0))
 
 
 def sample_outside(course: MeasureCourse, end: Sample, direction: int, distance: float) -> Sample:

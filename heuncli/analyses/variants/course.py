@@ -20,6 +20,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from heuncli.analyses.variants.measures import NoisyValue, Reason
+from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
 from heuncli.results.results import Array
@@ -34,9 +35,6 @@ FIRST_DISTRUST = 1.25
 MAX_DISTRUST = 16.0
 LOG_RATIO = 4.0  # ratio of neighbouring magnitudes from which on their logarithms are interpolated
 LARGEST_LOG = 690.0  # of a magnitude that does not overflow
-MAX_ISOLATED_WIDTH = (
-    1e-3  # of the spacing: singular poses over a shorter range are isolated places, not a part of the course
-)
 SINGULAR = Reason(
     "singular-pose", "the run passes a singular position only there: its value does not follow its neighbours"
 )
@@ -247,7 +245,7 @@ class MeasureCourse:
                 continue
             adjacent = [k for k in (places[0] - 1, places[-1] + 1) if 0 <= k < len(self.samples)]
             width = self.samples[places[-1]].x - self.samples[places[0]].x
-            is_isolated = width <= MAX_ISOLATED_WIDTH * self.spacing and any(
+            is_isolated = width <= tolerances.ISOLATED_SINGULAR * self.spacing and any(
                 self.samples[k].gap is not None for k in adjacent
             )
             for k in places:
