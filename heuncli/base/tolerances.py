@@ -233,7 +233,7 @@ SAME_INSTANT = 1e-9  # relative to the run's length: instants typed with ten dig
 SIDE_BY_SIDE = 1e-12  # relative to the run's length: thousands of roundings of an instant; a jump between has two sides
 # relative to the largest coordinate: a model of smaller extent is one place; its size is taken as 1 m
 ONE_PLACE = 1e-12
-SAME_CUT = 1e-9  # relative to the length of a run of cuts: places typed with ten digits
+SAME_CUT = 1e-9  # relative to the length of a series of cuts: places typed with ten digits
 # relative to the body's size, or to coordinates along the normal: closer points count as in the cutting plane
 IN_PLANE = 1e-12
 LEAST_EXTENT = 1e-9  # [m] reference length of IN_PLANE if everything is at the origin

@@ -43,7 +43,7 @@ def make_cases_table(
 ) -> OutputTable:
     """Make the table of some groups of numbers.
 
-    has_places: whether the extremes are along runs of cuts, so that their places are shown
+    has_places: whether the extremes are along series of cuts, so that their places are shown
     """
     governing_bounds = find_governing(data)
     shown_cases = _choose_cases(data, groups, governing_bounds)

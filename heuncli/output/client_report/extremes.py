@@ -18,7 +18,7 @@ from heuncli.study.quantities.table_units import Units
 
 LEAST, GREATEST = "least", "greatest"
 PLACE_DECIMALS = 9  # of places [m]
-LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
+LOWEST, HIGHEST = ".lowest", ".highest"  # of a series of cuts
 
 
 class CaseExtreme(NamedTuple):
@@ -26,7 +26,7 @@ class CaseExtreme(NamedTuple):
 
     value: in SI, or a word such as `open` in its place
     time: its instant [s], or None
-    place: its place along a run of cuts, or None
+    place: its place along a series of cuts, or None
     """
 
     value: float | str
@@ -55,7 +55,7 @@ class CaseExtremes(NamedTuple):
 
 
 def find_extremes(run: ReportedRun, path: str) -> CaseExtremes | None:
-    """Find the extremes of a number in one case, for a run of cuts those over the whole run; None if the case has no
+    """Find the extremes of a number in one case, for a series of cuts those over the whole run; None if the case has no
     such number.
     """
     numbers = run.snapshot.numbers
@@ -73,7 +73,7 @@ def find_extremes(run: ReportedRun, path: str) -> CaseExtremes | None:
 def _add_place(
     extreme: CaseExtreme, run: ReportedRun, path: str, find_index: Callable[[Array], np.intp]
 ) -> CaseExtreme:
-    """Add the place to an extreme along a run of cuts that is constant in time; for these the snapshot holds none."""
+    """Add the place to an extreme along a series of cuts that is constant in time; their snapshot holds none."""
     if extreme.place is not None or not isinstance(extreme.value, float):
         return extreme
     _, name, *quantity = path.split(".")
@@ -149,7 +149,7 @@ def is_steady(ends: CaseExtremes, number_style: Style, size: float) -> bool:
 
 
 def format_place_in_unit(place: str | None, units: Units, *, with_unit: bool = True) -> str:
-    """Format a place along a run of cuts, which is stored in metres, and the side on which the load there is
+    """Format a place along a series of cuts, which is stored in metres, and the side on which the load there is
     counted.
     """
     if place is None:

@@ -95,7 +95,7 @@ export class NumberTable {
     return line;
   }
 
-  /** The loads of a section: of a run of cuts those of the chosen cut, with the least and the greatest along it. */
+  /** The loads of a section: of a series of cuts those of the chosen cut, with the least and the greatest along it. */
   addSection(section, number) {
     const body = made("tbody");
     if (number === 0) headed(body, this.data.cutting, "heading");

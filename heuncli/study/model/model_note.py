@@ -119,7 +119,9 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     mechanism, layout = scene.mechanism, scene.layout
     space = "planar" if mechanism.planar else "spatial"
     bodies = format_count(len(layout.place), "body", "bodies")
-    sentences = [f"{space} model of {bodies}, {format_count(model['freedoms'], 'degree of freedom', 'degrees of freedom')}"]
+    sentences = [
+        f"{space} model of {bodies}, {format_count(model['freedoms'], 'degree of freedom', 'degrees of freedom')}"
+    ]
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
         sentences.append(f"loop-closing joint{'s' * (len(cut) > 1)}: {list_some(cut)}; the other joints form the tree")
