@@ -1,8 +1,8 @@
 """Results of a run: the JSON of manual/results.md, with arrays in place of lists.
 
 Arrays are float64 with the instants first: (n_t,), (n_t, 3), (n_t, 3, 3); series of cuts (n_t, n_cuts). `nan` in an
-array means that rigid-body mechanics leaves the component indeterminate (`null` in JSON). A block that does not apply, or was
-not requested, is absent (an empty dict or None). This module does not depend on where the numbers come from.
+array means that rigid-body mechanics leaves the component indeterminate (`null` in JSON). A block that does not apply,
+or was not requested, is absent (an empty dict or None). This module does not depend on where the numbers come from.
 """
 
 from __future__ import annotations
