@@ -226,6 +226,9 @@ ASKEW = 1e-7  # rad: axes of two sheaves that a strand runs between, which only 
 # relative to a sheave's radius: where a run fails with a strand this short, it was wound up. At a distance d from the
 # rim the strand is sqrt(2 R d) long, and steps end where d is rounding, some thousand EPS of R: 1e-6
 WOUND_UP = 1e-4
+COUNTED_ROUND = 0.39  # rad, half of 45 deg: an arc beyond 315 deg is counted as -45 deg, one that lifts off passes 0
+# rad, 225 deg: between two steps an arc that is counted anew jumps by 315 deg and more, a slack rope's end turns less
+RECOUNTED = 3.93
 OFF_SHEAVE = 1e-9  # rad: an arc that is less than none by more has left its sheave
 
 # -- same instant, same place, same direction

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from heuncli.base.errors import HeunError
-from heuncli.motion.integration.diagnosis.guide_departures import find_wound_up, iter_rope_parts
+from heuncli.motion.integration.diagnosis.guide_departures import (
+    find_recounted,
+    find_wound_up,
+    is_counted_round,
+    iter_rope_parts,
+)
 from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.honesty.boundaries.part import Part, Row
@@ -160,6 +167,11 @@ def left_at(x: float) -> str:
     return "wound up" if find_wound_up(layout, evaluation) else "not for its rope"
 
 
+def turned(x: float) -> str:
+    """An arc that changes by x from one step to the next."""
+    return "counted anew" if len(find_recounted(np.array([0.0, 1.0]), np.array([0.1, 0.1 + x]))) else "turned"
+
+
 ROPES = Part(
     headings=("ropes over sheaves",),
     rows=(
@@ -167,6 +179,8 @@ ROPES = Part(
         Row("FLEET_SEEN", swung, "fine", "warned of"),
         Row("ASKEW", lambda x: roped(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
         Row("WOUND_UP", left_at, "wound up", "not for its rope"),
+        Row("COUNTED_ROUND", lambda x: "all round" if is_counted_round(-x) else "lifts off", "lifts off", "all round"),
+        Row("RECOUNTED", turned, "turned", "counted anew"),
         Row("OFF_SHEAVE", lifted, "fine", "refused: rope-off-sheave"),
     ),
 )

@@ -34,9 +34,7 @@ WOUND_ROUND = "lies on a sheave over more than 315 deg: heun counts an arc up to
 WOUND_ROUND_HINT = "end the run before, or use slip: none with a pin that winds the rope (a drum)"
 GONE_AROUND = "is slack, and its end goes round behind a sheave: heun does not know how it lies on it then"
 GONE_AROUND_HINT = "end the run before"
-RECOUNTED = 1.25 * math.pi  # rad: more than a slack rope's end turns in one step, less than a turn that is not counted
 NO_INDICES: Indices = np.zeros(0, dtype=np.intp)
-HALF_OF_UNCOUNTED = math.pi / 8.0  # rad: an arc counted as -45 deg is 315 deg; one that lifts off passes 0
 HINT = "mount the sheave on a bearing that swivels with the rope, or use a plain point instead"
 
 
@@ -57,7 +55,7 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation, *, has_all_steps:
             )
             recounted = find_recounted(evaluation.times, angle) if has_all_steps else NO_INDICES
             violations = np.union1d(violations, recounted)
-            if len(violations) and angle[violations[0]] < -HALF_OF_UNCOUNTED:
+            if len(violations) and is_counted_round(float(angle[violations[0]])):
                 message, hint = WOUND_ROUND, WOUND_ROUND_HINT
             elif len(violations) and violations[0] in recounted:
                 message, hint = GONE_AROUND, GONE_AROUND_HINT
@@ -82,13 +80,18 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation, *, has_all_steps:
         raise SolveError(min(problems, key=lambda one: one[0])[1])
 
 
+def is_counted_round(angle: float) -> bool:
+    """Return whether an arc of less than 0 is one of more than 315 degrees, which the kernel counts from -45 on."""
+    return angle < -tolerances.COUNTED_ROUND
+
+
 def find_recounted(times: Array, angle: Array) -> Indices:
     """Return the instants at which an arc is counted anew: as none where it was all around the sheave, or the reverse.
 
     A taut rope that stretches is slack from there on, for it seems shorter by the sheave's circumference.
     """
     order = np.argsort(times, kind="stable")
-    return np.asarray(order[1:][np.abs(np.diff(angle[order])) > RECOUNTED], dtype=np.intp)
+    return np.asarray(order[1:][np.abs(np.diff(angle[order])) > tolerances.RECOUNTED], dtype=np.intp)
 
 
 FLEET = f"{math.degrees(tolerances.FLEET_ANGLE):.0f} deg"
