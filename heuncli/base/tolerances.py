@@ -98,6 +98,43 @@ ORDERS_SETTLED = (
     1e-12  # relative to the largest order: limit on the highest orders for all lower ones to be reported; FFT roundings
 )
 
+NO_PART = 1e-9  # relative to the larger of two parts of an order: models typed with ten digits turn one way that well
+NAMED_ORDER = (
+    1e-3  # relative to the largest order: a smaller one alters no sum by a tenth of a percent, and is not named
+)
+LISTED_ORDER = 1e-4  # likewise: a smaller one is no digit of a table of four digits, and is listed only on request
+# relative to the mean magnitude of the torque: a load that is typed with six digits to match another balances that well
+NO_NET_WORK = 1e-6
+NO_SQUARE = 1e-12  # relative to the largest square: of a millionth of the largest load, a digit that no table shows
+NO_WEIGHT = (
+    1e-9  # relative to the heaviest product: the iteration ends at half the digits of EPS, a tenth of that is rounding
+)
+# relative to the largest effect of a product: accelerations of a cycle are sums of hundreds of terms, with ten digits
+NO_EFFECT = 1e-10
+LAW_FOLLOWED = 1e-6  # relative to a law's range over the cycle: six digits, as in a table
+# relative to a cycle: places of breaks are known to SIDE_BY_SIDE, a hundredth of it
+BESIDE_BREAK = 1e-10
+# relative to the terms: a tail as small that halving hardly reduces is rounding of the numbers, not their course
+RESOLVED_TO_NOISE = 1e-7
+SHORTEST_PIECE = 64.0 * EPS  # relative to the cycle, or its angles: sixteen nodes are four roundings apart
+
+# -- meetings: where a measure takes a value between its samples
+# relative to the distance of samples in the scan: a jump is bracketed to 1e-10, and polynomials through samples on one
+# side of it are of use only to eight halvings
+DOUBTED_NEAR_JUMP = 1.0 / 256.0
+EDGE_BRACKET = 1.0 / 32.0  # likewise: five halvings, from which on the edge itself is predicted
+ISOLATED_SINGULAR = 1e-3  # likewise: singular positions over less are an isolated place, not a part of the course
+NEAR_SINGULAR_RUN = 1e-6  # likewise: nearer to a singular position no run tells more
+# factor on the slope outside of the narrowest bracket: a smooth measure's slope does not grow tenfold within so little
+STEEPER_THAN_SLOPE = 10.0
+# relative to the change across a bracket a thousand times as wide: a jump keeps all of it, a root of x - c 3 %
+JUMP_KEEPS = 0.8
+FAR_FROM_VALUE = 1e4  # factor on the value and the usual size: a pole of first order is then four digits closer than it
+RISES_TO_END = 0.5  # relative to an exponential rise: a pole rises faster, a peak that was passed by far less
+FLATTENS = 1.5  # power of the distance with which g grows: between a crossing (1) and a touch (2)
+# factor on the smallest distance of places: a touch within it doubles |g| at the next place or at the one after
+TOUCH_DOUBLES = 3.0
+
 # -- coordinates of Lagrange's equations
 COORDINATE_RATIO = (
     1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
@@ -189,6 +226,9 @@ ASKEW = 1e-7  # rad: axes of two sheaves that a strand runs between, which only 
 # relative to a sheave's radius: where a run fails with a strand this short, it was wound up. At a distance d from the
 # rim the strand is sqrt(2 R d) long, and steps end where d is rounding, some thousand EPS of R: 1e-6
 WOUND_UP = 1e-4
+COUNTED_ROUND = 0.39  # rad, half of 45 deg: an arc beyond 315 deg is counted as -45 deg, one that lifts off passes 0
+# rad, 225 deg: between two steps an arc that is counted anew jumps by 315 deg and more, a slack rope's end turns less
+RECOUNTED = 3.93
 OFF_SHEAVE = 1e-9  # rad: an arc that is less than none by more has left its sheave
 
 # -- same instant, same place, same direction
@@ -196,7 +236,7 @@ SAME_INSTANT = 1e-9  # relative to the run's length: instants typed with ten dig
 SIDE_BY_SIDE = 1e-12  # relative to the run's length: thousands of roundings of an instant; a jump between has two sides
 # relative to the largest coordinate: a model of smaller extent is one place; its size is taken as 1 m
 ONE_PLACE = 1e-12
-SAME_CUT = 1e-9  # relative to the length of a run of cuts: places typed with ten digits
+SAME_CUT = 1e-9  # relative to the length of a series of cuts: places typed with ten digits
 # relative to the body's size, or to coordinates along the normal: closer points count as in the cutting plane
 IN_PLANE = 1e-12
 LEAST_EXTENT = 1e-9  # [m] reference length of IN_PLANE if everything is at the origin

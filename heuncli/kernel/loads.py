@@ -190,7 +190,7 @@ def apply_rope_load(scene: cython.pointer[Scene], load: cython.pointer[Load], ve
     """
     motion: RopeMotion = measure_rope(scene, load)
     load.from_at = load.at
-    load.value = NAN if vector.x != 0.0 and has_wound_up(scene, load) else vector.x
+    load.value = NAN if has_wound_up(scene, load) else vector.x
     load.span = motion.S
     load.rate = motion.rate
     load.power = load.value * load.rate

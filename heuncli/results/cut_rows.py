@@ -1,4 +1,4 @@
-"""Select the rows of a run of cuts that a path means: `M2@0.28`, `M2@end`, `M2.7`, `M2@0.28:before`.
+"""Select the rows of a series of cuts that a path means: `M2@0.28`, `M2@end`, `M2.7`, `M2@0.28:before`.
 
 A position is a distance from the run's first point, by default in metres, or one of its ends; it follows the quantity
 or its component. A number is the index of a requested cut, from 0. Where a load acts in the plane of a cut there are
@@ -43,13 +43,13 @@ def parse_cut(word: str) -> CutSelector:
     match = index_match if position_match is None else position_match
     side = None if match is None else match["side"]
     if (cut is None and position_match is None) or (side is not None and side not in SIDES):
-        raise cut_error(f"'{word}' is not a position along a run of cuts", ACCEPTED)
+        raise cut_error(f"'{word}' is not a position along a series of cuts", ACCEPTED)
     if position_match is None:
         return CutSelector(None, None, cut, side)
     position = position_match["at"].lower()
     if position in ("start", "end"):
         if position_match["unit"]:
-            raise cut_error(f"'{word}' is not a position along a run of cuts", ACCEPTED)
+            raise cut_error(f"'{word}' is not a position along a series of cuts", ACCEPTED)
         return CutSelector(None, position, None, side)
     return CutSelector(float(position) * _unit_in_metres(word, position_match["unit"]), None, None, side)
 

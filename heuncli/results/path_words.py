@@ -1,4 +1,4 @@
-"""Words of paths, with positions along a run of cuts among them: `M2@0.28`, `M2@end`, `M2.7`, `M2@0.28:before`."""
+"""Words of paths, with positions along a series of cuts among them: `M2@0.28`, `M2@end`, `M2.7`, `M2@0.28:before`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from heuncli.results.results_schema import parse_index
 
-NO_RUN = "@ gives a position along a run of cuts (section with from, to and count): leave it out"
+NO_RUN = "@ gives a position along a series of cuts (section with from, to and count): leave it out"
 NUMBER = r"(?:\d+(?:\.\d+)?|\.\d+)(?:e[+-]?\d+)?"
 POSITION_WORD = re.compile(
     rf"@(?P<at>start|end|{NUMBER})(?P<unit>[^\W\d_]*)(?::(?P<side>\w*))?(?=\.|\Z)", re.IGNORECASE

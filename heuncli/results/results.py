@@ -1,8 +1,8 @@
 """Results of a run: the JSON of manual/results.md, with arrays in place of lists.
 
-Arrays are float64 with the instants first: (n_t,), (n_t, 3), (n_t, 3, 3); runs of cuts (n_t, n_cuts). `nan` in an array
-means that rigid-body mechanics leaves the component indeterminate (`null` in JSON). A block that does not apply, or was
-not requested, is absent (an empty dict or None). This module does not depend on where the numbers come from.
+Arrays are float64 with the instants first: (n_t,), (n_t, 3), (n_t, 3, 3); series of cuts (n_t, n_cuts). `nan` in an
+array means that rigid-body mechanics leaves the component indeterminate (`null` in JSON). A block that does not apply,
+or was not requested, is absent (an empty dict or None). This module does not depend on where the numbers come from.
 """
 
 from __future__ import annotations
@@ -195,8 +195,8 @@ class Results:
 
 
 class CutPosition(NamedTuple):
-    """A position in a run of cuts: distance s [m], side of a load there, and the index of the requested cut, if it is
-    one.
+    """A position in a series of cuts: distance s [m], side of a load there, and the index of the requested cut, if it
+    is one.
     """
 
     s: float

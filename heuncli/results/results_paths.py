@@ -145,7 +145,7 @@ def _find_axes(results: Results, keys: Sequence[str], row: Quantity | None, dime
 
 
 def _is_in_cut_run(results: Results, keys: Sequence[str]) -> bool:
-    """Whether the keys lead into a run of cuts, of the whole motion or of one impulse."""
+    """Whether the keys lead into a series of cuts, of the whole motion or of one impulse."""
     return "s" in find_section(results, keys)
 
 

@@ -47,7 +47,7 @@ def parse_index(word: str) -> int | None:
 MAX_DIGITS = 12  # of a place in a list: none is as long, and Python reads no more than 4300
 SPACE = Axis("space", ("x", "y", "z"))
 QUATERNION = Axis("quaternion", ("w", "x", "y", "z"))
-CUT = Axis("cut")  # only in runs of cuts
+CUT = Axis("cut")  # only in series of cuts
 INSTANT = Axis("instant")
 INDEX = Axis("index")  # of lists that the schema does not describe
 XYZ = SPACE.letters
@@ -78,7 +78,7 @@ class Quantity(NamedTuple):
         return self.units[-1 if turning else 0]
 
     def instant_axes(self, run: bool = False) -> Shape:
-        """Return the axes at one instant; run: whether it is a run of cuts, which adds the axis of the cuts."""
+        """Return the axes at one instant; run: whether it is a series of cuts, which adds the axis of the cuts."""
         return tuple(axis for axis in self.shape if run or axis is not CUT)
 
 
@@ -237,7 +237,7 @@ ROWS: tuple[Quantity, ...] = (
         "extremes over the section, [on the safe side](stresses.md); `utilisation` is `mises` over `strength`",
         *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES)),
     *rows("sections.SECTION", "kinetic energy of the far side", cut_scalar("energy", "J")),
-    *rows("sections.SECTION", "for a run of cuts: distance from its first point to each cut",
+    *rows("sections.SECTION", "for a series of cuts: distance from its first point to each cut",
         scalar("s", "m", (CUT,), is_timed=False)),
     *rows("sections.SECTION", "for a run: before or beyond the load in the plane of the cut", words("side")),
     *shares("sections.SECTION", cut_vector("force", "N"), cut_vector("moment", "N·m"),
@@ -412,7 +412,7 @@ def _is_no_number(keys: tuple[str, ...]) -> bool:
 
 
 def independent_axes(axes: Shape) -> Shape:
-    """Return the axes along which extremes are separate: a vector counts by its magnitude, a run of cuts as a whole.
+    """Return the axes along which extremes are separate: a vector counts by its magnitude, a series of cuts as a whole.
 
     One number for an attitude, by its quaternion or its rows, would mean nothing.
     """

@@ -251,3 +251,44 @@ def test_a_spec_is_not_written_over(heun: Heun, folder: Path) -> None:
     before = (folder / "hanging.yaml").read_text()
     heun("tune", "hanging.yaml", "m=1:2kg", *WEIGHT, "--history", "hanging.yaml")
     assert (folder / "hanging.yaml").read_text() == before
+
+
+JUMPING = """\
+heun: 1
+title: A goal under a limit that jumps
+parameters: {{x: 0.2}}
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  a: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}
+joints:
+  w: {{type: weld, from: ground.O, to: a.o}}
+forces:
+  f: {{type: force, on: a.o, vector: ["-(x-0.9)**2", "{law}", 0]}}
+analysis: {{type: state}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("law", "place"),
+    [
+        ("1 if x < 0.437 else 3", 0.437),
+        ("x if x < 0.6 else 2+x", 0.6),
+        ("tanh(1e4*(x-0.437))+2", None),
+        ("2+sign(x-0.437)*sqrt(abs(x-0.437))", None),
+        ("4*x", None),
+    ],
+)
+def test_a_limit_that_jumps_is_told(heun: Heun, folder: Path, law: str, place: float | None) -> None:
+    """Steep and vertical laws that pass their limit do not jump."""
+    (folder / "jumping.yaml").write_text(JUMPING.format(law=law))
+    words = ["jumping.yaml", "x=0:1", "--minimise", "joints.w.force.x", "--subject-to", "joints.w.force.y >= -2"]
+    found = found_by(heun, *words)
+    (x,) = found["variables"]
+    up = x["moves"]["hundredth"][1]
+    assert up.get("jumps") == ("joints.w.force.y" if place is not None else None)
+    assert ("beside a jump: joints.w.force.y jumps where x goes up" in heun("tune", *words).stdout) == (
+        place is not None
+    )
+    if place is not None:
+        assert x["value"] == pytest.approx(place, abs=1e-4)
+        assert up["until"] == "joints.w.force.y"

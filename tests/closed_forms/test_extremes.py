@@ -1,4 +1,4 @@
-"""Extremes by closed forms: between the samples, through zero, over the whole stretch of a run of cuts."""
+"""Extremes by closed forms: between the samples, through zero, over the whole stretch of a series of cuts."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_a_magnitude_through_zero() -> None:
     assert in_table(run, "JOINTS", "radial")[4] == "0"
 
 
-# ---- along runs of cuts
+# ---- along series of cuts
 RADIUS, DENSITY, AT, END, PUSH = 0.02, 7850.0, 0.37, 0.55, 500.0
 
 

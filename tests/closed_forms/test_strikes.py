@@ -511,7 +511,7 @@ analysis: {{times: [0, {fall + 1e-3!r}], tolerance: 1e-12}}
         assert run.results.coordinates["guide"]["travel"][-1] >= -1e-12
 
 
-# ---- a run of cuts in what is struck
+# ---- a series of cuts in what is struck
 def test_a_cut_in_a_ball_that_strikes() -> None:
     """A bar falls end on: N at a cut is the momentum of what is above it, which is pressed."""
     run = study(

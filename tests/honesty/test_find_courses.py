@@ -31,6 +31,14 @@ def test_narrow_peaks_flat_touches_and_near_pairs_are_not_passed_over(seed: int)
     assert verdict.wrong == [], (course, relation)
 
 
+@pytest.mark.parametrize("seed", [592, 729, 2003, 152, 620, 971, 958, 1565])
+def test_gaps_at_ends_beside_poles_and_touches_of_zero_are_searched(seed: int) -> None:
+    """A law that breaks in the last gap; a pole and a zero in one gap; touches whose error vanishes there."""
+    course, relation, verdict = judged(seed, direct=True)
+    assert verdict.wrong == [], (course, relation)
+    assert verdict.runs < 250
+
+
 @pytest.mark.parametrize(("off", "is_open"), [(3.0, True), (1000.0, False)])
 def test_what_errors_leave_open_is_not_met_nowhere(off: float, is_open: bool) -> None:
     """A parabola three errors above the value comes to it as far as anyone knows; at a thousand errors it does not."""

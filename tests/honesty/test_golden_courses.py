@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from heuncli.output.snapshots.changes import find_changes
+from tests.honesty import golden_means
 from tests.honesty.golden_courses import Course, Pulse, drawn, kept, look_at
 
 
@@ -23,3 +24,10 @@ def test_a_load_that_moves_and_a_second_peak_that_grows_are_found() -> None:
     one, other = kept(early.spec(101)), kept(late.spec(101))
     assert one.numbers["joints.w.force"].greatest == other.numbers["joints.w.force"].greatest
     assert {change.path for change in find_changes(one, other)} >= {"joints.w.force", "joints.w.force.x"}
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(12))
+def test_means_of_loads_that_jump_are_right_to_their_error(seed: int) -> None:
+    outcome = golden_means.look_at(seed)
+    assert outcome.ratios is None or max(outcome.ratios) <= 1.0, outcome

@@ -80,7 +80,7 @@ LOADS = """
 
 @pytest.mark.parametrize("seed", range(6))
 def test_slopes_of_bending_at_rest(seed: int) -> None:
-    """Between loads s' is linear and M' quadratic along a uniform bar: trapezoids over a run of cuts are exact."""
+    """Between loads s' is linear and M' quadratic along a uniform bar: trapezoids over a series of cuts are exact."""
     found = solved(beam(np.random.default_rng(seed), LOADS, "weld")).sections["run"]
     s, side = found["s"], found["side"]
     gaps = [k for k in range(len(s) - 1) if s[k + 1] > s[k]]

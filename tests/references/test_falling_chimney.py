@@ -71,7 +71,7 @@ def test_largest_moment_at_one_third() -> None:
 
 
 def test_along_the_fall() -> None:
-    """A run of cuts over the motion from 20° on, against the formulas at the angle reached."""
+    """A series of cuts over the motion from 20° on, against the formulas at the angle reached."""
     found = chimney(20, 2, 5, "{run: {body: chimney, from: foot, to: tip, count: 11}}",
                     "{duration: 1.2, samples: 13, tolerance: 1e-12}")  # fmt: skip
     tilt = found.coordinates["foot"]["angle"][:, None]

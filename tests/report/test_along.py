@@ -1,4 +1,4 @@
-"""Runs of cuts over a motion: extremes of loads and stresses along them and at each cut, the same in head and rows."""
+"""Series of cuts over a motion: extremes of loads and stresses along and at each cut, the same in head and rows."""
 
 from __future__ import annotations
 

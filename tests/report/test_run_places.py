@@ -1,4 +1,4 @@
-"""Places along a run of cuts: by distance, by end and by number, in every path, whatever rows loads add to it."""
+"""Places along a series of cuts: by distance, by end and by number, in every path, whatever rows loads add to it."""
 
 from __future__ import annotations
 
@@ -98,11 +98,11 @@ def test_of_a_blow() -> None:
         ("arm.Q1.15", "the run has 15 cuts, 0 to 14", "14"),
         ("arm.Q1@start:before", "the run begins there, with the cut just beyond", "@start:beyond"),
         ("arm.Q1@end:beyond", "", ""),
-        ("arm.Q1@0.3:under", "is not a position along a run of cuts", ":before or :beyond"),
-        ("arm.Q1@middle", "is not a position along a run of cuts", "@start or @end"),
+        ("arm.Q1@0.3:under", "is not a position along a series of cuts", ":before or :beyond"),
+        ("arm.Q1@middle", "is not a position along a series of cuts", "@start or @end"),
         ("arm.Q1@3deg", "deg is an angle", "@280mm"),
         ("arm.Q1@3parsec", "'parsec' is not a unit", "@280mm"),
-        ("one.Q1@0.1", "has no '@0.1'", "a position along a run of cuts"),
+        ("one.Q1@0.1", "has no '@0.1'", "a position along a series of cuts"),
     ],
 )
 def test_what_is_no_place(path: str, message: str, hint: str) -> None:

@@ -24,7 +24,7 @@ T = np.linspace(0.0, 2.0, 5)
 
 
 def run_of(count: int, t: np.ndarray = T) -> dict[str, object]:
-    """A run of cuts; at the cut k M2 is k + 1 times a wave, so that the last one has the largest."""
+    """A series of cuts; at the cut k M2 is k + 1 times a wave, so that the last one has the largest."""
     wave = np.sin(t)[:, None] * np.arange(1.0, count + 1.0)
     force = np.stack([vectors(t, k, 0.0, 0.0) for k in range(count)], axis=1)
     s = np.linspace(0.0, 1.0, count)

@@ -183,7 +183,7 @@ class FakeStudy:
         ]
 
     def with_whole_cuts(self, bent: bool) -> Any:
-        """What stands for the scene with its runs of cuts as stretches."""
+        """What stands for the scene with its series of cuts as stretches."""
         return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
 
     chunk_size = 1000
@@ -205,7 +205,7 @@ def stretch_like(name: str, section: dict[str, Any]) -> Stretch:
 
 
 def at_nodes(name: str, section: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-    """A section, a run of cuts with its values at nine nodes between each two cuts."""
+    """A section, a series of cuts with its values at nine nodes between each two cuts."""
     if "s" not in section:
         return name, section
     s, share = section["s"], 0.5 * (NODES + 1.0)
@@ -219,7 +219,7 @@ def at_nodes(name: str, section: dict[str, Any]) -> tuple[str, dict[str, Any]]:
 
 
 def blow_at_nodes(section: Block) -> Block:
-    """A section of a blow, a run of cuts with its values at nodes."""
+    """A section of a blow, a series of cuts with its values at nodes."""
     run = len(section["s"]) if "s" in section else 0
     timed = {key: value[None] if key != "s" and np.shape(value)[:1] == (run,) and run else value
              for key, value in section.items() if key != "side"}  # fmt: skip

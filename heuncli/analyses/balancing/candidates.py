@@ -12,10 +12,9 @@ import math
 
 import numpy as np
 
+from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array
-
-NO_EFFECT = 1e-10  # of the largest effect of a product: rounding of a cycle's accelerations
 
 
 @record
@@ -79,7 +78,7 @@ class Candidate:
         given.
         """
         nonlinear_effects = np.abs(self.by_mass).max() / self.radius, self.radius * np.abs(self.by_square).max()
-        return bool(max(nonlinear_effects) <= NO_EFFECT * largest_effect)
+        return bool(max(nonlinear_effects) <= tolerances.NO_EFFECT * largest_effect)
 
     @property
     def columns(self) -> Array:

@@ -34,7 +34,6 @@ MIN_INTERVALS_PER_TURN = 1080  # intervals per turn, at least; on each, extremes
 MIN_INTERVALS_PER_PIECE = 8  # of a piece
 HALVINGS = 2  # of pieces, for the time of a cycle: its integrand is steep where the rate nearly vanishes
 RATES = frozenset({"rate", "speed", "vx", "vy", "vz"})
-NEGLIGIBLE_WORK = 1e-6  # of the mean |power|: net work below this is rounding of a load matched to a gas force
 MAX_CHORD_STEPS = 200
 NEWTON_STEPS, REFINEMENT_STEPS = 4, 3
 
@@ -245,6 +244,14 @@ def compute_wheel_numbers(scene: LoadedScene) -> CycleNumbers:
     )
 
 
+def choose_constant_torque(mean_torque: float, mean_magnitude: float) -> float:
+    """Return the constant torque [N m] that closes a cycle; 0 if its loads balance to the digits of their data.
+
+    mean_magnitude: mean of |torque|
+    """
+    return 0.0 if abs(mean_torque) <= tolerances.NO_NET_WORK * mean_magnitude else -mean_torque
+
+
 def make_work_curve(numbers: CycleNumbers, bodies: int) -> tuple[WorkCurve, float, WorkErrors]:
     """Return the work curve of a cycle, the constant torque [N m] that closes it (0 if below rounding of the data), and
     its errors.
@@ -253,7 +260,7 @@ def make_work_curve(numbers: CycleNumbers, bodies: int) -> tuple[WorkCurve, floa
     body_eps, body_slopes = values[:, -2 * bodies : -bodies], values[:, -bodies:]
     k, eps, slope = values[:, : -2 * bodies].sum(axis=1), body_eps.sum(axis=1), body_slopes.sum(axis=1)
     mean_torque, mean_magnitude = float(nodes.weights @ k), float(nodes.weights @ np.abs(k))
-    constant_torque = 0.0 if abs(mean_torque) <= NEGLIGIBLE_WORK * mean_magnitude else -mean_torque
+    constant_torque = choose_constant_torque(mean_torque, mean_magnitude)
     columns = np.stack([k - mean_torque, eps, slope], axis=1)
     coefficients = nodes.compute_coefficients(columns)
     work = nodes.integrate(coefficients[:, :, :1])

@@ -19,9 +19,7 @@ from heuncli.results.results import Array
 from heuncli.scene.expressions.composition import JUMPS
 from heuncli.scene.expressions.programs import CONST, HOLD, KNOT, TABLE, VAR, Expression
 
-MAX_EXCESS = 1e-6  # of a law's range over the cycle: by how much bounds may exceed the samples
 SAMPLE_FRACTIONS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])  # of a stretch, at which the polynomial is evaluated
-PIECE_END_MARGIN = 1e-10  # of a cycle: this close to the end of a piece a law may be on the other side of a break
 DEFERRED_SHARE = (
     1e-2  # of the most that any stretch may hide: those that may hide less are looked at later; and of what one
 )
@@ -93,7 +91,7 @@ def find_law_deviations(law: Expression, nodes: PieceNodes) -> tuple[Array, bool
     if not np.isfinite(values).all():
         return np.zeros(0), True  # refused when the scene is solved
     coefficients = nodes.compute_coefficients(values)
-    margin = PIECE_END_MARGIN * nodes.length
+    margin = tolerances.BESIDE_BREAK * nodes.length
     a, b = nodes.begins + margin, nodes.ends - margin
     a, b = a[b > a], b[b > a]
     excesses = compute_excess(law, nodes, coefficients, a, b)
@@ -109,7 +107,9 @@ def find_law_deviations(law: Expression, nodes: PieceNodes) -> tuple[Array, bool
             np.array(law.sample(compute_angles(nodes, middle).tolist())) - nodes.evaluate(coefficients, middle)[:, 0]
         )
         size = max(size, float(deviations.max(initial=0.0)))
-        is_deviating = (deviations > MAX_EXCESS * size) & (deviations > DEFERRED_SHARE * excesses[is_current])
+        is_deviating = (deviations > tolerances.LAW_FOLLOWED * size) & (
+            deviations > DEFERRED_SHARE * excesses[is_current]
+        )
         places.append(middle[is_deviating])
         left, right = a[is_current][~is_deviating], b[is_current][~is_deviating]
         wide = right - left > tolerances.SIDE_BY_SIDE * nodes.length
@@ -118,7 +118,7 @@ def find_law_deviations(law: Expression, nodes: PieceNodes) -> tuple[Array, bool
         new_excesses = compute_excess(law, nodes, coefficients, new_a, new_b)
         a, b = np.concatenate([a[~is_current], new_a]), np.concatenate([b[~is_current], new_b])
         excesses = np.concatenate([excesses[~is_current], new_excesses])
-        counts = ~(excesses <= MAX_EXCESS * size) if size > 0.0 else excesses > 0.0
+        counts = ~(excesses <= tolerances.LAW_FOLLOWED * size) if size > 0.0 else excesses > 0.0
         a, b, excesses = a[counts], b[counts], excesses[counts]
     return np.concatenate(places), True
 

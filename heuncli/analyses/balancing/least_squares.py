@@ -14,7 +14,7 @@ from itertools import product
 
 import numpy as np
 
-from heuncli.analyses.balancing.candidates import NO_EFFECT, Candidate
+from heuncli.analyses.balancing.candidates import Candidate
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.results.results import Array
@@ -23,7 +23,6 @@ MAX_STARTS = 1000  # combinations of directions of all weights
 MIN_DIRECTIONS = 6
 MAX_STEPS, MAX_HALVINGS = 200, 40
 RELATIVE_DIFFERENCE = 1e-5  # of |U|: step for second derivatives; first ones are exact
-NEGLIGIBLE_SIZE = 1e-9  # of the largest: a weight smaller than this becomes 0
 
 
 def solve_products(
@@ -52,7 +51,7 @@ def solve_linear(A: Array, constant: Array, size: float) -> tuple[Array, bool]:
 
     size: reference size of columns that have an effect
     """
-    is_active = np.sqrt(np.sum(A * A, axis=0)) > NO_EFFECT * size
+    is_active = np.sqrt(np.sum(A * A, axis=0)) > tolerances.NO_EFFECT * size
     x = np.zeros(A.shape[1])
     if not is_active.any():
         return x, True
@@ -135,7 +134,7 @@ def refine_products(constant: Array, candidates: Sequence[Candidate], U: Array) 
     refined = U.copy()
     refined[active] = x.reshape(-1, 2)
     sizes = np.sqrt(np.sum(refined**2, axis=1))
-    refined[sizes <= NEGLIGIBLE_SIZE * sizes.max()] = 0.0
+    refined[sizes <= tolerances.NO_WEIGHT * sizes.max()] = 0.0
     return refined
 
 

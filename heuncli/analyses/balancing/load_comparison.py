@@ -27,7 +27,6 @@ from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import Recovery
 
 MOMENTS = ("moment", "drive")
-NEGLIGIBLE_SQUARE = 1e-12  # of the largest square: a magnitude of a millionth, whose rounding affects no digit shown
 
 
 def compute_cycle_loads(
@@ -81,7 +80,7 @@ def compute_rounding(values: Array, names: Sequence[str], size: float) -> list[f
     """
     force = max(float(values[:, k].max()) for k, name in enumerate(names) if name not in MOMENTS)
     moment = max(force * size**2, *(float(values[:, k].max()) for k, name in enumerate(names) if name in MOMENTS))
-    return [tolerances.ORDERS_SETTLED * NEGLIGIBLE_SQUARE * (moment if name in MOMENTS else force) for name in names]
+    return [tolerances.ORDERS_SETTLED * tolerances.NO_SQUARE * (moment if name in MOMENTS else force) for name in names]
 
 
 def compare_loads(

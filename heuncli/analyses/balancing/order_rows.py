@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.analyses.balancing.cycle_nodes import CycleNodes
 from heuncli.analyses.balancing.effects import MassEffects
 from heuncli.analyses.balancing.harmonics import compute_rotating_vectors
-from heuncli.analyses.balancing.order_selection import ALL_ORDERS, IN_TABLE, OrderSelection
+from heuncli.analyses.balancing.order_selection import ALL_ORDERS, OrderSelection
 from heuncli.analyses.balancing.results import OrderRow
 from heuncli.analyses.balancing.verdicts import classify_order
 from heuncli.base import tolerances
@@ -89,7 +89,11 @@ def make_order_rows(
     terms = body_sums + sum(
         (magnitudes(part).sum(axis=1) for part in part_amplitudes.values()), np.zeros_like(body_sums)
     )
-    significance = rounding if nodes.last_order is not None else max(IN_TABLE * float(terms.max(initial=0.0)), rounding)
+    significance = (
+        rounding
+        if nodes.last_order is not None
+        else max(tolerances.LISTED_ORDER * float(terms.max(initial=0.0)), rounding)
+    )
     last = int(orders[np.flatnonzero(terms > significance).max(initial=turns - 1)])
     selected = np.flatnonzero((orders <= last) | selection.are_requested(orders, turns))
     sizes_of_sums, zero_levels = magnitudes(total), np.maximum(tolerances.CANCELS * body_sums, rounding)

@@ -18,7 +18,6 @@ from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array, Indices, Mask
 
-IN_TABLE = 1e-4  # of the largest order: smaller ones are listed only on request
 FIRST_ORDERS = 64
 MIN_DOUBLINGS = (
     4  # doublings of the number of orders, after which two in a row without a significant order end the search
@@ -76,13 +75,13 @@ def find_last_order(nodes: PieceNodes, values: Array, threshold: float) -> int:
         sizes.append(np.sqrt(np.sum(np.abs(nodes.compute_amplitudes(values, orders)) ** 2, axis=1)))
         largest = max(largest, float(sizes[-1].max()))
         first = int(orders[-1]) + 1
-        k, significance = first / nodes.turns, max(IN_TABLE * largest, threshold)
+        k, significance = first / nodes.turns, max(tolerances.LISTED_ORDER * largest, threshold)
         is_negligible = [float(size.max(initial=0.0)) <= significance for size in sizes[-2:]]
         if jumps / k + bends / k**2 <= significance or (
             len(sizes) > MIN_DOUBLINGS and all(is_negligible) and first > 2.0 * band
         ):
             break
-    significant = np.flatnonzero(np.concatenate(sizes) > max(IN_TABLE * largest, threshold))
+    significant = np.flatnonzero(np.concatenate(sizes) > max(tolerances.LISTED_ORDER * largest, threshold))
     return max(int(significant[-1]) + 1 if len(significant) else 0, FIRST_ORDERS)
 
 
@@ -91,7 +90,7 @@ def find_fastest_wave(nodes: PieceNodes, values: Array) -> float:
     coefficients = nodes.compute_coefficients(values)
     width = nodes.ends - nodes.begins
     shares = np.abs(coefficients).max(axis=2) * (width / nodes.length)[:, None]
-    is_significant = shares > IN_TABLE * shares.sum(axis=0).max(initial=0.0)
+    is_significant = shares > tolerances.LISTED_ORDER * shares.sum(axis=0).max(initial=0.0)
     degree = (is_significant * np.arange(MAX_NODES)).max(axis=1)
     return float((degree * 2.0 / width).max()) * nodes.turns
 

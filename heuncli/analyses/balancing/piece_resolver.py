@@ -23,9 +23,7 @@ Sample = Callable[[Array], Array]  # maps ascending places (n,) to numbers (n, c
 FIRST_NODES = 8  # nodes of a short piece at first; other pieces have MAX_NODES
 SHORT_PIECE = 0.05  # of a turn
 MAX_PIECE = 0.125  # of a turn: longest piece at first
-NOISE_TAIL = 1e-7  # relative tail; a smaller one that halving reduces by less than ...
 MIN_TAIL_REDUCTION = 0.25  # ... this factor is rounding of the numbers
-MIN_LENGTH = 64.0 * tolerances.EPS  # of the cycle, or of its angles: no node fits into a shorter piece
 GRADING = 8.0  # ratio of the lengths of adjacent pieces towards a place that is resolved again
 MAX_EVALUATIONS = 400_000
 
@@ -66,7 +64,7 @@ class CycleResolver:
         self.values: list[Array] = []
         self.largest: Array | None = None
         self.is_resolved, self.evaluations = True, 0
-        self.min_length = MIN_LENGTH * max(cycle.length, abs(cycle.begin) + cycle.length)
+        self.min_length = tolerances.SHORTEST_PIECE * max(cycle.length, abs(cycle.begin) + cycle.length)
 
     def resolve(self, marks: Array) -> ResolvedNumbers:
         """Divide the cycle at the marks (places) and refine the pieces until all are resolved."""
@@ -145,7 +143,7 @@ class CycleResolver:
             self.largest = scales if self.largest is None else np.maximum(self.largest, scales)
             tails = (nodes.estimate_tails(nodes.compute_coefficients(values)) / self.scale).max(axis=1)
             width = pieces.ends - pieces.begins
-            noise = (tails <= NOISE_TAIL) & (tails > MIN_TAIL_REDUCTION * pieces.parent_tails)
+            noise = (tails <= tolerances.RESOLVED_TO_NOISE) & (tails > MIN_TAIL_REDUCTION * pieces.parent_tails)
             wide = width > 4.0 * self.min_length
             is_exhausted = self.evaluations > MAX_EVALUATIONS
             is_done = (tails <= tolerances.ORDERS_SETTLED) | noise | ~wide | is_exhausted

@@ -11,7 +11,7 @@ from heuncli.analyses.balancing.cycle_magnitudes import compute_residuals
 from heuncli.analyses.balancing.effects import MassEffects
 from heuncli.analyses.balancing.options import BalanceOptions
 from heuncli.analyses.balancing.order_rows import CycleRotation, compute_rounding, magnitudes, make_all_rows
-from heuncli.analyses.balancing.order_selection import IN_TABLE, OrderSelection
+from heuncli.analyses.balancing.order_selection import OrderSelection
 from heuncli.analyses.balancing.results import BalanceResults, OrderRow
 from heuncli.analyses.balancing.verdicts import format_remaining_orders
 from heuncli.base import tolerances
@@ -89,7 +89,7 @@ def select_shown_orders(orders: dict[str, tuple[OrderRow, ...]]) -> tuple[float,
     last, shares = 0.0, dict[float, float]()
     for rows in orders.values():
         largest = max((row.size for row in rows), default=0.0)
-        last = max([last, *(row.order for row in rows if row.size > IN_TABLE * largest)])
+        last = max([last, *(row.order for row in rows if row.size > tolerances.LISTED_ORDER * largest)])
         for row in rows:
             shares[row.order] = max(shares.get(row.order, 0.0), row.size / largest if largest > 0.0 else 0.0)
     nonzero = {row.order for rows in orders.values() for row in rows if row.size > 0.0}

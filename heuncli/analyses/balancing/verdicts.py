@@ -10,8 +10,6 @@ from heuncli.base import tolerances
 from heuncli.results.results import Array
 
 Verdict = Literal["does not arise", "cancels", "remains"]
-NEGLIGIBLE_PART = 1e-9  # of the larger of two parts: a smaller one counts as zero
-NEGLIGIBLE_ORDER = 1e-3  # of the largest order: smaller ones are not named one by one
 MAX_NAMED = 6
 SMALLER = "smaller ones"
 ENDLESS = ", weaker ones without limit"
@@ -40,7 +38,7 @@ def format_remaining_orders(rows: Sequence[OrderRow], *, endless: bool = False) 
         return "none" if not any(row.verdict == "cancels" for row in rows) else "all orders cancel"
     largest = max(row.size for row in remaining)
     named = sorted(sorted(remaining, key=lambda row: -row.size)[:MAX_NAMED], key=lambda row: row.order)
-    named = [row for row in named if row.size > NEGLIGIBLE_ORDER * largest]
+    named = [row for row in named if row.size > tolerances.NAMED_ORDER * largest]
     directions = {format_direction(row) for row in named}
     common_direction = directions.pop() if len(directions) == 1 else ""
     names = [
@@ -63,15 +61,15 @@ def format_direction(row: OrderRow) -> str:
     amplitudes: Array = row.amplitude
     if len(amplitudes) < 3:
         return ""
-    along = [letter for letter, value in zip(LETTERS, amplitudes, strict=True) if value > NEGLIGIBLE_PART * row.size]
+    along = [letter for letter, value in zip(LETTERS, amplitudes, strict=True) if value > tolerances.NO_PART * row.size]
     if len(along) == 1:
         return f"along {along[0]}"
     if row.with_turn is None or row.against_turn is None:
         return ""
-    if row.against_turn <= NEGLIGIBLE_PART * row.with_turn and row.is_across_axis:
+    if row.against_turn <= tolerances.NO_PART * row.with_turn and row.is_across_axis:
         return "rotating with the shaft"
     return (
         "rotating against the shaft"
-        if row.with_turn <= NEGLIGIBLE_PART * row.against_turn and row.is_across_axis
+        if row.with_turn <= tolerances.NO_PART * row.against_turn and row.is_across_axis
         else ""
     )

@@ -10,12 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.analyses.find.search import END_OF_SOLVED
 from heuncli.analyses.variants.course import MeasureCourse, Sample, withhold
+from heuncli.base import tolerances
 
 FIRST_FRACTION = 0.05  # of the bracket: first distance to both sides of the predicted edge
 MIN_FRACTION = 1e-6
-NEAR_SINGULAR = 1e-6  # of the scan's spacing: how close to singular poses edges are narrowed
 
 
 def close_edges(course: MeasureCourse) -> None:
@@ -34,7 +33,11 @@ def iter_edges(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
 def is_closed(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     """Return whether an edge is narrow enough; one of the two samples is not solved, or withheld."""
     withheld = left.withheld_gap is not None or right.withheld_gap is not None
-    return abs(right.x - left.x) <= NEAR_SINGULAR * course.spacing if withheld else find_middle(left.x, right.x) is None
+    return (
+        abs(right.x - left.x) <= tolerances.NEAR_SINGULAR_RUN * course.spacing
+        if withheld
+        else find_middle(left.x, right.x) is None
+    )
 
 
 def find_middle(low: float, high: float) -> float | None:
@@ -50,7 +53,9 @@ def close_edge(course: MeasureCourse, solved: Sample, unsolved: Sample) -> None:
         middle = solved.x + 0.5 * (unsolved.x - solved.x)
         width = unsolved.x - solved.x
         predicted = (
-            predict_edge(course, solved, width) if is_trusted and abs(width) < END_OF_SOLVED * course.spacing else None
+            predict_edge(course, solved, width)
+            if is_trusted and abs(width) < tolerances.EDGE_BRACKET * course.spacing
+            else None
         )
         if predicted is None:
             solved, unsolved = evaluate_between(course, solved, unsolved, middle)

@@ -24,12 +24,12 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.touches import find_touch_range, iter_minima
 from heuncli.analyses.variants.course import MIN_DISTANCE, MeasureCourse, Sample, interpolate_slope
+from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 
 CLEAR_FACTOR = 20.0  # times E: distance from the value of neighbours that give a slope to a tenth
 MAX_SLOPE_ERROR = 0.5  # of a slope: its permitted error
 MIN_CHORD_RATIO = 0.5  # of the steeper chord: if the other is less, the measure bends
-MAX_POWER = 1.5  # largest power of the distance with which g may grow; a larger one is flat at the place
 ENCLOSURE_FACTOR = 2.0  # times E / chord: where a crossing is enclosed
 FLAT_FACTOR = 4.0  # times E / chord: an enclosure that is not flat
 
@@ -165,7 +165,7 @@ def is_flattening(best: Sample, *sides: list[Sample]) -> bool:
         math.log(_compute_distance(far) / _compute_distance(near)) / math.log((far.x - best.x) / (near.x - best.x))
         for near, far in (side for side in sides if len(side) == 2)
     ]
-    return min(powers, default=0.0) > MAX_POWER
+    return min(powers, default=0.0) > tolerances.FLATTENS
 
 
 def find_neighbours(course: MeasureCourse, group: SideGroup, direction: int, min_size: float) -> list[Sample]:

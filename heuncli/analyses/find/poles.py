@@ -13,9 +13,7 @@ from __future__ import annotations
 import math
 
 from heuncli.analyses.variants.course import NOISE, MeasureCourse, Sample
-
-MIN_RISE = 0.5  # of an exponential rise: less at the end means a peak was passed, or 1/m is strongly curved
-FAR_FACTOR = 1e4  # times the value, and the usual size in the scan: beyond, a pole is not followed
+from heuncli.base import tolerances
 
 
 def find_hidden_pole(course: MeasureCourse, i: int) -> float | None:
@@ -29,7 +27,7 @@ def find_hidden_pole(course: MeasureCourse, i: int) -> float | None:
         return None
     left_sample, right_sample = samples[i], samples[i + 1]
     a, b = (sample.gap + course.value for sample in (left_sample, right_sample))  # type: ignore[operator]
-    if a * b <= 0.0 or max(abs(a), abs(b)) > FAR_FACTOR * max(course.usual, abs(course.value)):
+    if a * b <= 0.0 or max(abs(a), abs(b)) > tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value)):
         return None
     left, right = compute_inverse_fall(course, i, i - 1), compute_inverse_fall(course, i + 1, i + 2)
     if left == right == 0.0 or left is None or right is None:
@@ -67,7 +65,7 @@ def compute_inverse_fall(course: MeasureCourse, k: int, outer: int) -> float | N
 
 
 def is_rising_exponentially(course: MeasureCourse, end: int, inner: int, outer: int) -> bool:
-    """Return whether the measure at an end of the range is at least MIN_RISE of an exponential rise from two
+    """Return whether the measure at an end of the range is at least RISES_TO_END of an exponential rise from two
     samples.
     """
     x = [course.samples[k].x for k in (end, inner, outer)]
@@ -75,7 +73,7 @@ def is_rising_exponentially(course: MeasureCourse, end: int, inner: int, outer: 
     if m[1] * m[2] <= 0.0:  # it comes from 0: nothing indicates a pole
         return True
     power = abs(x[0] - x[1]) / abs(x[1] - x[2])
-    return math.log(m[0] / m[1]) > math.log(m[1] / m[2]) * power + math.log(MIN_RISE)
+    return math.log(m[0] / m[1]) > math.log(m[1] / m[2]) * power + math.log(tolerances.RISES_TO_END)
 
 
 def is_far_from_value(course: MeasureCourse, left: Sample, right: Sample) -> bool:
@@ -85,4 +83,14 @@ def is_far_from_value(course: MeasureCourse, left: Sample, right: Sample) -> boo
     if not left.side or left.side != right.side:
         return False
     smallest = min(abs((sample.gap or 0.0) + course.value) for sample in (left, right))
-    return smallest > FAR_FACTOR * max(course.usual, abs(course.value))
+    return smallest > tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value))
+
+
+def has_pole(course: MeasureCourse) -> bool:
+    """Return whether the measure jumps somewhere between values beyond all usual ones, from one sign to the other."""
+    ends = {x for pair in course.jumps for x in pair}
+    sizes = {sample.x: (sample.gap or 0.0) + course.value for sample in course.samples if sample.x in ends}
+    least = tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value))
+    return any(
+        sizes[low] * sizes[high] < 0.0 and min(abs(sizes[low]), abs(sizes[high])) > least for low, high in course.jumps
+    )

@@ -8,13 +8,15 @@ error, stay on that side.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect, bisect_left
 from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
 
-from heuncli.analyses.find.poles import find_hidden_pole, is_far_from_value
+from heuncli.analyses.find.poles import find_hidden_pole, has_pole, is_far_from_value
+from heuncli.analyses.find.touches import find_touch_range, follow_minimum, is_deep, iter_minima
 from heuncli.analyses.variants.course import (
     FIRST_DISTRUST,
     GOLDEN,
@@ -26,14 +28,15 @@ from heuncli.analyses.variants.course import (
     interpolate,
 )
 from heuncli.analyses.variants.course_extremes import clip_inside
+from heuncli.base import tolerances
 
-END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: closer to failing variants edges.py takes over
-NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: closer to a jump or an edge predictions are never certain
+FINE_GAP = (
+    1.0 / 32.0
+)  # of the scan's spacing: before neighbours closer than this are parted, minima of |g| are followed
 MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
-MAX_STEEPNESS = 10.0  # times the change predicted by the slope outside: more across the narrowest bracket is a jump
 WIDE_BRACKET = 1000.0  # times the narrowest bracket: a wider one, across which a jump has the same size
 MIN_BRACKET = 10.0  # times the narrowest bracket: a comparison bracket that is not wider proves no jump
-MIN_JUMP_RATIO = 0.8  # of the change across the wide bracket: less across the narrowest one is no jump
+WIDE_GAP = 0.5  # of the scan's spacing: neighbours farther apart count as an interval of the scan
 CHECK_OFFSET = 0.1  # of a scan interval: offset from its middle, so that no wave is hidden by aliasing
 PEAK_GROWTH = 2.0  # times the predicted rise of a peak: its possible rise
 
@@ -46,6 +49,8 @@ def search(course: MeasureCourse) -> None:
         if i is None:
             break
         left, right = course.samples[i], course.samples[i + 1]
+        if right.x - left.x < FINE_GAP * course.spacing and follow_new_minimum(course):
+            continue
         course.searched_pairs.add((left.x, right.x))
         if left.gap is None or right.gap is None:
             course.sample_at(0.5 * (left.x + right.x))
@@ -53,6 +58,19 @@ def search(course: MeasureCourse) -> None:
             course.sample_and_learn(x)
         else:
             course.sample_and_learn(choose_place(left, right, course.predict(i)))
+
+
+def follow_new_minimum(course: MeasureCourse) -> bool:
+    """Follow the first deep minimum of |g| that was not followed before; return whether there was one.
+
+    Raises SampleLimitError.
+    """
+    for left, middle, right in iter_minima(course):
+        if middle.x not in course.followed and is_deep(left, middle, right):
+            course.followed.add(middle.x)
+            follow_minimum(course, middle.x)
+            return True
+    return False
 
 
 def narrow_all(course: MeasureCourse) -> None:
@@ -95,7 +113,7 @@ def is_uncertain(course: MeasureCourse, i: int, ends: list[tuple[float, float]])
     left, right = course.samples[i], course.samples[i + 1]
     width = right.x - left.x
     if left.gap is None or right.gap is None:
-        return (left.gap is None) != (right.gap is None) and width > END_OF_SOLVED * course.spacing
+        return (left.gap is None) != (right.gap is None) and width > tolerances.EDGE_BRACKET * course.spacing
     if course.is_interrupted(i) or width <= 2.0 * course.finest:
         return False
     if find_possible_peak(course, i) is not None:
@@ -118,10 +136,17 @@ def check_scan(course: MeasureCourse) -> None:
     """
     places = [sample.x for sample in course.samples]
     intervals = [pair for pair in pairwise(course.scanned) if bisect(places, pair[0]) == bisect_left(places, pair[1])]
+    intervals += [
+        pair for pair in pairwise(places) if pair[1] - pair[0] >= WIDE_GAP * course.spacing and pair not in intervals
+    ]
     while intervals:
         low, high = intervals.pop()
         i = next(i for i, one, _ in course.iter_pairs() if one.x == low)
-        if course.samples[i + 1].x != high or high - low <= NEAR_JUMP * course.spacing or not may_hide_wave(course, i):
+        if (
+            course.samples[i + 1].x != high
+            or high - low <= tolerances.DOUBTED_NEAR_JUMP * course.spacing
+            or not may_hide_wave(course, i)
+        ):
             continue
         x = low + (high - low) * (0.5 + CHECK_OFFSET * (2.0 * (len(places) * GOLDEN % 1.0) - 1.0))
         prediction = course.predict(i, np.array([x]))
@@ -138,15 +163,50 @@ def check_scan(course: MeasureCourse) -> None:
 def may_hide_wave(course: MeasureCourse, i: int) -> bool:
     """Return whether two neighbours may hide a wave that meets the value, with a prediction error MAX_DISTRUST times as
     large.
+
+    They may if the curvature changes there, or if one of them is the last of its stretch: predictions are then
+    one-sided, and agree by accident at times.
     """
     left, right = course.samples[i], course.samples[i + 1]
     if course.is_interrupted(i) or not left.side or left.side != right.side:
         return False
-    if not changes_curvature(course, i):
+    if has_pole(course):  # then no value is far from any other
+        return True
+    is_one_sided = not (course.find_neighbours(i, -1) and course.find_neighbours(i, 1))
+    if breaks_law(course, i) or (is_one_sided and course.distrust > FIRST_DISTRUST):
+        return True
+    if not (is_one_sided or changes_curvature(course, i)):
         return False
     prediction = course.predict(i)
     nearest = left.side * prediction.gaps - MAX_DISTRUST / course.distrust * prediction.uncertainty
     return bool((nearest <= max(left.error, right.error)).any())
+
+
+def breaks_law(course: MeasureCourse, i: int) -> bool:
+    """Return whether four samples on one side of a gap lie on a parabola, to their errors, and the one beyond does not.
+
+    Then the law changes in the gap, at a kink or a jump, and no prediction holds there.
+    """
+    for near, direction in ((i, -1), (i + 1, 1)):
+        law = course.samples[max(near - 3, 0) : near + 1] if direction < 0 else course.samples[near : near + 4]
+        is_whole = len(law) == 4 and not any(
+            course.is_interrupted(k) for k in (range(near - 3, near) if direction < 0 else range(near, near + 3))
+        )
+        if is_whole and follows_parabola(law[1:], law[0]) and follows_parabola(law[:-1], law[-1]):
+            nearest = law[1:] if direction < 0 else law[:-1]
+            if not follows_parabola(nearest, course.samples[near - direction]):
+                return True
+    return False
+
+
+def follows_parabola(samples: list[Sample], another: Sample) -> bool:
+    """Return whether another sample lies on the parabola through three, to NOISE times their errors."""
+    x = np.array([another.x])
+    factors = [
+        math.prod(abs((another.x - b.x) / (a.x - b.x)) for b in samples if b is not a) * a.error for a in samples
+    ]
+    deviation = abs(float(interpolate(samples, x)[0]) - (another.gap or 0.0))
+    return deviation <= NOISE * (sum(factors) + another.error)
 
 
 def changes_curvature(course: MeasureCourse, i: int) -> bool:
@@ -208,16 +268,20 @@ def leads_to_meeting(course: MeasureCourse, i: int) -> bool:
 
 
 def find_range_ends(course: MeasureCourse) -> list[tuple[float, float]]:
-    """Return the pairs of neighbours between which the measure jumps, is vertical, or ends."""
+    """Return the pairs of places between which the measure jumps, is vertical, ends, or touches the value where its
+    error vanishes.
+    """
     ends = [(a.x, b.x) for _, a, b in course.iter_pairs() if (a.gap is None) != (b.gap is None)]
-    return [*course.jumps, *course.steep, *ends]
+    exact = [(sample.x, sample.x) for sample in course.samples if sample.side == 0 and sample.error == 0.0]
+    touches = [find_touch_range(course, middle) for _, middle, _ in iter_minima(course)]
+    return [*course.jumps, *course.steep, *ends, *exact, *(touch for touch in touches if touch)]
 
 
 def is_near_jump(course: MeasureCourse, left: Sample, right: Sample, ends: list[tuple[float, float]]) -> bool:
     """Return whether the measure jumps or ends close to two neighbours; predictions towards a pole are never
     certain.
     """
-    margin = NEAR_JUMP * course.spacing
+    margin = tolerances.DOUBTED_NEAR_JUMP * course.spacing
     return any(low - margin <= left.x and right.x <= high + margin for low, high in ends)
 
 
@@ -301,7 +365,9 @@ def is_steep(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     slopes = [
         ((far.gap or 0.0) - (near.gap or 0.0)) / (far.x - near.x) * (right.side or 0) for near, far in outer_pairs
     ]
-    return slope_inside == 0.0 or (bool(slopes) and min(slopes) > 0.0 and slope_inside <= MAX_STEEPNESS * max(slopes))
+    return slope_inside == 0.0 or (
+        bool(slopes) and min(slopes) > 0.0 and slope_inside <= tolerances.STEEPER_THAN_SLOPE * max(slopes)
+    )
 
 
 def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
@@ -314,7 +380,7 @@ def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     if outer_right.x - outer_left.x < MIN_BRACKET * (right.x - left.x):
         return False
     inner_change = abs((right.gap or 0.0) - (left.gap or 0.0)) + left.error + right.error
-    return inner_change >= MIN_JUMP_RATIO * abs((outer_right.gap or 0.0) - (outer_left.gap or 0.0))
+    return inner_change >= tolerances.JUMP_KEEPS * abs((outer_right.gap or 0.0) - (outer_left.gap or 0.0))
 
 
 def sample_outside(course: MeasureCourse, end: Sample, direction: int, distance: float) -> Sample:

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.analyses.variants.course import NOISE, MeasureCourse, Sample
+from heuncli.base import tolerances
 
 POWERS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
 MAX_MISFIT = 3.0  # largest ratio between the middle sample and its prediction by the power
 MIN_GAIN = 0.5  # of |g|: largest ratio after a useful step, and of a minimum to its neighbours
-MAX_DISTANCE = 3.0  # smallest distances within which |g| must double on both sides of a touch
 MAX_STEPS = 60  # steps towards one touch
 DOUBLING = 2.0
 
@@ -55,10 +55,11 @@ def follow_minimum(course: MeasureCourse, x: float) -> None:
         if minimum is None:
             return
         left, middle, right = minimum
-        if is_narrow(course, left, middle, right):
+        predicted = predict_minimum(left, middle, right)
+        is_there = predicted is None or abs(predicted - middle.x) <= tolerances.TOUCH_DOUBLES * course.finest
+        if is_there and is_narrow(course, left, middle, right):
             confirm_touch(course, middle)
             return
-        predicted = predict_minimum(left, middle, right)
         if predicted is None:
             return
         sample = course.sample_at(min(max(predicted, left.x + 0.25 * course.finest), right.x - 0.25 * course.finest))
@@ -102,7 +103,7 @@ def find_touch_range(course: MeasureCourse, middle: Sample) -> tuple[float, floa
         while 0 <= k + direction < len(course.samples) and not course.is_interrupted(k + min(direction, 0)):
             k += direction
             sample = course.samples[k]
-            if abs(sample.x - middle.x) > MAX_DISTANCE * course.finest or sample.side != middle.side:
+            if abs(sample.x - middle.x) > tolerances.TOUCH_DOUBLES * course.finest or sample.side != middle.side:
                 return None
             if compute_distance(sample) >= DOUBLING * compute_distance(middle):
                 ends.append(sample.x)

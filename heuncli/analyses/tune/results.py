@@ -85,10 +85,12 @@ class ToleranceMove(NamedTuple):
     distance: in the variable's unit
     limit: what ends it, `worse`, `bound`, `jump`, the measure of a constraint or a code; or `less` and `more`, if the
     true distance is smaller or larger
+    jumps: the measure of the goal or a constraint that jumps there, in the words of the task; empty if none does
     """
 
     distance: float
     limit: str
+    jumps: str = ""
 
 
 class ToleranceRange(NamedTuple):

@@ -24,6 +24,7 @@ MAX_TRIALS = 7  # evaluations for one amount to one side
 MAX_RATIO, MIN_POWER = 1e20, 0.1  # limits of the extrapolation
 # powers of the distance: a steeper rise is a jump within it, a flatter one a jump before it
 JUMP_POWER, STEEP_POWER = (6.0, 0.5)
+NOISE = 4.0  # times the errors of two values: their difference that is no jump
 
 
 def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, ...]:
@@ -50,6 +51,7 @@ class _SideSearch:
         self.max_distance = place if sign < 0.0 else 1.0 - place
         self.worsening: dict[float, float] = {}  # by distance [of the box]; infinite if infeasible or unsolved
         self.reasons: dict[float, str] = {}
+        self.tried: dict[float, Trial] = {0.0: best}  # solved ones
 
     def find_move(self, amount: float) -> ToleranceMove | None:
         """Return the distance at which the goal is worse by an amount; None if no evaluation is left, or the amount is
@@ -73,9 +75,9 @@ class _SideSearch:
         if high == math.inf:
             return ToleranceMove(self._to_unit(low), "worse" if self.worsening[low] >= MIN_SHARE * amount else "more")
         if high in self.reasons:
-            return ToleranceMove(self._to_unit(low), self.reasons[high])
+            return ToleranceMove(self._to_unit(low), self.reasons[high], self._find_jumping_constraint(low, high))
         if self._has_jump(low, high, amount):
-            return ToleranceMove(self._to_unit(low), "jump")
+            return ToleranceMove(self._to_unit(low), "jump", self.trials.task.goal.measure)
         return ToleranceMove(self._to_unit(low), "worse") if low else ToleranceMove(self._to_unit(high), "less")
 
     def _bracket(self, amount: float) -> tuple[float, float]:
@@ -123,6 +125,7 @@ class _SideSearch:
         if not trial.is_solved:
             self.worsening[s], self.reasons[s] = math.inf, trial.failure.code
             return True
+        self.tried[s] = trial
         violated = [
             constraint.measure
             for constraint, value in zip(self.trials.task.constraints, trial.constraint_values, strict=True)
@@ -145,6 +148,28 @@ class _SideSearch:
         return longer is not None and self.worsening[high] > self.worsening[longer] * math.pow(
             high / longer, STEEP_POWER
         )
+
+    def _find_jumping_constraint(self, low: float, high: float) -> str:
+        """Return the constraint that is violated by a jump between two distances; empty if it rises to its limit.
+
+        Without a jump it changes between them by no more than up to the shorter one, as a power of the distance; if
+        the shorter one is 0, by less than up to the next longer one.
+        """
+        longer = min((s for s in self.tried if s > high), default=None)
+        if high not in self.tried or (low == 0.0 and longer is None):
+            return ""
+        for k, constraint in enumerate(self.trials.task.constraints):
+            if constraint.measure != self.reasons[high]:
+                continue
+            first, before, after = (self.tried[s].constraint_values[k] for s in (0.0, low, high))
+            error = sum(self.tried[s].outcome.measures[k + 1].error or 0.0 for s in (low, high))
+            if low > 0.0:
+                change = ((high / low) ** JUMP_POWER - 1.0) * abs(before - first)
+            else:
+                assert longer is not None
+                change = abs(self.tried[longer].constraint_values[k] - first) * (high / longer) ** STEEP_POWER
+            return constraint.measure if abs(after - before) > change + NOISE * error else ""
+        return ""
 
     def _to_unit(self, s: float) -> float:
         """Convert a distance to the unit of the variable."""

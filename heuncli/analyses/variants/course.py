@@ -20,6 +20,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from heuncli.analyses.variants.measures import NoisyValue, Reason
+from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
 from heuncli.results.results import Array
@@ -34,9 +35,6 @@ FIRST_DISTRUST = 1.25
 MAX_DISTRUST = 16.0
 LOG_RATIO = 4.0  # ratio of neighbouring magnitudes from which on their logarithms are interpolated
 LARGEST_LOG = 690.0  # of a magnitude that does not overflow
-MAX_ISOLATED_WIDTH = (
-    1e-3  # of the spacing: singular poses over a shorter range are isolated places, not a part of the course
-)
 SINGULAR = Reason(
     "singular-pose", "the run passes a singular position only there: its value does not follow its neighbours"
 )
@@ -124,6 +122,7 @@ class MeasureCourse:
         self.value = value
         self.searched_pairs: set[tuple[float, float]] = set()
         self.usual = math.inf  # magnitude of the measure over the scan
+        self.followed: set[float] = set()  # minima of |g| that were followed
         self.certain: set[tuple[float, ...]] = set()
         self._evaluate, self._max_samples = evaluate, max_samples
         self.low, self.high = low, high
@@ -246,7 +245,7 @@ class MeasureCourse:
                 continue
             adjacent = [k for k in (places[0] - 1, places[-1] + 1) if 0 <= k < len(self.samples)]
             width = self.samples[places[-1]].x - self.samples[places[0]].x
-            is_isolated = width <= MAX_ISOLATED_WIDTH * self.spacing and any(
+            is_isolated = width <= tolerances.ISOLATED_SINGULAR * self.spacing and any(
                 self.samples[k].gap is not None for k in adjacent
             )
             for k in places:
@@ -291,12 +290,15 @@ class MeasureCourse:
         """Whether the measure runs through several magnitudes, as towards a pole, and its logarithm may be
         interpolated.
 
-        Not where it may touch a value at or beyond 0, which no logarithm reaches.
+        Not where it may touch a value at or beyond 0, which no logarithm reaches: towards a zero the logarithm falls
+        ever faster, towards a pole it rises ever faster.
         """
         m = [_gap(sample) + self.value for sample in samples]
         if min(m) <= 0.0 <= max(m) or max(map(abs, m)) < LOG_RATIO * min(map(abs, m)):
             return False
         steps = [abs(b) - abs(a) for a, b in pairwise(m)]
+        if self.value == 0.0 and not _rises_convexly(samples):
+            return False
         return m[0] * self.value > 0.0 or (on_both_sides and (min(steps) > 0.0 or max(steps) < 0.0))
 
     def _interpolate_logarithm(self, samples: list[Sample], x: Array) -> Array:
@@ -392,6 +394,12 @@ def interpolate_slope(samples: list[Sample], x: float) -> float:
         derivative = derivative * (x - node) + value
         value = value * (x - node) + head
     return derivative
+
+
+def _rises_convexly(samples: list[Sample]) -> bool:
+    """Return whether the slopes of the logarithm of |g| rise from sample to sample."""
+    slopes = [(math.log(_size(b)) - math.log(_size(a))) / (b.x - a.x) for a, b in pairwise(samples)]
+    return all(before <= after for before, after in pairwise(slopes))
 
 
 def _gap(sample: Sample) -> float:

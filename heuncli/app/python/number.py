@@ -18,7 +18,7 @@ class Number(float):
     unit: SI
     error: the stated absolute error, nan if the run states none
     at: its instant [s], or None
-    s: position along a run of cuts [m]; side, cut: the side of a load there, and the number of the cut
+    s: position along a series of cuts [m]; side, cut: the side of a load there, and the number of the cut
     horizon: the instant [s] from which on nothing is claimed, if that makes the number nan
     is_open: whether it is nan because the laws of rigid bodies do not determine it
     """

@@ -72,7 +72,7 @@ def _iter_leaves(node: Any, keys: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
 
 
 class CutRow(NamedTuple):
-    """One row of a run of cuts: its distance from the first point [m], and on which side of a load it lies, if at
+    """One row of a series of cuts: its distance from the first point [m], and on which side of a load it lies, if at
     one.
     """
 
@@ -175,7 +175,7 @@ class Signal(NDArrayOperatorsMixin):
 
     @property
     def cuts(self) -> list[CutRow]:
-        """The rows of a run of cuts, in the order of the axis after the instants; empty for other numbers."""
+        """The rows of a series of cuts, in the order of the axis after the instants; empty for other numbers."""
         if CUT not in self._numbers.axes:
             return []
         section = find_section(self._run.results, self._numbers.keys)

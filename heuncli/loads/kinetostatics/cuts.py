@@ -1,8 +1,8 @@
 """Section planes: the cuts of each section, on which side of them attachments lie, and the pieces they separate.
 
-The piece lies on the side that the normal n points to. A run of cuts has one normal. Where a joint, load or point mass
-lies in the plane of a cut, the section loads jump: two cuts are made there, just before and just beyond it; at the ends
-of the run only the inner one.
+The piece lies on the side that the normal n points to. A series of cuts has one normal. Where a joint, load or point
+mass lies in the plane of a cut, the section loads jump: two cuts are made there, just before and just beyond it; at the
+ends of the series only the inner one.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A run of cuts as a continuous stretch, to find where its loads are largest, between its cuts too.
+"""A series of cuts as a continuous stretch, to find where its loads are largest, between its cuts too.
 
 Between the corners of a run (joints, forces, point masses, changes of shape; on either side of each) the loads are
 smooth in s, the distance along it: for prisms and rods polynomials of degree 3, for cones and balls of degree 5 or 6.
@@ -65,7 +65,7 @@ DERIVATIVE = _derivative_matrix()
 
 @record
 class Stretch:
-    """A run of cuts with its corners.
+    """A series of cuts with its corners.
 
     cuts: its cuts
     corners (m,): heights along n where the loads or the shape change, its ends first and last

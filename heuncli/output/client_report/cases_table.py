@@ -46,7 +46,7 @@ def make_cases_table(
 ) -> OutputTable:
     """Make the table of some groups of numbers.
 
-    has_places: whether the extremes are along runs of cuts, so that their places are shown
+    has_places: whether the extremes are along series of cuts, so that their places are shown
     """
     layout = _Layout(data, has_places)
     governing_bounds = find_governing(data)

@@ -23,7 +23,7 @@ PLACE_DECIMALS = 9  # of places [m]
 NOISE = 1e-3  # of the largest of a family: what is below it is a dash
 DASH, MINUS = "–", "−"
 INSTANT_DIGITS = 3  # of an instant, beside the run's length
-LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
+LOWEST, HIGHEST = ".lowest", ".highest"  # of a series of cuts
 
 
 class CaseExtreme(NamedTuple):
@@ -31,7 +31,7 @@ class CaseExtreme(NamedTuple):
 
     value: in SI, or a word such as `open` in its place
     time: its instant [s], or None
-    place: its place along a run of cuts, or None
+    place: its place along a series of cuts, or None
     """
 
     value: float | str
@@ -60,7 +60,7 @@ class CaseExtremes(NamedTuple):
 
 
 def find_extremes(run: ReportedRun, path: str) -> CaseExtremes | None:
-    """Find the extremes of a number in one case, for a run of cuts those over the whole run; None if the case has no
+    """Find the extremes of a number in one case, for a series of cuts those over the whole run; None if the case has no
     such number.
     """
     numbers = run.snapshot.numbers
@@ -78,7 +78,7 @@ def find_extremes(run: ReportedRun, path: str) -> CaseExtremes | None:
 def _add_place(
     extreme: CaseExtreme, run: ReportedRun, path: str, find_index: Callable[[Array], np.intp]
 ) -> CaseExtreme:
-    """Add the place to an extreme along a run of cuts that is constant in time; for these the snapshot holds none."""
+    """Add the place to an extreme along a series of cuts that is constant in time; their snapshot holds none."""
     if extreme.place is not None or not isinstance(extreme.value, float):
         return extreme
     _, name, *quantity = path.split(".")
@@ -178,7 +178,7 @@ def choose_style_in_unit(
 
 
 def format_place_in_unit(place: str | None, units: Units, *, with_unit: bool = True) -> str:
-    """Format a place along a run of cuts, which is stored in metres, and the side on which the load there is
+    """Format a place along a series of cuts, which is stored in metres, and the side on which the load there is
     counted.
     """
     if place is None:

@@ -50,7 +50,7 @@ def make_section_parts(data: ReportData) -> list[Part]:
 
 
 def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
-    """Yield a figure for each run of cuts, of its governing case; of many runs only for the most loaded ones."""
+    """Yield a figure for each series of cuts, of its governing case; of many runs only for the most loaded ones."""
     cut_runs = [name for name in names if "s" in data.runs[0].results.sections[name]]
     governing_cases = {name: _find_governing_case(data, name) for name in cut_runs}
     drawn_runs = sorted(cut_runs, key=lambda name: governing_cases[name].rank, reverse=True)[:MAX_DIAGRAMS]
@@ -142,7 +142,7 @@ def _find_governing_case(data: ReportData, name: str) -> GoverningCase:
 
 
 def _iter_extremes(data: ReportData, names: list[str]) -> Iterator[Part]:
-    """Yield the tables of the section forces and stresses: one for single cuts, one for runs of cuts, which have
+    """Yield the tables of the section forces and stresses: one for single cuts, one for series of cuts, which have
     places.
     """
     sections = data.runs[0].results.sections

@@ -1,6 +1,6 @@
 """Section loads all along a bar: at an instant, at an impact, and the lowest and highest over a run.
 
-A run of cuts is evaluated along its whole length, not only at the cuts in the spec (loads/kinetostatics/stretch.py).
+A series of cuts is evaluated along its whole length, not only at the cuts in the spec (loads/kinetostatics/stretch.py).
 Between two of its corners (joints, loads, point masses, changes of shape) the loads are smooth in s, the distance along
 it. At a corner they are evaluated on both sides, so that a jump has both its values at its exact place. The corner of a
 load that moves over the body moves too, and is at its place of that instant.
@@ -165,14 +165,14 @@ class MovingEdges(NamedTuple):
 
 @record
 class WholeBar:
-    """A run of cuts of a solved scene as a bar, whose loads are computed anywhere along it."""
+    """A series of cuts of a solved scene as a bar, whose loads are computed anywhere along it."""
 
     study: Study
     name: str
 
     @cached_property
     def setup(self) -> Setup:
-        """The scene with only this run of cuts, evaluated along its whole length."""
+        """The scene with only this series of cuts, evaluated along its whole length."""
         whole = self.study.with_whole_cuts(False)
         return replace(whole, cuts=tuple(cuts for cuts in whole.cuts if cuts.name == self.name))
 

@@ -45,7 +45,7 @@ def make_diagrams(
     times: Sequence[float] | None = None,
     tension_side: bool = False,
 ) -> Figure:
-    """Make the section diagrams of some runs of cuts, of one run or of several over each other.
+    """Make the section diagrams of some series of cuts, of one run or of several over each other.
 
     times: instants [s] within all runs and before their horizons, a curve each; by default the range over the whole run
     """

@@ -1,6 +1,6 @@
 """The numbers of the tables over the instants: a channel for each, by its path.
 
-Of a run of cuts: the highest and lowest value of its cuts at each instant, with the extremes of the whole length.
+Of a series of cuts: the highest and lowest value of its cuts at each instant, with the extremes of the whole length.
 """
 
 from __future__ import annotations
@@ -76,12 +76,12 @@ class SnapshotScope(NamedTuple):
     labels: Labels
 
     def collect_runs(self, results: Results) -> list[CutRun]:
-        """Collect the runs of cuts, if sections are requested."""
+        """Collect the series of cuts, if sections are requested."""
         return collect_runs(results, self.labels) if "sections" in self.reports else []
 
 
 def collect_columns(results: Results, scope: SnapshotScope) -> list[Channel]:
-    """Collect the numbers of the tables except those of runs of cuts; of a vector its components and its magnitude."""
+    """Collect the numbers of the tables except those of series of cuts; of a vector components and magnitude."""
     runs = {name for name, section in results.sections.items() if "s" in section}
     columns: list[Channel] = []
     for channel in iter_channels(results, scope.labels):
@@ -119,5 +119,5 @@ def collect_values(results: Results, scope: SnapshotScope) -> dict[str, Array]:
 
 
 def format_place(place: CutPosition) -> str:
-    """Format a place along a run of cuts: its distance [m], and the side of the load that acts there."""
+    """Format a place along a series of cuts: its distance [m], and the side of the load that acts there."""
     return " ".join([f"{place.s:.6g} m", *([place.side] if place.side else [])])

@@ -41,7 +41,7 @@ class NumberSnapshot(SnapshotPart):
 
     error: as stated by its run, absolute, rounding included
     constant: the value, if it is the same throughout
-    least_place, greatest_place: of an extreme along a run of cuts
+    least_place, greatest_place: of an extreme along a series of cuts
     least_at_error, greatest_at_error: how far the instant may lie elsewhere [s]
     drift: its rate at the last instant, if an event ends the run
     tenths: the means over uneven instants of each tenth of the run

@@ -215,7 +215,7 @@ def _choose_even_samples(times: Array) -> slice:
 
 
 def _find_bounds(path: str, values: Array, times: Array) -> SnapshotBounds:
-    """Return the lowest and highest of the samples; of a run of cuts only the one that belongs to the column."""
+    """Return the lowest and highest of the samples; of a series of cuts only the one that belongs to the column."""
     if not np.isfinite(values).any():
         low = high = (float("nan"), float(times[0]), None)
     else:

@@ -125,7 +125,7 @@ def check_with_others(
 
 
 def find_place_problem(path: str, spec: Spec) -> tuple[str, str] | None:
-    """Return what is wrong with the place that a path names by its distance along a run of cuts, and a hint; None if
+    """Return what is wrong with the place that a path names by its distance along a series of cuts, and a hint; None if
     nothing is.
     """
     words = split_path(path)
@@ -173,7 +173,7 @@ def to_json_block(request: MeasureRequest, study: Study) -> dict[str, Any]:
 
 
 def describe_measure(request: MeasureRequest, study: Study, peak: Peak, horizon: float | None) -> dict[str, Any]:
-    """Return a measured number for JSON, with its instant, and along a run of cuts its place."""
+    """Return a measured number for JSON, with its instant, and along a series of cuts its place."""
     found: dict[str, Any] = {"measure": f"{request.how} {request.path}".strip(), "value": peak.value, "at": peak.time}
     if horizon is None and (note := make_friction_warning(study, request.path, peak.time)) is not None:
         found["notes"] = [note]
@@ -193,7 +193,7 @@ def find_cut_number(request: MeasureRequest, study: Study, row: int) -> int:
 
     row: in the results, which may have two rows for one cut
     """
-    from heuncli.results.cut_rows import cut_indices  # where there are runs of cuts
+    from heuncli.results.cut_rows import cut_indices  # where there are series of cuts
 
     keys = find_values(study.results, request.path).keys
     s = next(cuts.s for cuts in study.setup.cuts if cuts.name == keys[keys.index("sections") + 1])

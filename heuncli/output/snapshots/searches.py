@@ -1,4 +1,4 @@
-"""The searches of a report: extremes of its channels, along its runs of cuts, and at their cuts."""
+"""The searches of a report: extremes of its channels, along its series of cuts, and at their cuts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SECTIONS = frozenset({"sections"})
 
 
 def search_page(page: Page, study: Study, reports: frozenset[str]) -> tuple[Page, Extremes]:
-    """Search the extremes of all channels of the page, with their places along its runs of cuts.
+    """Search the extremes of all channels of the page, with their places along its series of cuts.
 
     Returns the page with the extremes at single cuts of each run, if it has several instants, and all others.
     """

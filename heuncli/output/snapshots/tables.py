@@ -17,7 +17,7 @@ from heuncli.study.queries.smoothed_friction import find_partial_friction
 from heuncli.study.queries.study import Study
 
 AXIS: EntryKeys = ("foundation", "axis")
-RUN_EXTREMES_SUFFIX = " (some of the extremes along runs of cuts)"
+RUN_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"
 AXIS_NOTE = "the central axis has no extremes: show it at given times with --at or --all"
 
 
@@ -26,7 +26,7 @@ class TablesQuery(NamedTuple):
 
     selection: the reports and entries
     instants (n,): None for the extremes
-    show_all: all instants, and every cut of a run of cuts
+    show_all: all instants, and every cut of a series of cuts
     details: include what is shown only on request by name
     full: repeat what is constant or indeterminate
     """

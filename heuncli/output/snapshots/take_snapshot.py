@@ -2,7 +2,7 @@
 
 Of every quantity it holds the first and last value, the extremes searched between the samples with their instants, the
 values at eleven even instants, and sums over its whole course (output/snapshots/course_sums.py), so that a change of
-the course between its extremes is seen. Of a run of cuts it holds the highest and lowest value of its cuts, with the
+the course between its extremes is seen. Of a series of cuts it holds the highest and lowest value of its cuts, with the
 extremes of the whole length.
 """
 
@@ -271,8 +271,8 @@ def _make_bounds(low: float, low_at: float, high: float, high_at: float) -> Snap
 
 
 def _make_run_bounds(extremes: Extremes) -> dict[str, SnapshotBounds]:
-    """Return the extremes along a run of cuts: the minimum belongs to the column of lowest values, the maximum to that
-    of highest.
+    """Return the extremes along a series of cuts: the minimum belongs to the column of lowest values, the maximum to
+    that of highest.
     """
     bounds: dict[str, SnapshotBounds] = {}
     for i, path in enumerate(extremes.paths):

@@ -77,7 +77,7 @@ LineGroups = Sequence[tuple[str, Sequence[ShareLine]]]  # titles and lines
 
 
 def collect_shares(channels: Iterable[Channel], results: Results) -> dict[str, NumberWithShares]:
-    """Collect the numbers that have shares by cause, by their paths, except those of runs of cuts.
+    """Collect the numbers that have shares by cause, by their paths, except those of series of cuts.
 
     channels: all of the results
     """
@@ -335,13 +335,13 @@ def make_notes(lines: Sequence[ShareLine], heads: set[str], words: set[str]) -> 
     return [*notes, UNKNOWN_NOTE] if UNKNOWN in words else notes
 
 
-# Runs of cuts
+# Series of cuts
 
 
 def make_run_extremes_tables(
     run: CutRun, results: Results, extremes: Extremes, certain: StatedErrors
 ) -> list[OutputTable]:
-    """Make the table of the minimum and maximum of each section force along a run of cuts, with their shares.
+    """Make the table of the minimum and maximum of each section force along a series of cuts, with their shares.
 
     results: with the run cut at the places of the minimum and maximum of every section force, in this order
     extremes: of the section forces
@@ -395,6 +395,6 @@ def make_run_line(
 
 
 def make_run_tables(run: CutRun, lines: Sequence[ShareLine], certain: StatedErrors) -> list[OutputTable]:
-    """Make the table of a run of cuts. Empty list if no row has shares."""
+    """Make the table of a series of cuts. Empty list if no row has shares."""
     heading = run.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
     return [make_share_table(heading, [("", lines)], certain)] if any(line.shares for line in lines) else []

@@ -1,4 +1,4 @@
-"""Tables of runs of cuts: extremes over position and time, the envelope along the body, the diagram at an instant."""
+"""Tables of series of cuts: extremes over position and time, the envelope along the body, the diagram at an instant."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ BOUNDS = dict.fromkeys(STRESSES, ("max",)) | {"normal_min": ("min",)}  # those o
 
 
 class CutRun(NamedTuple):
-    """One run of cuts.
+    """One series of cuts.
 
     s: positions along the body [m]
     side: of each cut, which side of a load that acts there; None elsewhere
@@ -64,7 +64,7 @@ class CutRun(NamedTuple):
 
 
 def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] = NO_UNITS) -> list[CutRun]:
-    """Collect the runs of cuts among the sections.
+    """Collect the series of cuts among the sections.
 
     units: replacements of units, for impulses instead of forces
     """

@@ -43,7 +43,7 @@ class ImpactReport(NamedTuple):
     """The impacts of a run, and the accuracy of their numbers.
 
     magnitudes: what the numbers are summed from
-    run_extremes: for each impact, the extremes along its runs of cuts
+    run_extremes: for each impact, the extremes along its series of cuts
     details: whether to include tables that are shown only on request
     """
 
@@ -127,7 +127,7 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
 
 
 def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False) -> list[OutputTable]:
-    """Make the tables of one impact: all loaded objects, central axis, runs of cuts, shares by cause, determinate
+    """Make the tables of one impact: all loaded objects, central axis, series of cuts, shares by cause, determinate
     sums.
     """
     impulse = report.results.impulses[number]
@@ -176,7 +176,7 @@ def make_share_tables(
 def make_run_share_tables(
     run: cut_runs.CutRun, view: Results, certain: StatedErrors, horizon: float | None
 ) -> list[OutputTable]:
-    """Make the tables of what each cause contributes to the impulses along a run of cuts; none if shares are not
+    """Make the tables of what each cause contributes to the impulses along a series of cuts; none if shares are not
     requested.
     """
     if SHARES not in view.sections[run.name]:

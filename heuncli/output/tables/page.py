@@ -40,16 +40,16 @@ class ShareSource(Protocol):
         """Return the results with shares at instants (n,), in ascending order."""
 
     def compute_shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
-        """Return the results with shares at instants (n,), with a run of cuts that is cut only at these places."""
+        """Return the results with shares at instants (n,), with a series of cuts that is cut only at these places."""
 
 
 class Page(NamedTuple):
-    """The tables of a run: its blocks and runs of cuts up to the horizon, before they are laid out.
+    """The tables of a run: its blocks and series of cuts up to the horizon, before they are laid out.
 
     magnitudes: what its numbers are summed from
     last_instant: results at the last instant, if the run ends beyond its horizon
-    impact_extremes: for each impact, the extremes along its runs of cuts
-    cut_extremes: for each run of cuts, the extremes at the cuts that are shown
+    impact_extremes: for each impact, the extremes along its series of cuts
+    cut_extremes: for each series of cuts, the extremes at the cuts that are shown
     details: whether to include tables that are shown only on request
     doubtful: instants whose extremes are marked
     full: whether to repeat what is constant or indeterminate
@@ -68,11 +68,11 @@ class Page(NamedTuple):
 
     @property
     def has_runs(self) -> bool:
-        """Whether there are runs of cuts."""
+        """Whether there are series of cuts."""
         return any("s" in section for section in self.results.sections.values())
 
     def make_search(self) -> ChannelSearch:
-        """Make the search of the numbers of all blocks, and of the section forces along runs of cuts."""
+        """Make the search of the numbers of all blocks, and of the section forces along series of cuts."""
         blocks = self.make_blocks(self.results, only_searched=True)
         numbers = [row for block in blocks for group in block.groups for row in group.rows]
         selection = ChannelSelection.from_numbers(self.labels, numbers, has_runs=self.has_runs)
@@ -118,7 +118,7 @@ class Page(NamedTuple):
     def _make_run_share_tables(
         self, run: cut_runs.CutRun, search_result: Extremes, shares: ShareSource
     ) -> list[OutputTable]:
-        """Make the tables of what each cause contributes to the extremes along a run of cuts."""
+        """Make the tables of what each cause contributes to the extremes along a series of cuts."""
         from heuncli.output.tables import cause_tables
 
         found = search_result.find([load.path for load in run.loads])
@@ -136,7 +136,7 @@ class Page(NamedTuple):
     ) -> list[OutputTable]:
         """Make the tables at the instants of `results`, which is the same run solved at any instants.
 
-        search_result: extremes along the runs of cuts, if there is one instant only
+        search_result: extremes along the series of cuts, if there is one instant only
         """
         horizon = self.results.horizon
         unknown = frozenset(results.accuracy.get("unknown", ()))

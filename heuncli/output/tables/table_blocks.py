@@ -115,7 +115,7 @@ def format_numbers(group: RowGroup, numbers: Array, certain: StatedErrors) -> li
 def build_block(plan: TablePlan, results: Results, labels: Labels, channels: Iterable[Channel]) -> TableBlock | None:
     """Build the block of one plan from the channels of its kind; None if there is nothing to show.
 
-    Runs of cuts are left to output/tables/cut_runs.py.
+    Series of cuts are left to output/tables/cut_runs.py.
     """
     runs = {name for name, section in results.sections.items() if "s" in section} if plan.kind == "sections" else set()
     named: dict[str, dict[str, Channel]] = {}

@@ -10,7 +10,7 @@ const DEGREES = 180 / Math.PI;
  * @typedef {object} Course
  * @property {string} path of the number @property {string} label what it is called @property {string} unit shown
  * @property {import("./digits.js").Style} style of its digits
- * @property {Float64Array} low in the unit shown @property {Float64Array} high the same, but of a run of cuts
+ * @property {Float64Array} low in the unit shown @property {Float64Array} high the same, but of a series of cuts
  */
 
 /** @param {object} row @param {number} count */

@@ -1,4 +1,4 @@
-/** @file The load of a section on the moving body: across the bar along a run of cuts, an arrow at a single cut. */
+/** @file The load of a section on the moving body: across the bar along a series of cuts, an arrow at a single cut. */
 
 import { roundBelow, short, written } from "./digits.js";
 import { points, stands } from "./poses.js";
@@ -53,7 +53,7 @@ function piecesOf(cuts, values) {
   return pieces;
 }
 
-/** The diagram along a run of cuts. */
+/** The diagram along a series of cuts. */
 function drawDiagram(pen, view, poses, section, load, frame, colours, metres, labels) {
   const axis = section[DRAWN_ALONG[load.label] ?? "first"];
   const off = view

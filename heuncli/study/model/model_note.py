@@ -117,9 +117,11 @@ def grubler_freedoms(mechanism: Mechanism) -> int:
 def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     """Describe the model in sentences."""
     mechanism, layout = scene.mechanism, scene.layout
-    where = "in the plane" if mechanism.planar else "in space"
+    space = "planar" if mechanism.planar else "spatial"
     bodies = format_count(len(layout.place), "body", "bodies")
-    sentences = [f"{bodies} {where}, {format_count(model['freedoms'], 'degree of freedom', 'degrees of freedom')}"]
+    sentences = [
+        f"{space} model of {bodies}, {format_count(model['freedoms'], 'degree of freedom', 'degrees of freedom')}"
+    ]
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
         sentences.append(f"loop-closing joint{'s' * (len(cut) > 1)}: {list_some(cut)}; the other joints form the tree")

@@ -42,7 +42,7 @@ class Setup:
     """All that is known of a scene before anything moves.
 
     spec: the part that is solved
-    cuts: of the requested sections; a search replaces runs of cuts by their whole lengths
+    cuts: of the requested sections; a search replaces series of cuts by their whole lengths
     method: None if nothing is integrated
     reduction: the smaller scene that is integrated in its place, and why; None if nothing is integrated, or the whole
     scene

@@ -4,8 +4,8 @@ Search, tables, snapshots, CSV, the page and load cycles take their numbers from
 are applied where a number is printed.
 
 The paths are those of manual/results.md, "Paths": `joints.elbow.force.z` is kind `joints`, name `elbow`, quantity
-`force`, component `z`; in a run of cuts the component begins with the number of the cut, `3.z`. Units and shapes come
-from the schema: a new quantity of the results needs a row there.
+`force`, component `z`; in a series of cuts the component begins with the number of the cut, `3.z`. Units and shapes
+come from the schema: a new quantity of the results needs a row there.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ FAMILIES = {
 
 
 class Channel(NamedTuple):
-    """A quantity of the results over the instants, SI: a number, a vector, or a quantity along a run of cuts.
+    """A quantity of the results over the instants, SI: a number, a vector, or a quantity along a series of cuts.
 
     kind, name, quantity: the words of its path
     components: names of its components; one empty name for a single number
@@ -206,7 +206,7 @@ class ChannelSelection(NamedTuple):
     """Chosen numbers of the results, in the order in which results hold them.
 
     components: of the chosen quantities by their paths, the components of the chosen numbers
-    has_runs: whether section forces along runs of cuts are chosen as well; they stand last
+    has_runs: whether section forces along series of cuts are chosen as well; they stand last
     """
 
     labels: Labels
@@ -215,7 +215,7 @@ class ChannelSelection(NamedTuple):
 
     @classmethod
     def from_numbers(cls, labels: Labels, numbers: Iterable[Channel], *, has_runs: bool) -> ChannelSelection:
-        """Choose some numbers, and the section forces along runs of cuts if there are any."""
+        """Choose some numbers, and the section forces along series of cuts if there are any."""
         components: dict[str, set[str]] = {}
         for number in numbers:
             components.setdefault(number._replace(component="").path, set()).add(number.component)
@@ -234,7 +234,7 @@ class ChannelSelection(NamedTuple):
 
 
 def collect_run_loads(results: Results) -> list[Channel]:
-    """Collect the section forces along all runs of cuts."""
+    """Collect the section forces along all series of cuts."""
     runs = [item for item in results.sections.items() if "s" in item[1]]
     return [channel for name, section in runs for channel in make_section_channels(name, section)[: len(RESULTANTS)]]
 
@@ -242,7 +242,7 @@ def collect_run_loads(results: Results) -> list[Channel]:
 def make_section_channels(
     name: str, section: Mapping[str, Any], units: Mapping[str, str] = NO_UNITS
 ) -> tuple[Channel, ...]:
-    """Make the channels of a section: its forces, then the stresses it has; of a run of cuts (n_t, n_cuts) each.
+    """Make the channels of a section: its forces, then the stresses it has; of a series of cuts (n_t, n_cuts) each.
 
     units: replacements of units, for impulses instead of forces
     """
@@ -285,7 +285,7 @@ class _Walk(NamedTuple):
     is_impulse: bool = False
 
     def iter_block(self, keys: tuple[str, ...], node: Node, block: Block, is_run: bool = False) -> Iterator[Channel]:
-        """Yield the quantities of a block and of its sub-blocks; is_run: whether it belongs to a run of cuts."""
+        """Yield the quantities of a block and of its sub-blocks; is_run: whether it belongs to a series of cuts."""
         is_run = is_run or (self.kind == "sections" and len(keys) == 1 and "s" in block)
         for key, value in block.items():
             if isinstance(value, dict):

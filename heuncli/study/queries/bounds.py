@@ -1,8 +1,8 @@
 """Check the bounds that a spec expects of its results: `below` and `above`, over all instants, also between the
 samples, unless it names one.
 
-A vector counts by its magnitude, a run of cuts over its whole length, as with `--measure`. A value equal to a bound is
-neither below nor above it; an indeterminate or unknown value meets no bound.
+A vector counts by its magnitude, a series of cuts over its whole length, as with `--measure`. A value equal to a bound
+is neither below nor above it; an indeterminate or unknown value meets no bound.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def format_instant(time: float | None) -> str:
 
 
 def format_place(place: CutPosition | None) -> str:
-    """Format a place along a run of cuts as the end of a phrase; empty for None."""
+    """Format a place along a series of cuts as the end of a phrase; empty for None."""
     if place is None:
         return ""
     return f", s = {place.s:.6g} m" + (f" ({place.side})" if place.side else "")

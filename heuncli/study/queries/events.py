@@ -1,7 +1,7 @@
 """The events of a motion: changes of conditions on time and coordinates, and on numbers of the results.
 
 The kernel meets the first kind (motion/integration/check/changes.py). The second kind is searched for after the run: a
-number of the results is compared with its limit, a vector by its magnitude, a run of cuts over its whole length. A
+number of the results is compared with its limit, a vector by its magnitude, a series of cuts over its whole length. A
 motion that ends where such a number passes its limit is solved twice: once as a whole, or as far as it goes, and once
 up to that instant.
 """
@@ -176,7 +176,7 @@ class WatchedNumber(NamedTuple):
     """A number of the results minus its limit: positive where the condition is true.
 
     is_magnitude: whether squares are compared, which are smooth where a magnitude is zero
-    is_along_cuts: whether it is a number along a run of cuts
+    is_along_cuts: whether it is a number along a series of cuts
     """
 
     study: Study
@@ -200,7 +200,7 @@ class WatchedNumber(NamedTuple):
         return np.asarray(values - limit if condition.is_above else limit - values)
 
     def read_values(self, times: Array) -> Array:
-        """Return the number itself, or its square; along a run of cuts the extreme that reaches the limit first."""
+        """Return the number itself, or its square; along a series of cuts the extreme that reaches the limit first."""
         reports = find_reports(self.condition.of)
         results = self.study.compute_reports(times, reports if reports is not None else frozenset(), self.setup)
         numbers = find_values(results, self.condition.of)

@@ -123,7 +123,7 @@ def measure_event(request: MeasureRequest, numbers: PathValues) -> Peak:
 
 
 def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
-    """Return a number of one impulse, with its instant; along a run of cuts the extreme. A vector counts by its
+    """Return a number of one impulse, with its instant; along a series of cuts the extreme. A vector counts by its
     magnitude.
     """
     path, time = request.path, find_impulse_time(study.results, numbers)
@@ -142,8 +142,8 @@ def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) 
 
 
 def measure_impulse_along_cuts(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
-    """Return the extreme of one impulse along a run of cuts, over its whole length."""
-    from heuncli.study.search.stretches import find_cut_extremes, find_stretch  # where there are runs of cuts
+    """Return the extreme of one impulse along a series of cuts, over its whole length."""
+    from heuncli.study.search.stretches import find_cut_extremes, find_stretch  # where there are series of cuts
 
     setup = study.with_whole_cuts(False)
     whole = replace(study.results, impulses=study.make_impulse_blocks(setup))
@@ -165,7 +165,7 @@ def find_impulse_time(results: Results, numbers: PathValues) -> float:
 
 
 class Peak(NamedTuple):
-    """An extreme with its time, and along a run of cuts its place; open_at: an instant at which the number is
+    """An extreme with its time, and along a series of cuts its place; open_at: an instant at which the number is
     indeterminate, if any.
     """
 
@@ -182,7 +182,7 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     """Find the highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too,
     with its time and place.
 
-    A vector counts by its magnitude, a run of cuts over its whole length. times: restricts the search to these
+    A vector counts by its magnitude, a series of cuts over its whole length. times: restricts the search to these
     instants.
     """
     asked = study.find_numbers(path)

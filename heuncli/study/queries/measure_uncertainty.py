@@ -17,7 +17,9 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
 SI = Units({})
-SQUARE_ROUNDING = 4.0 * tolerances.EPS  # relative to the largest square along a run of cuts: rounding of its polynomial
+SQUARE_ROUNDING = (
+    4.0 * tolerances.EPS
+)  # relative to the largest square along a series of cuts: rounding of its polynomial
 
 
 def find_unit(path: str, spec: Spec) -> str:
@@ -44,7 +46,7 @@ def measure_uncertainty(study: Study, path: str, how: str = "", value: float = m
     """Return the error of the number at a path, as tables and golden files state it, SI; None if the run states none,
     as for counts.
 
-    how, value: of a measure: an event's value decides which instant it is, and a least magnitude along a run of cuts
+    how, value: of a measure: an event's value decides which instant it is, and a least magnitude along a series of cuts
     is less certain
     """
     numbers = study.find_numbers(path)
@@ -89,8 +91,8 @@ def _find_unit_error(keys: tuple[str, ...], unit: str, study: Study) -> float | 
 
 
 def _find_root_error(value: float, largest: float) -> float:
-    """Return the error of the least magnitude along a run of cuts: the root of a polynomial that is as accurate as its
-    largest value.
+    """Return the error of the least magnitude along a series of cuts: the root of a polynomial that is as accurate as
+    its largest value.
     """
     rounding = SQUARE_ROUNDING * largest * largest
     return rounding / max(value, math.sqrt(rounding)) if rounding > 0.0 else 0.0

@@ -155,12 +155,12 @@ class Study:
         return (self.impulse_results if setup is None else self.impulse_results.with_cuts(setup)).make_blocks()
 
     def find_impulse_extremes(self) -> list[dict[str, Extremes]]:
-        """Return the lowest and highest of the section forces along whole runs of cuts: one mapping by run for each
+        """Return the lowest and highest of the section forces along whole series of cuts: one mapping by run for each
         impulse.
         """
         if not any(cuts.s is not None for cuts in self.setup.cuts):
             return []
-        from heuncli.study.search.stretches import find_impulse_extremes  # only runs of cuts are worth it
+        from heuncli.study.search.stretches import find_impulse_extremes  # only series of cuts are worth it
 
         setup = self.with_whole_cuts(False)
         return [find_impulse_extremes(setup, block) for block in self.make_impulse_blocks(setup)]
@@ -218,7 +218,7 @@ class Study:
         return self.compute_reports(times, self.options.reports & (SHARED_BLOCKS | {SHARES}))
 
     def compute_shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
-        """Return the loads by cause of a run of cuts at other instants, (n,) ascending, cut at some places along it."""
+        """Return the loads by cause of a series of cuts at other instants, (n,) ascending, cut at some places."""
         from heuncli.study.search.stretches import cut_at_places
 
         return self.compute_reports(times, frozenset({"sections", SHARES}), cut_at_places(self.setup, name, places))
@@ -235,10 +235,10 @@ class Study:
         return max(50, CHUNK // max(1, len(mechanism.bodies) * (1 + causes)))
 
     def with_whole_cuts(self, bent: bool) -> Setup:
-        """Return the setup with its runs of cuts as whole lengths; bent: for numbers that are no polynomial of the
+        """Return the setup with its series of cuts as whole lengths; bent: for numbers that are no polynomial of the
         loads.
         """
-        from heuncli.study.search.stretches import replace_runs  # only runs of cuts are worth it
+        from heuncli.study.search.stretches import replace_runs  # only series of cuts are worth it
 
         return replace_runs(self.setup, bent)
 

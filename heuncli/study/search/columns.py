@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains
 class ChannelSearch(NamedTuple):
     """What is searched for its lowest and highest values: channels of the results at any instants, in one order.
 
-    collect: takes the channels from results; those along runs of cuts stand last, and are searched as whole lengths
+    collect: takes the channels from results; those along series of cuts stand last, and are searched as whole lengths
     find_error: gives the error of a channel's numbers
     sides: the extremes that are needed, -1 the lowest, 1 the highest; others are not searched between the samples
     """
@@ -47,7 +47,7 @@ class Sampleable(Protocol):
         """How many instants are solved in one call."""
 
     def with_whole_cuts(self, bent: bool) -> Setup:
-        """Return the setup with its runs of cuts as whole lengths."""
+        """Return the setup with its series of cuts as whole lengths."""
 
     def compute_reports(self, times: Array, reports: frozenset[str], setup: Setup | None = None) -> Results:
         """Return some reports' blocks at other instants; setup: with other cuts."""
@@ -68,7 +68,7 @@ class Sampleable(Protocol):
 class StudyColumns:
     """The columns of a study that are searched; collects the instants at which rounding decides some of them.
 
-    Runs of cuts are whole lengths; each channel along them gives two columns, its lowest and its highest.
+    Series of cuts are whole lengths; each channel along them gives two columns, its lowest and its highest.
 
     The first instants sampled are the grid of the search: between them, what is indeterminate follows from the grid.
     """
@@ -76,7 +76,7 @@ class StudyColumns:
     def __init__(
         self, study: Sampleable, search: ChannelSearch, reports: frozenset[str], setup: Setup | None = None
     ) -> None:
-        """setup: with runs of cuts as whole lengths; by default all of the study's, if channels run along them."""
+        """setup: with series of cuts as whole lengths; by default all of the study's, if channels run along them."""
         self.study, self.reports, self.collect = study, reports, search.collect
         channels = search.collect(study.results)
         self.paths = tuple(channel.path for channel in channels)
@@ -156,7 +156,7 @@ class StudyColumns:
         return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
 
     def finish(self, peaks: Extremes) -> Extremes:
-        """Return the extremes of the channels: with their paths, places along runs of cuts, and of magnitudes instead
+        """Return the extremes of the channels: with their paths, places along series of cuts, and of magnitudes instead
         of their squares.
 
         Quantities along runs that are no polynomial of loads are searched there again.
@@ -186,7 +186,7 @@ class StudyColumns:
     def _find_place(
         self, k: int, side: float, run_sample: tuple[str, float, Array, Array], value: float
     ) -> tuple[float, CutPosition]:
-        """Return the value of an extreme of a run of cuts, and its place.
+        """Return the value of an extreme of a series of cuts, and its place.
 
         run_sample: name of the run, instant, nodes along the run, and the values at these
         """

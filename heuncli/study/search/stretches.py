@@ -1,4 +1,4 @@
-"""Find the extremes over runs of cuts: over the whole length, not at the requested cuts.
+"""Find the extremes over series of cuts: over the whole length, not at the requested cuts.
 
 For a search, the runs of a scene are replaced by stretches between their corners (loads/kinetostatics/stretch.py). The
 highest and the lowest of each quantity along a stretch are then two numbers over the instants, smooth but for kinks
@@ -23,7 +23,7 @@ HALVINGS = 2  # times that pieces are halved for kinks where loads change their 
 
 
 def replace_runs(setup: Setup, bent: bool) -> Setup:
-    """Return the setup with its runs of cuts as whole stretches; bent: for quantities that are no polynomial of
+    """Return the setup with its series of cuts as whole stretches; bent: for quantities that are no polynomial of
     loads.
     """
     mechanism, halved = setup.scene.mechanism, HALVINGS if bent else 0
@@ -40,7 +40,7 @@ def replace_runs(setup: Setup, bent: bool) -> Setup:
 
 
 def find_stretch(setup: Setup, name: str) -> Stretch:
-    """Return the stretch of the run of cuts with that name."""
+    """Return the stretch of the series of cuts with that name."""
     cuts_and_stretches: tuple[Cuts | Stretch, ...] = setup.cuts
     return next(cuts for cuts in cuts_and_stretches if isinstance(cuts, Stretch) and cuts.name == name)
 
@@ -51,7 +51,7 @@ def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setu
 
 
 def cut_at_places(setup: Setup, name: str, places: Sequence[CutPosition]) -> Setup:
-    """Return the setup with only one run of cuts, cut at these places, on the sides that they name."""
+    """Return the setup with only one series of cuts, cut at these places, on the sides that they name."""
     run = next(cuts for cuts in setup.cuts if cuts.name == name)
     side = np.array([{"before": BEFORE, "beyond": BEYOND}.get(place.side or "", 0.0) for place in places])
     return replace(setup, cuts=(make_cuts_at(run, np.array([place.s for place in places]), side),))
@@ -89,14 +89,14 @@ def find_impulse_extremes(setup: Setup, impulse: Block) -> dict[str, Extremes]:
 
 
 class CutExtreme(NamedTuple):
-    """An extreme along a run of cuts, and its place."""
+    """An extreme along a series of cuts, and its place."""
 
     value: float
     place: CutPosition
 
 
 def find_cut_extremes(stretch: Stretch, s: Array, values: Array) -> tuple[CutExtreme, CutExtreme]:
-    """Return the lowest and the highest value along a run of cuts, from the values (9 m,) at the nodes s of its m
+    """Return the lowest and the highest value along a series of cuts, from the values (9 m,) at the nodes s of its m
     pieces.
     """
     low, high = compute_envelope(values[None])[0].tolist()

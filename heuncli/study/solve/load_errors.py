@@ -127,7 +127,7 @@ class LoadErrors:
     def add_chunk(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
         """Add instants that are solved with the same closure rows in all runs."""
         self.is_requested, self.is_claimed = is_requested, is_claimed
-        require_on_sheaves(self.setup.scene.layout, recovered)
+        require_on_sheaves(self.setup.scene.layout, recovered, has_all_steps=True)
         states = make_body_states(self.setup.scene.layout, recovered)
         self.last = ComparedInstants(states) if self.keep_instants else None
         loads = collect_applied_loads(self.setup.scene.mechanism, states, recovered)

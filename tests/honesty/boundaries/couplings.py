@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from heuncli.base.errors import HeunError
+from heuncli.motion.integration.diagnosis.guide_departures import (
+    find_recounted,
+    find_wound_up,
+    is_counted_round,
+    iter_rope_parts,
+)
 from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.honesty.boundaries.part import Part, Row
@@ -149,13 +157,30 @@ def lifted(angle: float) -> str:
     return roped(ROUND.replace("HEIGHT", repr((0.1 + math.sin(angle)) / math.cos(angle))))
 
 
+def left_at(x: float) -> str:
+    """A strand of a run that failed, whose length was x of its sheave's radius."""
+    study = solve(load("rope.yaml", text=JIB.replace("SIDE", "0.0")))
+    layout, evaluation = study.setup.scene.layout, study.history.solutions
+    for _, part, k, _ in iter_rope_parts(layout, evaluation):
+        if part.kind == "strand" and part.g[0]:
+            evaluation.parts["gap"][0, k] = x * abs(part.g[0])
+    return "wound up" if find_wound_up(layout, evaluation) else "not for its rope"
+
+
+def turned(x: float) -> str:
+    """An arc that changes by x from one step to the next."""
+    return "counted anew" if len(find_recounted(np.array([0.0, 1.0]), np.array([0.1, 0.1 + x]))) else "turned"
+
+
 ROPES = Part(
     headings=("ropes over sheaves",),
     rows=(
         Row("FLEET_ANGLE", swung, "warned of", "refused: rope-off-sheave"),
         Row("FLEET_SEEN", swung, "fine", "warned of"),
         Row("ASKEW", lambda x: roped(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
+        Row("WOUND_UP", left_at, "wound up", "not for its rope"),
+        Row("COUNTED_ROUND", lambda x: "all round" if is_counted_round(-x) else "lifts off", "lifts off", "all round"),
+        Row("RECOUNTED", turned, "turned", "counted anew"),
         Row("OFF_SHEAVE", lifted, "fine", "refused: rope-off-sheave"),
     ),
-    wanted={"WOUND_UP": "the words on a run that fails"},
 )

@@ -77,7 +77,7 @@ MEANINGS = {
 
 
 def explain_path(path: str) -> str | None:
-    """Return the explanation of a path, or None if it leads to nothing; without the place along a run of cuts."""
+    """Return the explanation of a path, or None if it leads to nothing; without the place along a series of cuts."""
     words = path.partition("@")[0].split(".")
     for word_count in range(len(words), 0, -1):
         for keys in _iter_keys(words[:word_count]):

@@ -16,7 +16,7 @@ from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.scene.file_format.models import Spec
 
-MAX_NAMES = 12  # of known runs of cuts in an error message
+MAX_NAMES = 12  # of known series of cuts in an error message
 
 
 def draw(target: PlotTarget, request: PlotRequest) -> Figure:
@@ -40,13 +40,13 @@ def _require_runs(names: Sequence[str], spec: Spec) -> None:
         section = spec.sections.get(name)
         if section is None:
             listed = ", ".join(known[:MAX_NAMES]) + (", ..." if len(known) > MAX_NAMES else "")
-            known_text = f"known runs of cuts: {listed}" if known else "it has no run of cuts"
+            known_text = f"known series of cuts: {listed}" if known else "it has no series of cuts"
             near = find_similar(name, known)
             hint = f"did you mean sections.{near}?" if near else "a section with from, to and count"
             message = f"heun plot: sections.{name}: there is no such section in {spec.path}; {known_text}"
             raise SpecError(Problem("unknown-path", message, hint=hint))
         if section.from_ is None:
-            message = f"heun plot: sections.{name} is a single cut, not a run of cuts along a bar"
+            message = f"heun plot: sections.{name} is a single cut, not a series of cuts along a bar"
             hint = f"give the section from, to and count; or its loads over time: sections.{name}.M1"
             raise UsageError(Problem("bad-option", message, hint=hint))
 

@@ -51,7 +51,19 @@ def list_facts(results: TuneResults, units: Units) -> Iterator[tuple[str, str]]:
         yield "", describe_nearest_unmet(results, units)
     if results.is_spec_better:
         yield "", "the spec's own values, outside the bounds, are better"
+    for text in describe_jumps(results):
+        yield "", text
     yield "", f"{len(results.history)} variants{format_failures(results)}"
+
+
+def describe_jumps(results: TuneResults) -> Iterator[str]:
+    """Describe the jumps on which the best rests: a move beyond a certain distance changes a measure at once."""
+    for one, range_ in zip(results.task.variables, results.tolerance_ranges, strict=False):
+        for direction, *pair in zip(("down", "up"), range_.of_floor, range_.of_hundredth, strict=True):
+            jumping = next((move for move in pair if move is not None and move.jumps), None)
+            if jumping is not None:
+                distance = f"{jumping.distance:.2g} {one.unit}".rstrip()
+                yield f"beside a jump: {jumping.jumps} jumps where {one.name} goes {direction} by more than {distance}"
 
 
 def format_failures(results: TuneResults) -> str:
@@ -130,7 +142,8 @@ def _format_move(one: ToleranceMove | None) -> str:
     if one is None:
         return "-"
     distance = f"{one.distance:.2g}".replace("e-0", "e-")
-    return f"{BOUND_OF.get(one.limit, '')}{distance}{UNTIL.get(one.limit, f' ({one.limit})')}"
+    ends = f" ({one.limit}{' jumps' if one.jumps else ''})"
+    return f"{BOUND_OF.get(one.limit, '')}{distance}{UNTIL.get(one.limit, ends)}"
 
 
 def make_measures_table(results: TuneResults, units: Units) -> OutputTable:

@@ -107,8 +107,10 @@ def make_variable_block(results: TuneResults, index: int) -> dict[str, Any]:
 
 
 def make_move_block(one: ToleranceMove | None) -> dict[str, Any] | None:
-    """Return a move as the JSON has it: how far, and what ends it."""
-    return None if one is None else {"by": one.distance, "until": one.limit}
+    """Return a move as the JSON has it: how far, what ends it, and the measure that jumps there."""
+    return (
+        None if one is None else {"by": one.distance, "until": one.limit} | ({"jumps": one.jumps} if one.jumps else {})
+    )
 
 
 def make_constraint_block(results: TuneResults, index: int) -> dict[str, Any]:

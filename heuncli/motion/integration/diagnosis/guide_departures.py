@@ -22,7 +22,7 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
 from heuncli.multibody.mechanism.model import GROUND, Mechanism
 from heuncli.multibody.tree.layout import Layout
-from heuncli.results.results import Array, Mask
+from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.shapes.rotations import cross_rows
 
@@ -30,11 +30,20 @@ from heuncli.scene.shapes.rotations import cross_rows
 
 WOUND_UP = "winds up: a strand has no length left between a sheave and the next point"
 WOUND_UP_HINT = "end the run before it is wound up, or start further from the sheave"
+WOUND_ROUND = "lies on a sheave over more than 315 deg: heun counts an arc up to that"
+WOUND_ROUND_HINT = "end the run before, or use slip: none with a pin that winds the rope (a drum)"
+GONE_AROUND = "is slack, and its end goes round behind a sheave: heun does not know how it lies on it then"
+GONE_AROUND_HINT = "end the run before"
+NO_INDICES: Indices = np.zeros(0, dtype=np.intp)
 HINT = "mount the sheave on a bearing that swivels with the rope, or use a plain point instead"
 
 
-def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
-    """Raise SolveError at the first instant at which a rope has left a sheave, or its plane."""
+def require_on_sheaves(layout: Layout, evaluation: Evaluation, *, has_all_steps: bool = False) -> None:
+    """Raise SolveError at the first instant at which a rope has left a sheave or its plane, or lies all around one.
+
+    has_all_steps: whether the ends of all steps are there; then a rope that becomes slack where its arc is counted anew
+    is found, too
+    """
     problems: list[tuple[float, Problem]] = []
     for coupling, part, k, is_taut in iter_rope_parts(layout, evaluation):
         if part.kind == "arc":
@@ -44,6 +53,12 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
                 "lifts off a sheave",
                 "end the run earlier; a rope that touches a sheave only at times cannot be modelled",
             )
+            recounted = find_recounted(evaluation.times, angle) if has_all_steps else NO_INDICES
+            violations = np.union1d(violations, recounted)
+            if len(violations) and is_counted_round(float(angle[violations[0]])):
+                message, hint = WOUND_ROUND, WOUND_ROUND_HINT
+            elif len(violations) and violations[0] in recounted:
+                message, hint = GONE_AROUND, GONE_AROUND_HINT
         elif part.kind == "strand":
             violations = np.flatnonzero(
                 is_taut & (np.abs(slant_angle(layout, evaluation, part, k)) > tolerances.FLEET_ANGLE)
@@ -63,6 +78,20 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation) -> None:
             problems.append((t, Problem("rope-off-sheave", f"at t = {t:.9g} s {path} {message}", None, hint, path)))
     if problems:
         raise SolveError(min(problems, key=lambda one: one[0])[1])
+
+
+def is_counted_round(angle: float) -> bool:
+    """Return whether an arc of less than 0 is one of more than 315 degrees, which the kernel counts from -45 on."""
+    return angle < -tolerances.COUNTED_ROUND
+
+
+def find_recounted(times: Array, angle: Array) -> Indices:
+    """Return the instants at which an arc is counted anew: as none where it was all around the sheave, or the reverse.
+
+    A taut rope that stretches is slack from there on, for it seems shorter by the sheave's circumference.
+    """
+    order = np.argsort(times, kind="stable")
+    return np.asarray(order[1:][np.abs(np.diff(angle[order])) > tolerances.RECOUNTED], dtype=np.intp)
 
 
 FLEET = f"{math.degrees(tolerances.FLEET_ANGLE):.0f} deg"

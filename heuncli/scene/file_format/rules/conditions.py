@@ -67,7 +67,7 @@ def check_event_motion(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("event-path")
 def check_event_path(draft: DraftDocument) -> Iterator[Violation]:
-    """`of` leads to one number per instant: of a vector the magnitude, of a run of cuts the whole run."""
+    """`of` leads to one number per instant: of a vector the magnitude, of a series of cuts the whole run."""
     runs: dict[str, bool] | None = None
     for path, condition, target in iter_result_conditions(draft):
         from heuncli.scene.file_format.rules.outcome import NumberKind, find_cut_runs, find_path_error

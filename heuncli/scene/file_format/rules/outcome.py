@@ -63,7 +63,7 @@ class TextResult(NamedTuple):
     """The path leads to text or names, not to a number."""
 
 
-# a Finding: an invalid place along a run of cuts; None: the entry could not be read
+# a Finding: an invalid place along a series of cuts; None: the entry could not be read
 PathTarget: TypeAlias = NumberKind | UnknownWord | TextResult | Finding | None
 UNKNOWN_NUMBER = NumberKind((), (), is_timed=False, is_known=False)
 
@@ -77,7 +77,7 @@ class ResolvedPath(NamedTuple):
 
 
 def find_cut_runs(draft: DraftDocument) -> dict[str, bool]:
-    """Return, for each section that could be read, whether it is a run of cuts."""
+    """Return, for each section that could be read, whether it is a series of cuts."""
     return {name: is_run(section) for name, section in draft.document.sections.items()}
 
 
@@ -92,7 +92,7 @@ def find_path_target(draft: DraftDocument, path: str) -> PathTarget:
 def resolve_path(path: list[str], names: SceneNames, runs: Mapping[str, bool]) -> PathTarget:
     """Return what the words of a path lead to.
 
-    runs: of each section, whether it is a run of cuts
+    runs: of each section, whether it is a series of cuts
     """
     resolved = follow_path(path, names)
     if not isinstance(resolved, ResolvedPath):
@@ -315,7 +315,7 @@ def expand_schema_word(word: str, names: SceneNames, is_impact: bool = False) ->
 
 
 def select_cut(run_kind: NumberKind, words: list[str]) -> tuple[NumberKind, list[str]]:
-    """Remove the place along a run of cuts from a quantity and its words, if the words name one. Raises Finding."""
+    """Remove the place along a series of cuts from a quantity and its words, if the words name one. Raises Finding."""
     word = find_position_word(words)
     if CUT not in run_kind.axes or not words:
         return run_kind, words

@@ -1,4 +1,4 @@
-"""Rules about sections: one cut or a run of cuts, in a body with known mass distribution, with properties in one
+"""Rules about sections: one cut or a series of cuts, in a body with known mass distribution, with properties in one
 form.
 """
 
@@ -20,7 +20,7 @@ SHEAR_FACTOR_HINT = "1 is a uniform stress; a rectangle has 1.5, a circle 4/3"
 
 
 def is_run(section: f.SectionEntry) -> bool:
-    """Whether a section is a run of cuts."""
+    """Whether a section is a series of cuts."""
     return section.from_ is not None or section.to is not None or section.count is not None
 
 
@@ -37,17 +37,17 @@ def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
         ]
         if single_keys and run_keys:
             message = (
-                f"{' and '.join(single_keys)} (one cut) given together with {' and '.join(run_keys)} (a run of cuts)"
+                f"{' and '.join(single_keys)} (one cut) given together with {' and '.join(run_keys)} (a series of cuts)"
             )
             yield Violation(path, message, "a run takes its normal from `from` to `to`", key=True)
         elif not run_keys and len(single_keys) < 2:
             missing = [key for key in ("at", "normal") if key not in single_keys]
             yield Violation(
-                path, f"{' and '.join(missing)} missing", "a run of cuts has from, to and count instead", key=True
+                path, f"{' and '.join(missing)} missing", "a series of cuts has from, to and count instead", key=True
             )
         elif run_keys and len(run_keys) < 3:
             missing = [key for key in ("from", "to", "count") if key not in run_keys]
-            hint = "a run of cuts has from, to and count: 21"
+            hint = "a series of cuts has from, to and count: 21"
             yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
         elif run_keys:
             yield from check_run_of_cuts(draft, name, section)
@@ -79,11 +79,14 @@ def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) 
             )
     if section.side is not None:
         yield Violation(
-            (*path, "side"), "side given for a run of cuts, which shows both sides", "leave it out", key=True
+            (*path, "side"), "side given for a series of cuts, which shows both sides", "leave it out", key=True
         )
     if section.piece is not None:
         yield Violation(
-            (*path, "piece"), "a piece given for a run of cuts", "a run of cuts needs a body with shapes", key=True
+            (*path, "piece"),
+            "a piece given for a series of cuts",
+            "a series of cuts needs a body with shapes",
+            key=True,
         )
 
 
