@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from heuncli.base.text_safety import escape
-from heuncli.output.documents.document import OutputTable, format_cell, is_governing
+from heuncli.output.documents.document import OutputTable, is_governing
 from heuncli.output.documents.text_table import align_cells
 
 GOVERNING, UNCLEAR, NOTE, HEADING = "bold red", "yellow", "dim", "bold"

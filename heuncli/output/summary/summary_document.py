@@ -10,7 +10,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.as_json import FORMAT
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, TextCell
 from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
-from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, RunSummary, SummaryRow
+from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow
 from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NOTE
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
