@@ -90,7 +90,7 @@ class VariantKeys:
         """Return the data of a load case."""
         if name not in self.cases:
             settings = [*(list_case_settings(name, self.source) if name is not None else ()), *self.settings]
-            data, _, _ = apply_settings(self.source.data, settings)
+            data = drop_report_texts(apply_settings(self.source.data, settings)[0])
             digests = {
                 block: self.digest_block(block, value) for block, value in data.items() if block not in IGNORED_BLOCKS
             }
@@ -109,8 +109,6 @@ class VariantKeys:
 
     def digest_block(self, block: str, value: Any) -> bytes:
         """Return the digest of a block."""
-        if block == "report" and type(value) is dict:  # the rest of it is for readers
-            value = value.get("results")
         text = json.dumps(value, sort_keys=False) if block in VERBATIM else format_canonical(value)
         files = json.dumps({name: self.digest_file(file) for name, file in FILES.get(block, iter_no_files)(value)})
         files = "" if files == "{}" else files
@@ -145,6 +143,15 @@ def iter_shape_files(value: Any) -> Iterator[tuple[str, Any]]:
 def iter_no_files(value: Any) -> Iterator[tuple[str, Any]]:
     """Yield nothing, for a block that names no files."""
     return iter(())
+
+
+def drop_report_texts(data: dict[str, Any]) -> dict[str, Any]:
+    """Return the data with no more of the report than the results to compute; the rest of it is for readers."""
+    report = data.get("report")
+    if type(report) is not dict:
+        return data
+    results = {"report": report["results"]} if "results" in report else {}
+    return {block: value for block, value in data.items() if block != "report"} | results
 
 
 FILES = {"tables": iter_table_files, "bodies": iter_shape_files}  # the functions that yield the files named in a block

@@ -75,9 +75,14 @@ class LabelSplitter:
         """
         if type(entries) is not dict:
             return entries
-        split = self._unwrap if kind.split(".")[0] in VALUE_KEYS else self._split_entry
-        changed = {name: split((*path, name), f"{kind}.{name}", entry) for name, entry in entries.items()}
-        return replace_changed(entries, changed)
+        is_value = kind.split(".")[0] in VALUE_KEYS
+        split = self._unwrap if is_value else self._split_entry
+        changed = {
+            name: split((*path, name), f"{kind}.{name}", entry)
+            for name, entry in entries.items()
+            if type(entry) is dict and (is_value or LABEL in entry or POINTS in entry)
+        }  # most entries of a large scene have none
+        return replace_changed(entries, changed) if changed else entries
 
     def _split_entry(self, path: Path_, label_path: str, entry: Any) -> Any:
         """Return an entry without its label and those of its points."""
