@@ -29,7 +29,7 @@ def test_a_report_is_printed_in_pages(browser: Chromium, report: Path) -> None:
     with browser.open(report) as tab:
         assert tab.faults == []
         printed = tab.pdf()
-        assert 4 <= len(PAGE.findall(printed)) <= 12
+        assert 2 <= len(PAGE.findall(printed)) <= 6
         for wide, high in SHEET.findall(printed):
             assert (float(wide), float(high)) == pytest.approx((595.3, 841.9), abs=1.0)  # A4, in points
         tab.send("Emulation.setEmulatedMedia", media="print")
@@ -46,7 +46,7 @@ def test_a_report_is_read_on_any_screen(width: int, dark: bool, browser: Chromiu
         assert seen.colours > 20
         assert tab.faults == []
         selected = tab.evaluate(SELECTED)
-        for words in ("A slewing crane jib", "joints.slew.force", "sections.root", "M1 [N·m]"):
+        for words in ("A slewing crane jib", "slew", "root", "SUMMARY", "How it was computed"):
             assert words in selected, words
 
 

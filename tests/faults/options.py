@@ -207,6 +207,8 @@ LINES: Mapping[str, Sequence[str]] = {
         "{spec} --format md -o - --time-limit {limit}",
         "{spec} -o {out}/r.md --date today --author me --project p --units kN,mm,deg,rpm -q --time-limit {limit}",
         "{spec} -o {out}/c.html --case {case} --set {setting} --time-limit {limit}",
+        "{spec} -o {out}/t.html --company c --part 1 --revision B --logo {out}/logo.svg --time-limit {limit}",
+        "{spec} -o {out}/l.html --chapters loads,spec --paper letter --landscape --decimal-comma --time-limit {limit}",
         "{spec} -o {out}/m.md --method RK4 --step {step} --time-limit {limit}",
         "{spec} -o {out}/n.md --tolerance 1e-6 --no-reduce --least-norm --time-limit {limit}",
     ),

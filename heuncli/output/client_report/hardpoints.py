@@ -34,7 +34,7 @@ BUSHING_AXES = "bushings in their own axes"
 PLACE_DECIMALS = {"m": 4, "mm": 1}
 
 
-class PointLoad(NamedTuple):
+class HardpointLoad(NamedTuple):
     """The load at a point of a joint or bushing at an instant: force and moment (3,), place in the world (3,), SI."""
 
     name: str
@@ -56,7 +56,7 @@ def make_hardpoint_table(data: ReportData) -> OutputTable | None:
     return _make_table(data, loads) if loads else None
 
 
-def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[PointLoad]:
+def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[HardpointLoad]:
     """Yield the load of a point in each case, or in the governing one of many."""
     kind = prefix.partition(".")[0]
     found = []
@@ -73,7 +73,7 @@ def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[Poin
         errors = ends.error, moment_ends.error if moment_ends is not None else 0.0
         place = _locate(run, kind, name, k)
         words = describe_object(kind, name, data.labels)
-        found.append((ends.high.value, PointLoad(words, run, time, place, force, moment, errors)))
+        found.append((ends.high.value, HardpointLoad(words, run, time, place, force, moment, errors)))
     if len(data.runs) > MAX_CASES and found:
         found = [max(found, key=lambda pair: pair[0])]
     yield from (load for _, load in found)
@@ -91,7 +91,7 @@ def _locate(run: ReportedRun, kind: str, name: str, k: int) -> Array:
     return extract_poses(run.worst_results).locate_points(body, np.asarray(point, dtype=np.float64), k)
 
 
-def _make_table(data: ReportData, loads: Sequence[PointLoad]) -> OutputTable:
+def _make_table(data: ReportData, loads: Sequence[HardpointLoad]) -> OutputTable:
     """Make the table; a column in which nothing acts is left out."""
     largest_force = max((_find_length(load.force) for load in loads), default=0.0)
     largest_moment = max((_find_length(load.moment) for load in loads), default=0.0)

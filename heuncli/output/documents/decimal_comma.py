@@ -22,7 +22,7 @@ from heuncli.output.documents.document import (
 )
 
 NUMBER = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\d.]|[A-Za-z_]\w*\.)")  # no version, date or file name
-LIST = re.compile(r"(?<=\d), (?=[-−]?\d)")  # between numbers
+LIST = re.compile(r"(?<=\d), (?=[−-]?\d+(?:\.\d+)?(?![\d.\w]))")  # between numbers
 
 
 def write_decimal_comma(document: OutputDocument) -> OutputDocument:
