@@ -103,7 +103,8 @@ sections: {along: {body: bar, from: a, to: d, count: 5}}
     shown = panels_of(beam, "along")
     for shear, moment, sign in (("Q2", "M1", 1.0), ("Q1", "M2", -1.0)):
         for a, b in ((0.0, 0.7), (0.7, 1.5), (1.5, 2.0)):
-            s = np.linspace(a + 1e-9, b - 1e-9, 801)
+            edge = 0.01 * shown[shear].across  # places are written to a hundredth of a pixel
+            s = np.linspace(a + edge, b - edge, 801)
             q, m = (np.interp(s, *shown[name].curve(name).T) for name in (shear, moment))
             area = np.concatenate([[0.0], np.cumsum(0.5 * (q[1:] + q[:-1]) * np.diff(s))])
             off = np.abs(m - m[0] - sign * area).max()

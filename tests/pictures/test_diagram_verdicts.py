@@ -14,7 +14,7 @@ from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.scene.shapes.rotations import cross_vectors
 from heuncli.study.quantities.digits import StatedErrors
-from tests.shared.drawn_bars import HELD_TWICE, SI, drawn, panels_of
+from tests.shared.drawn_bars import HELD_TWICE, SI, diagrams, drawn, panels_of
 from tests.shared.scenes import study
 
 CANTILEVER = """
@@ -38,7 +38,7 @@ def test_noise_is_named_as_nothing_and_not_drawn() -> None:
     noise = WholeBar(pushed, "along").make_lines(0.0)
     assert max(np.abs(noise[name].values).max() for name in ("N", "Q2", "T", "M1")) > 0.0, "no rounding to be seen"
     figure = drawn(pushed, "along")
-    assert [panel.y.label for panel in figure.panels] == ["Q1 [N]", "M2 [N·m]"]
+    assert [panel.y.label for panel in diagrams(figure)] == ["Q1 [N]", "M2 [N·m]"]
     assert figure.notes == ["along: all zero, not drawn: N, Q2, T, M1"]
 
 
@@ -57,10 +57,10 @@ def test_what_no_law_decides_is_drawn_as_open_where_it_is() -> None:
     """Between two fixed pins N, Q1, T and M2 are open; outside they are 0, which is drawn, and not noise."""
     twice = study(HELD_TWICE)
     figure = drawn(twice, "along")
-    assert [panel.y.label for panel in figure.panels] == [f"{q} [N]" for q in ("N", "Q1", "Q2")] + [
+    assert [panel.y.label for panel in diagrams(figure)] == [f"{q} [N]" for q in ("N", "Q1", "Q2")] + [
         f"{q} [N·m]" for q in ("T", "M1", "M2")
     ]
-    for panel in figure.panels:
+    for panel in diagrams(figure):
         blanks = [item for item in panel.items if isinstance(item, Blank)]
         (line,) = [item for item in panel.items if isinstance(item, Trace)]
         if panel.y.label[:2] in ("Q2", "M1"):
@@ -102,7 +102,7 @@ def with_errors(errors: dict[str, float], monkeypatch: pytest.MonkeyPatch) -> li
     monkeypatch.setattr(WholeBar, "certain", own)
     figure = make_diagrams([FigureSource("", study(CANTILEVER.format(forces=forces)))], ["along"], SI)
     words = [item.text for panel in figure.panels for item in panel.items if isinstance(item, Blank)]
-    return [*(panel.y.label.partition(" ")[0] for panel in figure.panels), *words, *figure.notes]
+    return [*(panel.y.label.partition(" ")[0] for panel in diagrams(figure)), *words, *figure.notes]
 
 
 def test_the_stated_error_decides(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,11 +154,11 @@ def test_moments_are_drawn_on_the_side_in_tension(
     values = WholeBar(bent, "along").make_lines(0.0)[quantity].values
     assert (values > 0.0).all() == positive
     assert np.abs(values) == pytest.approx(0.6, rel=1e-12)
-    (panel,) = drawn(bent, "along", tension_side=True).panels
-    assert panel.y.label.endswith({"M2": "e1 up", "M1": "e2 up"}[quantity])
+    (panel,) = diagrams(drawn(bent, "along", tension_side=True))
+    assert panel.title.endswith({"M2": "e1 up", "M1": "e2 up"}[quantity])
     (line,) = [item for item in panel.items if isinstance(item, Trace)]
     assert (line.y > 0.0).all() == up
     assert bool(panel.y.tick_texts) == (quantity == "M2")
-    assert all(float(text) == pytest.approx(-at) for at, text in panel.y.tick_texts), (
+    assert all(float(text.replace("−", "-")) == pytest.approx(-at) for at, text in panel.y.tick_texts), (
         "the axis tells the values themselves"
     )

@@ -12,7 +12,7 @@ from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace
 from heuncli.output.drawing.letters import draw_text
 from tests.shared.command import Heun
 
-CODE = re.compile(r"\x1b\[\d*m")
+CODE = re.compile(r"\x1b\[[\d;]*m")
 
 
 def waves(count: int) -> Figure:

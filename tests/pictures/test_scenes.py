@@ -15,7 +15,8 @@ from heuncli.output.drawing.figure import Figure, Link, PlaceLabel, Polygon, Str
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
 from heuncli.output.drawing.shapes import Text, to_svg
-from heuncli.output.drawing.words import HEIGHT_FACTOR, estimate_width
+from heuncli.output.drawing.style import HEIGHT_FACTOR
+from heuncli.output.drawing.words import estimate_width
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.scenes import make_assembly_figure, make_scene_figure
 from heuncli.output.machine_geometry.hulls import make_hull

@@ -21,5 +21,5 @@ def test_numbers_tell_their_places(scaling: Scaling, most: int) -> None:
     found = choose_ticks(scaling, most)
     assert len(found) >= 2
     for value, text in found:
-        assert scaling.to_share(float(text)) == pytest.approx(scaling.to_share(value), abs=1e-6)
+        assert scaling.to_share(float(text.replace("−", "-"))) == pytest.approx(scaling.to_share(value), abs=1e-6)
         assert -1e-6 <= scaling.to_share(value) <= 1.0 + 1e-6

@@ -14,9 +14,10 @@ from heuncli.output.drawing.label_placement import WordBox
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
 from heuncli.output.drawing.shapes import Mark, Text
-from heuncli.output.drawing.words import BASE_FACTOR, HEIGHT_FACTOR, SMALL_SIZE, estimate_width
+from heuncli.output.drawing.style import BASE_FACTOR, HEIGHT_FACTOR, LEFT, RIGHT, SMALL_SIZE, WIDTH
+from heuncli.output.drawing.words import estimate_width
 
-NARROW = WordBox(86.0, 0.0, 794.0, 400.0)
+NARROW = WordBox(LEFT, 0.0, WIDTH - RIGHT, 400.0)
 
 
 def figure(seed: int, spots: int, uprights: int) -> Figure:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.output.drawing.figure import Figure
+from heuncli.output.drawing.figure import Figure, Panel
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.table_units import parse_units
 from heuncli.study.queries.study import Study
 from tests.shared.drawn_panels import DrawnPanel, panels
 
-SI = Units({})
+SI = parse_units("N,m,N·m")
 HELD_TWICE = """
 heun: 1
 title: Held by two pins
@@ -55,6 +55,11 @@ analysis: {duration: 2*pi/w, samples: 9}
 def drawn(study: Study, name: str, at: Sequence[float] | None = None, *, tension_side: bool = False) -> Figure:
     """The figure of one section of one run."""
     return make_diagrams([FigureSource("", study)], [name], SI, at, tension_side)
+
+
+def diagrams(figure: Figure) -> list[Panel]:
+    """Its panels without the sketches of the bars."""
+    return [panel for panel in figure.panels if not panel.is_bare]
 
 
 def panels_of(study: Study, name: str, at: Sequence[float] | None = None) -> dict[str, DrawnPanel]:

@@ -1,4 +1,4 @@
-"""What a drawing shows, read back from its SVG: panels by their frames, axes by the numbers written along them."""
+"""What a drawing shows, read back from its SVG: panels by their axes, these by the numbers along them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from heuncli.output.drawing.style import FAINT
 from heuncli.results.results import Array
 
 PlaceOf = Callable[[float, float], tuple[float, bool]]  # of a number at x, y: where on the axis, whether on it
 SVG = "{http://www.w3.org/2000/svg}"
 SCALE_BAR, ABOVE_BAR = "scale bar: ", 17.0  # title of a scale bar; pixels from it up to the view
 METRES = {"mm": 1e-3, "m": 1.0, "km": 1e3, "in": 0.0254}
-BELOW, BESIDE, BASE = 16.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
+BELOW, BESIDE, BASE = 18.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
 
 
 class PlottedAxis(NamedTuple):
@@ -128,12 +129,29 @@ def key_arrows(svg: str) -> dict[str, float]:
     return {name: float(tip[0, 0] - lines[name][0, 0]) for name, tip in tips.items()}
 
 
+def polar_panel_of(svg: str) -> PlottedPanel:
+    """The one polar panel of a drawing, by the arcs of its rings, which have their values as names."""
+    root = tree.fromstring(svg.encode())
+    rings = [
+        (float(name.partition(" ")[0].replace("−", "-")), points_of(e))
+        for e in root.iter(f"{SVG}polyline")
+        if e.get("stroke") == FAINT and (name := e.findtext(f"{SVG}title"))
+    ]
+    value, points = max(rings, key=lambda ring: len(ring[1]))
+    # |p - c|² = r²: linear in the centre and in r² - |c|²
+    rows = np.column_stack([2.0 * points, np.ones(len(points))])
+    x, y, rest = np.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)[0]
+    step = value / np.sqrt(rest + x**2 + y**2)
+    width, height = float(root.get("width", "nan")), float(root.get("height", "nan"))
+    return PlottedPanel(0.0, 0.0, width, height, PlottedAxis(-step * x, step), PlottedAxis(step * y, -step), root)
+
+
 def is_frame(points: Array) -> bool:
-    """Whether a line is the frame of a panel: a closed rectangle."""
-    if len(points) != 5 or not np.array_equal(points[0], points[-1]):
+    """Whether a line is the two axes of a panel: down at its left, then to the right below it."""
+    if len(points) != 3:
         return False
-    steps = np.abs(np.diff(points, axis=0))
-    return bool((steps.min(axis=1) == 0.0).all() and (steps.max(axis=1) > 10.0).all())
+    down, across = np.diff(points, axis=0)
+    return bool(down[0] == 0.0 and down[1] > 10.0 and across[1] == 0.0 and across[0] > 10.0)
 
 
 def numbers(root: tree.Element, anchor: str, place_of: PlaceOf) -> dict[float, float]:
@@ -145,7 +163,7 @@ def numbers(root: tree.Element, anchor: str, place_of: PlaceOf) -> dict[float, f
         place, own = place_of(float(e.get("x", "nan")), float(e.get("y", "nan")))
         try:
             if own:
-                found[place] = float(e.text or "")
+                found[place] = float((e.text or "").replace("−", "-"))
         except ValueError:
             continue
     return found

@@ -18,7 +18,8 @@ BRAILLE = 0x2800
 DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # by row and column of a cell
 DOT_COLUMNS, DOT_ROWS = 2, 4  # dots of a cell
 RESET = "\x1b[0m"
-NO_PEN, SEVERAL_PENS = -1, -2  # instead of a pen: no curve, several curves
+NO_PEN, SEVERAL_PENS, DIM_PEN = -1, -2, -3  # instead of a pen: no curve, several curves, a hatch
+BOLD, DIM_CODE = "1;", "2"  # codes of terminals: before the colour of a curve, of a hatch
 LABEL_ROWS = 3  # upper rows for the words of vertical marks
 
 
@@ -138,13 +139,19 @@ class Canvas:
         for column in range(self.columns):
             pen_number = int(self.pens[row, column])
             word, number = self.words.get((row, column), (None, pen_number))
-            new_code = find_pen(number).code if number >= 0 and self.style.has_colours else ""
+            new_code = self._find_code(number, is_curve=word is None)
             if new_code != code:
                 yield RESET if not new_code else f"\x1b[{new_code}m"
                 code = new_code
             yield word if word is not None else self._format_cell(row, column, number)
         if code:
             yield RESET
+
+    def _find_code(self, number: int, *, is_curve: bool) -> str:
+        """Return the code of a pen: curves are bold, hatches dim; empty without colours."""
+        if not self.style.has_colours or (number < 0 and number != DIM_PEN):
+            return ""
+        return DIM_CODE if number == DIM_PEN else BOLD * is_curve + find_pen(number).code
 
     def _format_cell(self, row: int, column: int, number: int) -> str:
         dots = int(self.dots[row, column])

@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from math import log
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.results.results import Array
-
-HEIGHT = 170.0  # default, pixels of a panel
 
 
 class Trace(NamedTuple):
@@ -26,27 +25,34 @@ class Trace(NamedTuple):
 
 
 class Band(NamedTuple):
-    """The area between two courses (n,), lightly filled."""
+    """The area between two courses (n,), lightly filled; has_edges: whether the courses are drawn as thin lines."""
 
     name: str
     x: Array
     low: Array
     high: Array
     pen: int = 0
+    has_edges: bool = False
 
 
 class Strokes(NamedTuple):
     """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). For hatches, ordinates, symbols.
 
     dash: lengths of strokes and gaps [pixels]
+    is_hatch: whether they fill an area, thin and pale
+    is_faint: whether they are lines of a grid
     is_ghost: whether they are pale: of another instant than the one that is shown
+    name: title shown to readers
     """
 
     ends: Array
     pen: int | None = None
     width: float = 0.7
     dash: tuple[float, ...] = ()
+    is_hatch: bool = False
+    is_faint: bool = False
     is_ghost: bool = False
+    name: str = ""
 
 
 class Polygon(NamedTuple):
@@ -56,6 +62,7 @@ class Polygon(NamedTuple):
     is_light: whether its fill is fainter than that of others
     has_outline: whether the line itself is drawn
     is_ghost: as of strokes
+    is_faint: whether it is a line of a grid
     """
 
     name: str
@@ -67,6 +74,7 @@ class Polygon(NamedTuple):
     has_outline: bool = True
     is_ghost: bool = False
     is_light: bool = False
+    is_faint: bool = False
 
 
 class Arrow(NamedTuple):
@@ -103,12 +111,13 @@ class Spot(NamedTuple):
 
 
 class Words(NamedTuple):
-    """A few words, or a sign, at a place, without a mark."""
+    """A few words at a place, without a mark; is_sign: a + or − in a white disc."""
 
     x: float
     y: float
     text: str
     pen: int | None = None
+    is_sign: bool = False
 
 
 class Symbol(NamedTuple):
@@ -162,12 +171,14 @@ class VerticalMark(NamedTuple):
 
     note: as of a Spot
     is_above: whether the words stand above the panel
+    is_tick: whether it is only a short stroke on the axis, as of events that repeat often
     """
 
     x: float
     text: str
     note: str = ""
     is_above: bool = False
+    is_tick: bool = False
 
 
 class Blank(NamedTuple):
@@ -179,12 +190,13 @@ class Blank(NamedTuple):
 
 
 class Bars(NamedTuple):
-    """A bar from zero at each place (n,)."""
+    """A bar from zero at each place (n,); width: in units of the axis, None for a share of the smallest step."""
 
     name: str
     x: Array
     y: Array
     pen: int = 0
+    width: float | None = None
 
 
 class Cells(NamedTuple):
@@ -275,17 +287,20 @@ class Panel(NamedTuple):
     is_bare: whether it has no axes
     is_layered: whether items cover those before them; else lines are drawn over filled areas
     key: stands outside of a view of a machine, which has no axes
+    title: lines after the first are smaller
+    legend: names of its pens, shown above it
     """
 
     x: Scaling
     y: Scaling
     items: tuple[Item, ...]
-    height: float = HEIGHT
+    height: float = PANEL_HEIGHT
     has_equal_scales: bool = False
     is_bare: bool = False
     title: str = ""
     is_layered: bool = False
     key: SpaceKey | None = None
+    legend: tuple[tuple[str, int], ...] = ()
 
 
 def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:
@@ -293,11 +308,15 @@ def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:
     return [*(panel._replace(x=panel.x._replace(hides_label=True)) for panel in panels[:-1]), *panels[-1:]]
 
 
+LegendEntry = tuple[str, int, str]  # a name, its pen, and the shape of its mark; "" for a stroke
+
+
 class Figure(NamedTuple):
     """Panels below each other, with a title, sentences that describe the figure, and notes below.
 
     legend: names of pens, in their order
     marks: names of marks, with their pens and shapes
+    n_columns: panels in a row
     """
 
     title: str
@@ -305,4 +324,5 @@ class Figure(NamedTuple):
     panels: Sequence[Panel]
     legend: Sequence[tuple[str, int]] = ()
     notes: Sequence[str] = ()
-    marks: Sequence[tuple[str, int, str]] = ()
+    marks: Sequence[LegendEntry] = ()
+    n_columns: int = 1

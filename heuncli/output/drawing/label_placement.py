@@ -1,7 +1,7 @@
 """Find places for words near a mark: over no other words, and over as little of the curves as possible.
 
-A field is a grid of small cells, each with the cost of writing there: zero if it is empty, one if a curve passes. No
-words are placed over other words or marks.
+A field is a grid of small cells, each with the cost of writing there: zero if it is empty, CURVE_COST if a curve
+passes. No words are placed over other words or marks.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
-MAX_LINES = 4  # maximum distance of words, in lines of text
+MAX_LINES = 5  # maximum distance of words, in lines of text
 ROUNDING = 1e-6  # of rounding
-COST_PER_LINE = 7.0  # cost of a line of distance, in cells of a curve
+COST_PER_LINE = 7.0  # cost of a line of distance
+CURVE_COST = 3.0  # cost of a cell of a curve
 
 
 class WordBox(NamedTuple):
@@ -63,7 +64,7 @@ class WordField:
         rows, columns = self.cost.shape
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
         row, column = row[inside], column[inside]
-        self.cost[row, column] = np.maximum(self.cost[row, column], 1.0)
+        self.cost[row, column] = np.maximum(self.cost[row, column], CURVE_COST)
 
     def occupy(self, box: WordBox) -> None:
         """Occupy a box with words or a mark."""

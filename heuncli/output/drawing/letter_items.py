@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.text_safety import escape
-from heuncli.output.drawing.canvas import DOT_ROWS, NO_PEN, Canvas, TerminalStyle
+from heuncli.output.drawing.canvas import DIM_PEN, DOT_ROWS, NO_PEN, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import (
     Arrow,
     Band,
@@ -35,6 +35,7 @@ from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
 
 PIXELS_PER_DOT = 4.0  # pixels of a symbol for a dot
+FAINT_STRIDE = 4  # dots of a grid line
 MIN_STROKE_DISTANCE = 3.0  # columns between ordinates
 SHADES = "·░▒▓█"  # unknown cells are blank
 PLAIN_SHADES = ".:*#@"
@@ -72,17 +73,22 @@ def _draw_band(item: Band, canvas: Canvas) -> None:
 def _draw_strokes(item: Strokes, canvas: Canvas) -> None:
     """Draw strokes; of vertical ordinates only so many that what lies between them is visible.
 
-    If curves are letters, strokes are dots.
+    If curves are letters, strokes are dots, and hatches are left out.
     """
     last = -math.inf
     number = NO_PEN if item.pen is None or not canvas.style.has_braille else item.pen
+    if item.is_hatch:  # it hides the curve where it cannot be dim
+        if not canvas.style.has_colours:
+            return
+        number = DIM_PEN
     for (x0, y0), (x1, y1) in item.ends.tolist():
         if x0 == x1:
             column = canvas.to_dot_x(x0) / canvas.per_x
             if abs(column - last) < MIN_STROKE_DISTANCE:
                 continue
             last = column
-        canvas.draw_line(canvas.to_dot_x(x0), canvas.to_dot_y(y0), canvas.to_dot_x(x1), canvas.to_dot_y(y1), number)
+        ends = canvas.to_dot_x(x0), canvas.to_dot_y(y0), canvas.to_dot_x(x1), canvas.to_dot_y(y1)
+        canvas.draw_line(*ends, number, FAINT_STRIDE if item.is_faint else 1)
 
 
 def _draw_polygon(item: Polygon, canvas: Canvas) -> None:
@@ -108,7 +114,7 @@ def _draw_spot(item: Spot, canvas: Canvas) -> None:
 
 def _draw_words(item: Words, canvas: Canvas) -> None:
     column, row = round(canvas.to_dot_x(item.x)) // canvas.per_x, round(canvas.to_dot_y(item.y)) // canvas.per_y
-    text = escape(item.text if canvas.style.has_braille else item.text.replace("\N{MINUS SIGN}", "-"))
+    text = escape(item.text)
     canvas.write(text, column - count_columns(text) // 2, row)
 
 

@@ -14,12 +14,13 @@ import numpy as np
 from heuncli.base.text_safety import escape
 from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
-from heuncli.output.drawing.figure import HEIGHT, Figure, Item, Panel, PlaceLabel, Trace, VerticalMark
+from heuncli.output.drawing.figure import Band, Figure, Item, LegendEntry, Panel, PlaceLabel, Trace, VerticalMark
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
 from heuncli.output.drawing.letter_key import format_key
 from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.ticks import choose_ticks
+from heuncli.output.drawing.style import PANEL_HEIGHT
+from heuncli.output.drawing.ticks import MINUS, choose_ticks
 from heuncli.output.drawing.words import order_items
 
 ROWS, MIN_ROWS = 12, 5  # of a panel of default height, minimum
@@ -32,7 +33,7 @@ ZERO_STRIDE = 4  # columns between dots of the zero line
 def draw_text(figure: Figure, style: TerminalStyle) -> str:
     """Draw the figure as lines of text; ends with a newline."""
     lines = [line for text in (figure.title, *figure.words) if text for line in wrap_text(escape(text), style.width, 0)]
-    lines += _draw_legend(figure, style)
+    lines += _draw_legend([*((name, number, "") for name, number in figure.legend), *figure.marks], style)
     omitted: list[str] = []
     for panel in figure.panels:
         rows, without_words = _draw_panel(panel, style)
@@ -43,13 +44,13 @@ def draw_text(figure: Figure, style: TerminalStyle) -> str:
         for note in (*figure.notes, *make_omitted_note(omitted))
         for line in wrap_text(escape(note), style.width, 2)
     ]
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    return text if style.has_braille else text.replace(MINUS, "-")
 
 
-def _draw_legend(figure: Figure, style: TerminalStyle) -> list[str]:
+def _draw_legend(entries: Sequence[LegendEntry], style: TerminalStyle) -> list[str]:
     """Return the samples of curves and marks with their names, as many in a line as fit."""
     lines, width_left = [""], style.width
-    entries = [*((name, number, "") for name, number in figure.legend), *figure.marks]
     for name, number, mark in entries:
         sample = (
             choose_mark(mark, style, number)
@@ -71,7 +72,7 @@ def _draw_legend(figure: Figure, style: TerminalStyle) -> list[str]:
 def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str]]:
     """Return a panel with its axes, and the words that found no room."""
     max_columns = max(style.width - LABEL_WIDTH - 2, 10)
-    rows = max(MIN_ROWS, round(ROWS * panel.height / HEIGHT))
+    rows = max(MIN_ROWS, round(ROWS * panel.height / PANEL_HEIGHT))
     columns = max_columns
     if panel.has_equal_scales:
         x_span, y_span = panel.x.high - panel.x.low, panel.y.high - panel.y.low
@@ -87,7 +88,10 @@ def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str
             NO_PEN,
             ZERO_STRIDE * canvas.per_x,
         )
+    hides_bands = any(isinstance(item, Trace) for item in panel.items)
     for item in panel.items:
+        if hides_bands and isinstance(item, Band):
+            continue  # its edges could not be told from the curve
         draw: Callable[[Any, Canvas], None] = DRAW_FUNCTIONS[type(item)]
         draw(item, canvas)
     omitted = _write_words(panel.items, canvas)
@@ -97,12 +101,15 @@ def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str
     omitted += omitted_labels
     if style.uses_letters and style.has_braille:
         _mark_curves(panel.items, canvas)
-    heads = wrap_text(escape(" ".join(part for part in (panel.title, _find_y_label(panel)) if part)), style.width, 0)
+    heads = wrap_text(escape(_find_head(panel)), style.width, 0)
     lines = [*(head for head in heads if head)]
+    lines += _draw_legend([(name, number, "") for name, number in panel.legend], style)
     if panel.is_bare:
         scale = columns / (panel.x.high - panel.x.low)
         explained = format_key(panel.key, scale, style) if panel.key is not None else []
-        return lines + canvas.format_lines() + explained + key, omitted
+        indent = "" if panel.has_equal_scales else " " * (LABEL_WIDTH + 2)  # as panels with axes on the same axis
+        drawn = [f"{indent}{line}".rstrip() for line in canvas.format_lines()]
+        return lines + drawn + explained + key, omitted
     labels_above = {
         round(canvas.to_dot_x(i.x)) // canvas.per_x: i.text
         for i in panel.items
@@ -178,9 +185,13 @@ def _has_one_curve(canvas: Canvas, cell: tuple[int, int], number: int) -> bool:
     return inside and cell not in canvas.words and canvas.pens[row, column] == number
 
 
-def _find_y_label(panel: Panel) -> str:
-    """Return the label of the vertical axis, which stands above the panel."""
-    return "" if panel.is_bare else panel.y.label
+def _find_head(panel: Panel) -> str:
+    """Return the title and the label of the vertical axis, which stand above the panel."""
+    title, label = panel.title.replace("\n", "; "), "" if panel.is_bare else panel.y.label
+    name, _, unit = label.partition(" [")
+    if name and title.endswith(f" {name}"):  # the title names the quantity, too
+        return f"{title} [{unit}"
+    return " ".join(part for part in (title, label) if part)
 
 
 def _draw_x_axis(panel: Panel, canvas: Canvas) -> list[str]:

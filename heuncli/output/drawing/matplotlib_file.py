@@ -8,6 +8,7 @@ from typing import Any
 
 from heuncli.base.errors import Problem, SpecError
 from heuncli.output.drawing.shapes import MARKER_SHAPES, Area, Line, Mark, Text, VectorDrawing, find_corners
+from heuncli.output.drawing.style import HALO, MARK_EDGE, WHITE
 
 PER_INCH = 96.0  # pixels
 FIXED_AXES: dict[str, Any] = {"scalex": False, "scaley": False}  # keep the limits of the axes
@@ -29,7 +30,7 @@ def render(drawing: VectorDrawing, form: str) -> bytes:
     from matplotlib.figure import Figure
     from matplotlib.patches import Circle, Polygon
 
-    figure = Figure(figsize=(drawing.width / PER_INCH, drawing.height / PER_INCH), facecolor="#ffffff")
+    figure = Figure(figsize=(drawing.width / PER_INCH, drawing.height / PER_INCH), facecolor=WHITE)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_xlim(0.0, drawing.width)
     axes.set_ylim(drawing.height, 0.0)
@@ -49,11 +50,11 @@ def render(drawing: VectorDrawing, form: str) -> bytes:
             }
             axes.add_patch(Polygon(shape.points, **style_of_area))
         elif isinstance(shape, Mark):
-            face = shape.colour if shape.is_filled else "#ffffff"
+            face = shape.colour if shape.is_filled else WHITE
             style_of_mark: dict[str, Any] = {
                 "facecolor": face,
                 "edgecolor": shape.colour,
-                "linewidth": 1.2 * POINTS,
+                "linewidth": MARK_EDGE * POINTS,
                 "zorder": place,
             }
             round_ = not MARKER_SHAPES[shape.shape]
@@ -75,7 +76,7 @@ def write_text(axes: object, text: Text, place: int) -> None:
     where = {"start": "left", "middle": "center", "end": "right"}[text.anchor]
     from matplotlib.patheffects import withStroke
 
-    halo = [withStroke(linewidth=3.0 * POINTS, foreground="#ffffff")] if text.has_halo else None
+    halo = [withStroke(linewidth=HALO * POINTS, foreground=WHITE)] if text.has_halo else None
     axes.text(  # type: ignore[attr-defined]
         text.x, text.y, text.text, parse_math=False, fontsize=text.size * POINTS, color=text.colour, ha=where,
         va="baseline", fontweight="bold" if text.is_bold else "normal", rotation=90 if text.is_vertical else 0,

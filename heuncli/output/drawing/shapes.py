@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Literal
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.style import BLACK, FONT, HALO, MARK_EDGE, MARK_SIZE, NAME_SIZE, WHITE
 
-FONT = "sans-serif"
 MARKER_SHAPES: dict[
     str, tuple[tuple[float, float], ...]
 ] = {  # corners about the centre, of unit size; a circle has none
@@ -24,7 +24,7 @@ class Line(NamedTuple):
     """A polyline; dash: lengths of strokes and gaps; name: title shown to readers, if any."""
 
     points: tuple[tuple[float, float], ...]
-    colour: str = "#000000"
+    colour: str = BLACK
     width: float = 1.0
     dash: tuple[float, ...] = ()
     name: str = ""
@@ -47,7 +47,7 @@ class Mark(NamedTuple):
     shape: str
     colour: str
     is_filled: bool
-    size: float = 4.0
+    size: float = MARK_SIZE
 
 
 class Text(NamedTuple):
@@ -61,9 +61,9 @@ class Text(NamedTuple):
     x: float
     y: float
     text: str
-    size: float = 12.0
+    size: float = NAME_SIZE
     anchor: Literal["start", "middle", "end"] = "start"
-    colour: str = "#000000"
+    colour: str = BLACK
     is_bold: bool = False
     is_vertical: bool = False
     has_halo: bool = False
@@ -91,7 +91,7 @@ def to_svg(drawing: VectorDrawing) -> str:
         f' font-family="{FONT}">',
         f"<title>{escape_xml(drawing.title)}</title>",
         f"<desc>{escape_xml(drawing.description)}</desc>",
-        f'<rect width="{w}" height="{h}" fill="#ffffff"/>',
+        f'<rect width="{w}" height="{h}" fill="{WHITE}"/>',
         *(format_element(shape) for shape in drawing.shapes),
         "</svg>",
     ]
@@ -112,7 +112,8 @@ def format_element(shape: Shape) -> str:
         corners = format_points(shape.points)
         return f'<polygon points="{corners}" fill="{shape.colour}"{opacity}{format_end("polygon", shape.name)}'
     if isinstance(shape, Mark):
-        look = f'fill="{shape.colour if shape.is_filled else "#ffffff"}" stroke="{shape.colour}" stroke-width="1.2"'
+        fill = shape.colour if shape.is_filled else WHITE
+        look = f'fill="{fill}" stroke="{shape.colour}" stroke-width="{format_length(MARK_EDGE)}"'
         if not MARKER_SHAPES[shape.shape]:
             x, y, radius = (format_length(length) for length in (shape.x, shape.y, shape.size))
             return f'<circle cx="{x}" cy="{y}" r="{radius}" {look}/>'
@@ -121,7 +122,11 @@ def format_element(shape: Shape) -> str:
         f' transform="rotate(-90 {format_length(shape.x)} {format_length(shape.y)})"' if shape.is_vertical else ""
     )
     bold = ' font-weight="bold"' if shape.is_bold else ""
-    halo = ' paint-order="stroke" stroke="#ffffff" stroke-width="3" stroke-linejoin="round"' if shape.has_halo else ""
+    halo = (
+        f' paint-order="stroke" stroke="{WHITE}" stroke-width="{format_length(HALO)}" stroke-linejoin="round"'
+        if shape.has_halo
+        else ""
+    )
     return (
         f'<text x="{format_length(shape.x)}" y="{format_length(shape.y)}" font-size="{format_length(shape.size)}"'
         f' text-anchor="{shape.anchor}" fill="{shape.colour}"{bold}{halo}{rotation}>{escape_xml(shape.text)}</text>'

@@ -6,10 +6,12 @@ import math
 
 from heuncli.output.drawing.figure import Scaling
 
+MINUS = "\N{MINUS SIGN}"
 MANTISSAS = (1.0, 2.0, 5.0, 10.0)
 ANGLE_STEPS = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)  # degrees
-MAX_DECIMALS = 4  # decimals; numbers with more have exponents
+MAX_DECIMALS, MIN_LARGE = 4, 1e6  # an axis with more decimals or larger numbers has exponents
 END_MARGIN = 0.06  # of the range, at both ends
+ZERO_SHARE = 0.3
 MAX_STEPS = 1e8  # steps from zero: farther numbers are too long for an axis
 
 
@@ -22,7 +24,7 @@ def choose_ticks(scaling: Scaling, max_ticks: int) -> list[tuple[float, str]]:
         if len(decades) > 1:
             return decades  # else the axis is so short that linear ticks are better
     span = scaling.high - scaling.low
-    is_angle = "[deg]" in scaling.label
+    is_angle = "[deg]" in scaling.label or "[°]" in scaling.label
     step = _choose_step(span / max(max_ticks, 1), is_angle=is_angle)
     first, last = math.ceil(scaling.low / step - 1e-9), math.floor(scaling.high / step + 1e-9)
     if last <= first:  # one number does not show the scale
@@ -32,7 +34,8 @@ def choose_ticks(scaling: Scaling, max_ticks: int) -> list[tuple[float, str]]:
         return []
     values = [k * step for k in range(first, last + 1)]
     places = 0 if is_angle and step in ANGLE_STEPS else -math.floor(math.log10(step) + 1e-9)
-    return [(value, format_tick(value, places)) for value in values]
+    has_exponent = max(map(abs, values)) >= MIN_LARGE or places > MAX_DECIMALS
+    return [(value, format_tick(value, places, has_exponent=has_exponent)) for value in values]
 
 
 def _choose_step(min_step: float, *, is_angle: bool) -> float:
@@ -55,34 +58,41 @@ def _choose_decades(low: float, high: float, max_ticks: int) -> list[tuple[float
     return []
 
 
-def format_tick(value: float, places: int) -> str:
-    """Format a round number with so many decimals; very large or small ones with an exponent."""
+def format_tick(value: float, places: int, *, has_exponent: bool) -> str:
+    """Format a round number with so many decimals, or with an exponent."""
     if value == 0.0:
-        return "0" if places > MAX_DECIMALS else f"{0.0:.{max(places, 0)}f}"
-    if 10.0**-MAX_DECIMALS <= abs(value) < 1e6:
-        return f"{value:.{max(places, 0)}f}"
+        return "0"
+    if not has_exponent:
+        return write_minus(f"{value:.{max(places, 0)}f}")
     digits = max(0, places + math.floor(math.log10(abs(value)) + 1e-9))
     mantissa, _, exponent = f"{value:.{digits}e}".partition("e")
-    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
+    return write_minus(f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}")
 
 
 def format_short(value: float, digits: int = 6) -> str:
     """Format a number with at most six digits and a short exponent, such as 1e7 or 2.5e-6."""
     mantissa, e, exponent = f"{float(f'{value:.{digits}g}'):.6g}".partition("e")
-    return mantissa + (f"e{int(exponent)}" if e else "")
+    return write_minus(mantissa + (f"e{int(exponent)}" if e else ""))
+
+
+def write_minus(text: str) -> str:
+    """Replace the hyphens of a number by minus signs (U+2212)."""
+    return text.replace("-", MINUS)
 
 
 def is_zero_near(low: float, high: float) -> bool:
-    """Return whether an axis should include zero: it is closer to the values than their range."""
-    return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
+    """Return whether an axis should include zero: the smaller magnitude is below ZERO_SHARE of the larger."""
+    return low <= 0.0 <= high or min(abs(low), abs(high)) < ZERO_SHARE * max(abs(low), abs(high))
 
 
 def choose_ends(low: float, high: float, *, zero: bool = False, margin: float = END_MARGIN) -> tuple[float, float]:
-    """Choose the ends of an axis for values in this range, with a margin; zero: it must be on the axis."""
+    """Choose the ends of an axis for values in this range, with a margin; zero: it must be on the axis, and is its end
+    if all values have one sign.
+    """
     if zero:
         low, high = min(low, 0.0), max(high, 0.0)
     span = high - low
     if not span > 1e-12 * max(abs(low), abs(high)):
         span = abs(low) or 1.0
         return low - 0.5 * span, high + 0.5 * span
-    return low - margin * span, high + margin * span
+    return low - margin * span * (not zero or low < 0.0), high + margin * span * (not zero or high > 0.0)

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli.base.text_safety import escape
+from heuncli.output.drawing import style
 from heuncli.output.drawing.figure import Item, Spot, VerticalMark
 from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
-from heuncli.output.drawing.pens import BLACK, GREY, find_pen
+from heuncli.output.drawing.pens import find_colour
 from heuncli.output.drawing.scales import PanelBox
 from heuncli.output.drawing.shapes import Line, Mark, Shape, Text
 
-SMALL_SIZE = 11.0  # font size
-WIDTH_FACTOR, HEIGHT_FACTOR = 0.6, 1.2  # of the font size: maximum mean width of letters, height of a line
-BASE_FACTOR = 0.92  # of the font size: from the top of a line to its base
 CELL_SIZE = 3.0  # pixels of a cell of the word field
-MARK_SIZE = 3.0  # pixels, half the size of a mark
 MARK_DISTANCE = 2.0  # pixels from a mark to its words
-MIN_LINE_WIDTH = 1.0  # of a line without a name that is no hatch
+MIN_LINE_WIDTH = 1.0  # of a line without a name that words avoid, as they avoid hatches
+MAX_UNLINKED_DISTANCE = 16.0  # pixels from a mark to its words up to which no line connects them
 
 
 def place_words(items: Sequence[Item], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
@@ -35,7 +34,7 @@ def place_words(items: Sequence[Item], box: PanelBox, field: WordField) -> tuple
         if text is None:
             omitted.append(item.note or item.text)
         else:
-            texts.append(text)
+            texts += text
     return texts, omitted
 
 
@@ -47,7 +46,7 @@ def order_items(items: Sequence[Item]) -> list[Spot | VerticalMark]:
 
 def estimate_width(text: str, size: float) -> float:
     """Return the maximum width of a text."""
-    return WIDTH_FACTOR * size * count_columns(text)
+    return style.WIDTH_FACTOR * size * count_columns(text)
 
 
 def make_field(shapes: Sequence[Shape], area: WordBox) -> WordField:
@@ -55,7 +54,7 @@ def make_field(shapes: Sequence[Shape], area: WordBox) -> WordField:
     field = WordField(area, (CELL_SIZE, CELL_SIZE))
     for shape in shapes:
         if isinstance(shape, Line):
-            if shape.name or shape.width >= MIN_LINE_WIDTH:
+            if shape.name or shape.width >= MIN_LINE_WIDTH or shape.width == style.HATCH_WIDTH:
                 field.add_curve(np.array(shape.points))
         elif isinstance(shape, Mark):
             field.occupy(_make_mark_box(shape))
@@ -72,27 +71,45 @@ def _make_text_box(text: Text) -> WordBox:
     """Return the box of a horizontal text."""
     width = estimate_width(text.text, text.size)
     left = text.x - {"start": 0.0, "middle": 0.5, "end": 1.0}[text.anchor] * width
-    top = text.y - BASE_FACTOR * text.size
-    return WordBox(left, top, left + width, top + HEIGHT_FACTOR * text.size)
+    top = text.y - style.BASE_FACTOR * text.size
+    return WordBox(left, top, left + width, top + style.HEIGHT_FACTOR * text.size)
 
 
-def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> Text | None:
-    """Place the words of a mark; None if there is no room."""
+def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> list[Shape] | None:
+    """Place the words of a mark, with a line to it if they are far; None if there is no room."""
     text = escape(item.text)
     mark = Mark(
-        box.to_pixel_x(item.x), box.to_pixel_y(item.y), item.shape, BLACK, item.is_filled, MARK_SIZE + MARK_DISTANCE
+        box.to_pixel_x(item.x),
+        box.to_pixel_y(item.y),
+        item.shape,
+        style.BLACK,
+        item.is_filled,
+        style.MARK_SIZE + MARK_DISTANCE,
     )
-    place = field.occupy_near(_make_mark_box(mark), estimate_width(text, SMALL_SIZE), HEIGHT_FACTOR * SMALL_SIZE)
+    place = field.occupy_near(
+        _make_mark_box(mark), estimate_width(text, style.SMALL_SIZE), style.HEIGHT_FACTOR * style.SMALL_SIZE
+    )
     if place is None:
         return None
-    colour = BLACK if item.pen is None else find_pen(item.pen).colour
-    return Text(place.left, place.top + BASE_FACTOR * SMALL_SIZE, text, SMALL_SIZE, colour=colour, has_halo=True)
+    colour = find_colour(item.pen)
+    words = Text(
+        place.left,
+        place.top + style.BASE_FACTOR * style.SMALL_SIZE,
+        text,
+        style.SMALL_SIZE,
+        colour=colour,
+        has_halo=True,
+    )
+    end = min(max(mark.x, place.left), place.right), min(max(mark.y, place.top), place.bottom)
+    if math.hypot(end[0] - mark.x, end[1] - mark.y) <= MAX_UNLINKED_DISTANCE:
+        return [words]
+    return [Line(((mark.x, mark.y), end), colour, style.GRID_WIDTH), words]
 
 
-def _place_mark_words(item: VerticalMark, box: PanelBox, field: WordField) -> Text | None:
+def _place_mark_words(item: VerticalMark, box: PanelBox, field: WordField) -> list[Shape] | None:
     """Place the words along a vertical mark, read from below: at its left or right, at its upper or lower end."""
     text, x = escape(item.text), box.to_pixel_x(item.x)
-    length, height = estimate_width(text, SMALL_SIZE), HEIGHT_FACTOR * SMALL_SIZE
+    length, height = estimate_width(text, style.SMALL_SIZE), style.HEIGHT_FACTOR * style.SMALL_SIZE
     tops = (box.top + 4.0, box.bottom - 4.0 - length)
     place = field.occupy_best(
         (cost, WordBox(left, top, left + height, top + length))
@@ -101,15 +118,16 @@ def _place_mark_words(item: VerticalMark, box: PanelBox, field: WordField) -> Te
     )
     if place is None:
         return None
-    return Text(
-        place.left + BASE_FACTOR * SMALL_SIZE,
+    words = Text(
+        place.left + style.BASE_FACTOR * style.SMALL_SIZE,
         place.bottom,
         text,
-        SMALL_SIZE,
-        colour=GREY,
+        style.SMALL_SIZE,
+        colour=style.GREY,
         is_vertical=True,
         has_halo=True,
     )
+    return [words]
 
 
 def drop_close_marks(items: Sequence[Item], box: PanelBox, min_distance: float) -> list[Item]:

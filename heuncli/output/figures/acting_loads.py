@@ -308,13 +308,13 @@ def label_loads(
     moment_texts = {(p.kind, p.name): moments[id(p)] for p in loads.loads if id(p) in moments}
     with_force = {(p.kind, p.name) for p in loads.loads if id(p) in forces}
     for pull in sorted(loads.loads, key=lambda load: -load.magnitude / loads.find_largest(moments=load.is_moment)):
-        text, key = (moments if pull.is_moment else forces).get(id(pull)), (pull.kind, pull.name)
-        if text is None or pull.is_reaction or (pull.is_moment and key in with_force):
+        value, key = (moments if pull.is_moment else forces).get(id(pull)), (pull.kind, pull.name)
+        if value is None or pull.is_reaction or (pull.is_moment and key in with_force):
             continue
         place = size * view.project(pull.place)
         faces = pull.is_moment and abs(float(view.compute_depth(pull.vector))) >= MIN_FACING * pull.magnitude
         tip = place if faces else place + scales.find(pull) * view.project(pull.vector)
-        both = [text, moment_texts.pop(key)] if not pull.is_moment and key in moment_texts else [text]
+        both = [value, moment_texts.pop(key)] if not pull.is_moment and key in moment_texts else [value]
         name = describe_object(pull.kind, pull.name, labels)
         yield PlaceLabel(*to_pair(tip), f"{name} {' / '.join(both)}", name, pull.pen)
 

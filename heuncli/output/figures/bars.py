@@ -26,10 +26,12 @@ from heuncli.loads.kinetostatics.stretch import (
     chebyshev_polynomials,
     make_cuts_at,
 )
+from heuncli.multibody.mechanism.model import GROUND
 from heuncli.output.figures.courses import choose_instants
 from heuncli.output.figures.summits import find_bounds, halve_steps
 from heuncli.results.results import Array, Block, Mask, Results
 from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
+from heuncli.scene.file_format.couplings import Rope
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.channels import Channel, make_section_channels
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
@@ -43,6 +45,14 @@ SECTIONS = frozenset({"sections"})
 N_PLACES, MIN_PLACES = 240, 8  # places along a bar, 3 pixels apart; minimum between two corners
 MAX_HALVINGS, MAX_INSTANTS = 4, 16_000  # halvings of the time steps; maximum number of instants
 SAME_MAGNITUDE = 1e-6  # relative difference of magnitudes that look equal in a figure
+
+
+class Attachment(NamedTuple):
+    """What acts on a bar at a place s [m]: a kind of ATTACHMENT_KINDS and its name."""
+
+    s: float
+    kind: str
+    name: str
 
 
 class Extreme(NamedTuple):
@@ -94,15 +104,17 @@ class MovingEdges(NamedTuple):
     """Places of the loads that move over a bar, (n_t, m), and the quantities immediately beside them, (6, n_t, m).
 
     side (m,): on which side of the load
+    fixed_places: of the loads that could move but stay at their places, such as of gears on a shaft
     """
 
     s: Array
     values: Array
     side: Array
+    fixed_places: tuple[float, ...] = ()
 
     @classmethod
-    def from_section(cls, section: Block) -> MovingEdges | None:
-        """Collect the ends of the pieces that move over a bar; None if none moves."""
+    def from_section(cls, section: Block, tolerance: float) -> MovingEdges | None:
+        """Collect the ends of the pieces that move over a bar by more than a tolerance; None if none could move."""
         if section["s"].ndim == 1:
             return None
         ends = [..., [0, DEGREE]]
@@ -110,13 +122,16 @@ class MovingEdges(NamedTuple):
         values = np.stack([section[name].reshape(*s.shape[:2], DEGREE + 1)[*ends] for name in RESULTANTS])
         s = np.where(s[..., 1:] > s[..., :1], s, np.nan)  # a load at a corner has no values beside it
         is_known = np.isfinite(s)
-        moves = np.max(np.where(is_known, s, -np.inf), axis=0) > np.min(np.where(is_known, s, np.inf), axis=0)
-        return cls(s[:, moves], values[:, :, moves], np.broadcast_to(SIDES[[0, DEGREE]], s.shape[1:])[moves])
+        lowest, highest = np.min(np.where(is_known, s, np.inf), axis=0), np.max(np.where(is_known, s, -np.inf), axis=0)
+        moves, is_fixed = highest > lowest + tolerance, np.isfinite(lowest) & (highest <= lowest + tolerance)
+        sides = np.broadcast_to(SIDES[[0, DEGREE]], s.shape[1:])[moves]
+        return cls(s[:, moves], values[:, :, moves], sides, tuple(lowest[is_fixed].tolist()))
 
     @property
     def end_places(self) -> list[float]:
-        """The first and last place of all moving loads; empty if none moves."""
-        return [float(f(self.s)) for f in (np.nanmin, np.nanmax)] if self.s.size else []
+        """The first and last place of all moving loads, and the places of those that stay."""
+        moving = [float(f(self.s)) for f in (np.nanmin, np.nanmax)] if self.s.size else []
+        return [*moving, *self.fixed_places]
 
     def find_passes(self, places: Array, tolerance: float) -> Mask:
         """Return whether a load passes places (k,), or comes as near as `tolerance`, between neighbouring instants,
@@ -200,24 +215,64 @@ class WholeBar:
         return self.certain.error_of("sections", self.find_unit(quantity))
 
     @cached_property
-    def attachments(self) -> list[tuple[float, list[str]]]:
-        """The joints, loads and point masses along it, by their place [m], ascending."""
+    def attachments(self) -> list[Attachment]:
+        """The joints, loads, ropes and point masses along it, ascending by their place; those of one place share it."""
         stretch, n = self.stretch, self.stretch.cuts.n
+        mechanism = self.setup.scene.mechanism
         assert stretch.cuts.form is not None
         tolerance, first = self.corner_tolerance, float(stretch.find_height(np.array(0.0)))
         masses = stretch.corners[stretch.cuts.form.has_mass_in_plane(n, stretch.corners)] - first
-        acting_points = [
-            (float(point @ n) - first, what)
-            for what, point in list_attachment_points(self.setup.scene.mechanism, stretch.body)
+        supports = {
+            f"joint {joint.name}": "clamp" if joint.kind == "weld" else "support"
+            for joint in mechanism.joints
+            if GROUND in (joint.a, joint.b)
+        }
+        ropes = [
+            (f"rope {coupling.name}", np.asarray(point))
+            for coupling in mechanism.couplings
+            if isinstance(coupling.entry, Rope)
+            for row in coupling.loading_rows
+            for part in row.parts
+            if not part.lies_on_sheave
+            for owner, point in part.body_points
+            if owner == stretch.body
         ]
-        names_at: dict[float, list[str]] = {}
-        for s, what in [*acting_points, *((s, "point mass") for s in masses.tolist())]:
+        acting = [*list_attachment_points(mechanism, stretch.body), *ropes]
+        found = [(float(point @ n) - first, what) for what, point in acting]
+        found += [(s, "mass point mass") for s in masses.tolist()]
+        found += self._find_gears([s for s, _ in found])
+        distinct: dict[str, Attachment] = {}
+        for s, what in found:
             if -tolerance <= s <= self.length + tolerance:
-                same_place = next((other for other in names_at if abs(other - s) <= tolerance), s)
-                name = what.partition(" ")[2] if what != "point mass" else what
-                if name not in names_at.setdefault(same_place, []):
-                    names_at[same_place].append(name)
-        return sorted(names_at.items())
+                same_place = next((other.s for other in distinct.values() if abs(other.s - s) <= tolerance), s)
+                kind, _, name = what.partition(" ")
+                distinct.setdefault(f"{name} {same_place}", Attachment(same_place, supports.get(what, kind), name))
+        return sorted(distinct.values(), key=lambda attachment: attachment.s)
+
+    def _find_gears(self, known_places: Sequence[float]) -> list[tuple[float, str]]:
+        """Find the places where gears act that stay there: corners of the loads at both ends of the run, not known
+        otherwise.
+        """
+        mechanism, body = self.setup.scene.mechanism, self.stretch.body
+        names = [
+            coupling.name
+            for coupling in mechanism.couplings
+            if any(part.kind == "mesh" and body in (part.a, part.b) for row in coupling.rows for part in row.parts)
+        ]
+        if not names:
+            return []
+        fixed = self.stretch.corners - float(self.stretch.find_height(np.array(0.0)))
+        first, last = (
+            find_corners(self.solve_cuts(self.setup.cuts[0], time)["s"], self.corner_tolerance)
+            for time in (self.instants[[0, -1]]).tolist()
+        )
+        known = np.concatenate([fixed, known_places])
+        places = [
+            s
+            for s in first.tolist()
+            if np.abs(known - s).min() > self.corner_tolerance and np.abs(last - s).min() <= self.corner_tolerance
+        ]
+        return [(s, f"gear {names[0]}" if len(names) == 1 else "gear gear") for s in places]
 
     def is_open_somewhere(self, quantity: str) -> bool:
         """Return whether a quantity is open (indeterminate for rigid bodies) at some cut and instant of the results."""
@@ -295,7 +350,7 @@ class WholeBar:
         for _ in range(MAX_HALVINGS):
             nodes = self.study.compute_reports(times, SECTIONS, self.setup).sections[self.name]
             jumps = extremes.find_jump_sides(times)
-            moving = MovingEdges.from_section(nodes)
+            moving = MovingEdges.from_section(nodes, self.corner_tolerance)
             moving_ends = np.array([] if moving is None else moving.end_places)
             corners = self.stretch.corners - float(self.stretch.find_height(np.array(0.0)))
             s, side = make_places(np.sort(np.append(corners, moving_ends)), self.corner_tolerance, extra_places)

@@ -15,6 +15,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array
+from heuncli.study.quantities.captions import describe_path
+from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries import curves
 from heuncli.study.queries.measure import NotOneNumber, Peak, find_peak, make_several_error
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
@@ -41,6 +43,12 @@ def make_title(sources: Sequence[FigureSource]) -> str:
     if len(titles) == 1:
         return titles[0]
     return " · ".join(dict.fromkeys(title.rpartition(CASE_SUFFIX)[0] or title for title in titles))
+
+
+def describe_number(source: FigureSource, path: str) -> str:
+    """Describe a path in words, with the first letter in capital."""
+    text = describe_path(path, make_labels(source.study.spec))
+    return f"{text[:1].upper()}{text[1:]}"
 
 
 class NumberCourse(NamedTuple):

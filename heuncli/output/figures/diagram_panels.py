@@ -9,19 +9,20 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
+from heuncli.output.drawing.style import HATCH_WIDTH, LEFT, RIGHT, SIGN_SIZE, WIDTH
 from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
 from heuncli.output.figures.bars import BarLine, BarRange, Extreme, WholeBar
 from heuncli.output.figures.error_bands import is_visible
-from heuncli.output.figures.event_marks import format_instant
 from heuncli.results.results import Array, Mask
-from heuncli.study.quantities.digits import OPEN, choose_style, write_numbers
+from heuncli.study.quantities.digits import OPEN
+from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 PANEL_HEIGHT, OPEN_PANEL_HEIGHT = 150.0, 56.0  # pixels; the second if all is open
 N_ORDINATES = 60  # of a hatch along a bar
-SIGN_CLEARANCE = 0.011  # share of the bar's length without ordinates beside a sign
-# shares of the length and of the largest value; smaller lobes have no sign
-MIN_LOBE_WIDTH, MIN_LOBE_HEIGHT = (0.05, 0.15)
+BAR_SHARE = 1.04  # width of a panel in lengths of the bar
+SIGN_CLEARANCE = 10.0  # pixels beside the middle of a sign without ordinates
+MIN_LOBE_WIDTH, MIN_LOBE_HEIGHT = 20.0, 20.0  # pixels; smaller lobes have no sign
 MIN_MARKED = 0.004  # share of the largest magnitude (half a pixel); smaller extremes are not marked
 MAX_TICKS = 4  # of an inverted axis
 LABEL_MARGIN = 0.22  # share of a panel's height, for labels of extremes
@@ -58,28 +59,33 @@ class BarCurves(NamedTuple):
 
 
 class DisplayScales(NamedTuple):
-    """How numbers are shown in a panel.
+    """How numbers are shown in a panel: the styles of the distance and of the quantity, -1 if the axis points down."""
 
-    s, value: number of display units in one SI unit, of the distance and of the quantity
-    sign: -1 if the axis points down
-    units: names of the display units
-    """
-
-    s: float
-    value: float
+    length: ReaderStyle
+    quantity: ReaderStyle
     sign: float
-    units: tuple[str, str]
+
+    @property
+    def s(self) -> float:
+        """The number of display units in a metre."""
+        return self.length.size
+
+    @property
+    def value(self) -> float:
+        """The number of display units in one SI unit of the quantity."""
+        return self.quantity.size
 
 
-def make_panel(quantity: str, bars: Sequence[BarCurves], units: Units, label: str, *, is_inverted: bool) -> Panel:
+def make_panel(
+    quantity: str, bars: Sequence[BarCurves], units: Units, length: ReaderStyle, *, is_inverted: bool
+) -> Panel:
     """Make the panel of a quantity; is_inverted: positive values point down."""
-    length_unit, quantity_unit = units.find("m"), units.find(bars[0].bar.find_unit(quantity))
-    scales = DisplayScales(
-        length_unit[1], quantity_unit[1], -1.0 if is_inverted else 1.0, (length_unit[0], quantity_unit[0])
-    )
-    y = _make_axis(quantity, bars, scales, label)
+    magnitudes = [bar.find_magnitude(quantity) for bar in bars]
+    style = choose_reader_style(bars[0].bar.find_unit(quantity), np.nanmax([0.0, *magnitudes]), units)
+    scales = DisplayScales(length, style, -1.0 if is_inverted else 1.0)
+    y = _make_axis(quantity, bars, scales, f"{quantity} [{style.unit}]")
     items = [item for bar in bars for item in _draw_bar(bar, quantity, scales, y, alone=len(bars) == 1)]
-    is_open = all(np.isnan(bar.find_magnitude(quantity)) for bar in bars)
+    is_open = all(np.isnan(magnitude) for magnitude in magnitudes)
     return Panel(y, y, tuple(items), OPEN_PANEL_HEIGHT if is_open else PANEL_HEIGHT)
 
 
@@ -122,16 +128,17 @@ def _draw_bar(bar: BarCurves, quantity: str, scales: DisplayScales, y: Scaling, 
     factor = scales.sign * scales.value
     if load_range is not None:
         band = np.sort(factor * np.stack([load_range.low, load_range.high]), axis=0)
-        yield Band(f"{prefix}minimum and maximum of {quantity}", scales.s * load_range.s, band[0], band[1], bar.pen)
+        name = f"{prefix}minimum and maximum of {quantity}"
+        yield Band(name, scales.s * load_range.s, band[0], band[1], bar.pen, has_edges=True)
     values, error = factor * line.values, scales.value * bar.bar.find_error(quantity)
     if is_visible(error, y, PANEL_HEIGHT):
         band = np.clip([values - error, values + error], y.low, y.high)
         yield Band(f"{prefix}stated error of {quantity}", scales.s * line.s, band[0], band[1], bar.pen)
-    if alone:
-        signs = list(_draw_signs(scales.s * line.s, values, scales.sign))
+    if alone and load_range is None:
+        signs = list(_draw_signs(scales.s * line.s, values, y, scales.sign))
         yield from _draw_hatch(scales.s * line.s, values, bar.pen, [sign.x for sign in signs])
         yield from signs
-    yield from _draw_end_ordinates(scales.s * line.s, values, bar.pen)
+        yield from _draw_end_ordinates(scales.s * line.s, values, bar.pen)
     yield Trace(f"{prefix}{quantity}", scales.s * line.s, values, bar.pen)
     yield from _mark_extremes(bar, quantity, scales)
 
@@ -142,8 +149,8 @@ def _draw_hatch(s: Array, values: Array, pen: int, clear_places: Sequence[float]
     between = np.interp(ordinate_places, s, values)
     is_drawn = np.isfinite(between)
     for place in clear_places:
-        is_drawn &= np.abs(ordinate_places - place) > SIGN_CLEARANCE * (s[-1] - s[0])
-    yield Strokes(_make_ordinates(ordinate_places[is_drawn], between[is_drawn]), pen, 0.6)
+        is_drawn &= np.abs(ordinate_places - place) > SIGN_CLEARANCE / _find_pixels(s)
+    yield Strokes(_make_ordinates(ordinate_places[is_drawn], between[is_drawn]), pen, HATCH_WIDTH, is_hatch=True)
 
 
 def _draw_end_ordinates(s: Array, values: Array, pen: int) -> Iterator[Strokes]:
@@ -159,19 +166,28 @@ def _make_ordinates(s: Array, values: Array) -> Array:
     return np.stack([np.stack([s, np.zeros_like(s)], axis=1), np.stack([s, values], axis=1)], axis=1)
 
 
-def _draw_signs(s: Array, values: Array, sign: float) -> Iterator[Words]:
-    """Draw the sign of each lobe that has room for it, in the middle of its area."""
+def _find_pixels(s: Array) -> float:
+    """Return the number of pixels in a unit of a bar's length."""
+    return (WIDTH - LEFT - RIGHT) / (BAR_SHARE * float(s[-1] - s[0]))
+
+
+def _draw_signs(s: Array, values: Array, y: Scaling, sign: float) -> Iterator[Words]:
+    """Draw the sign of each lobe that has room for its disc between the zero line and the curve."""
     known = np.where(np.isfinite(values), values, 0.0)
-    largest = float(np.abs(known).max())
+    pixels, height_pixels = _find_pixels(s), PANEL_HEIGHT / (y.high - y.low)
     for a, b in find_intervals(s, known > 0.0) + find_intervals(s, known < 0.0):
         in_lobe = (s >= a) & (s <= b)
         x, height = s[in_lobe], np.abs(known[in_lobe])
         steps = np.diff(x) * 0.5 * (height[1:] + height[:-1])
-        if b - a < MIN_LOBE_WIDTH * (s[-1] - s[0]) or height.max() < MIN_LOBE_HEIGHT * largest or not steps.sum() > 0.0:
+        if pixels * (b - a) < MIN_LOBE_WIDTH or not steps.sum() > 0.0:
             continue
         middle = float(np.sum(steps * 0.5 * (x[1:] + x[:-1])) / steps.sum())
-        value = float(np.interp(middle, s, known))
-        yield Words(middle, 0.5 * value, "+" if sign * value > 0.0 else "\N{MINUS SIGN}")
+        under = np.interp([middle - SIGN_SIZE / pixels, middle, middle + SIGN_SIZE / pixels], x, height)
+        if height_pixels * under.min() < MIN_LOBE_HEIGHT:
+            continue
+        direction = 1.0 if float(np.interp(middle, s, known)) > 0.0 else -1.0
+        text = "+" if sign * direction > 0.0 else "\N{MINUS SIGN}"
+        yield Words(middle, 0.5 * direction * float(under.min()), text, is_sign=True)
 
 
 def find_intervals(s: Array, which: Mask) -> list[tuple[float, float]]:
@@ -185,17 +201,14 @@ def _mark_extremes(bar_curves: BarCurves, quantity: str, scales: DisplayScales) 
     """Mark the highest and lowest value with their place and instant; values of 0 are not marked."""
     low, high = bar_curves.find_extremes(quantity)
     error, bar = bar_curves.bar.find_error(quantity), bar_curves.bar
-    number_style = choose_style(
-        scales.value * bar_curves.find_magnitude(quantity),
-        scales.value * error,
-        scales.value * bar.certain.rounding_of(bar.find_unit(quantity)),
-    )
+    number_style = scales.quantity._replace(error=scales.value * error)
     load_range = bar_curves.ranges.get(quantity)
     is_constant = high.value - low.value <= error
+    rounding = bar.certain.rounding_of(bar.find_unit(quantity))
+    least = max(error, rounding, MIN_MARKED * bar_curves.find_magnitude(quantity))
     for extreme in (high,) if is_constant else (high, low):
-        if not abs(extreme.value) > max(error, MIN_MARKED * bar_curves.find_magnitude(quantity)):
+        if not abs(extreme.value) > least:
             continue
-        (value,) = write_numbers([scales.value * extreme.value], number_style)
         line = (
             bar_curves.lines[quantity]
             if load_range is None
@@ -204,13 +217,11 @@ def _mark_extremes(bar_curves: BarCurves, quantity: str, scales: DisplayScales) 
             else load_range.at_highest
         )
         s = find_first_place(extreme, line, error)
-        where = [] if is_constant else [f"s = {format_short(scales.s * s, 4)} {scales.units[0]}"]
-        when = (
-            [f"t = {format_instant(extreme.time)}"]
-            if load_range is not None and is_varying_at(s, load_range, error)
-            else []
-        )
-        text = f"{value} at {', '.join([*where, *when])}" if where or when else value
+        where = [] if is_constant else [f"{format_short(scales.s * s, 4)} {scales.length.unit}"]
+        if load_range is not None and is_varying_at(s, load_range, error):
+            where.append(f"t = {format_short(extreme.time, 4)} s")
+        value = f"{number_style.write(extreme.value)} {scales.quantity.unit}"
+        text = f"{value} at {', '.join(where)}" if where else value
         yield Spot(scales.s * s, scales.sign * scales.value * extreme.value, text, bar_curves.pen, is_filled=True)
 
 

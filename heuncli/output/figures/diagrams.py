@@ -20,23 +20,22 @@ import numpy as np
 
 from heuncli.output.drawing.figure import Blank, Figure, Panel, Scaling, VerticalMark
 from heuncli.output.drawing.ticks import choose_ends, format_short
-from heuncli.output.figures.bars import WholeBar
+from heuncli.output.figures.bar_sketches import make_sketch
+from heuncli.output.figures.bars import Attachment, WholeBar
 from heuncli.output.figures.courses import FigureSource, make_title
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
+from heuncli.study.quantities.captions import WORDS, describe_object
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, format_error
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 INVERTED = frozenset({"M2"})  # on the tension side their ordinates point against e1
-TENSION_SIDES = {"M1": "e2 up", "M2": "e1 up"}
-LETTER_WIDTH = 0.009  # width of a letter, as a share of the bar's length
+TENSION_SIDES = {"M1": "e2", "M2": "e1"}  # the axis that points up
 INSTANT_SEPARATOR = ": t = "  # between the name of a run and an instant
-MAX_NAMES_LENGTH = 60  # letters of the names at a place
-BAND_SENTENCE = (
-    "band: minimum and maximum over the run at each position; line: at the time of the largest magnitude (marked)"
-)
-TENSION_SENTENCE = "M1 and M2 are plotted on the tension side"
+BAND_SENTENCE = "Thin lines: range over the run; thick line: at the instant of the greatest magnitude."
+TENSION_SENTENCE = "M1 and M2 are drawn on the tension side."
 
 
 def make_diagrams(
@@ -52,21 +51,21 @@ def make_diagrams(
     """
     panels, notes, legend = list[Panel](), list[str](), list[tuple[str, int]]()
     words = [sentence for source in sources for sentence in _describe_source(source, times)]
-    headings, has_bands = dict[str, dict[str, None]](), False
+    headings, has_bands = dict[str, None](), False
     for name in names:
         bars = list(_make_bars(sources, name, times))
         for source in sources:
-            headings.setdefault(_make_heading(source, name), dict[str, None]())[name] = None
+            headings[_make_heading(source, name)] = None
         for bar in bars:
             if bar.name and (bar.name, bar.pen) not in legend:
                 legend.append((bar.name, bar.pen))
         shown, left_out = _choose_quantities(bars)
         notes += [f"{name}: {text}" for text in left_out]
-        panels += _make_panels(name, bars, shown, units, tension_side=tension_side)
+        panels += _make_panels(name, bars, shown, units, tension_side=tension_side, has_title=len(names) > 1)
         has_bands = has_bands or any(bar.ranges for bar in bars)
     if any(isinstance(item, Blank) and item.text.endswith(OPEN) for panel in panels for item in panel.items):
         notes.append(OPEN_NOTE)
-    words += [f"{', '.join(section_names)}: {heading}" for heading, section_names in headings.items()]
+    words += headings
     words += [BAND_SENTENCE] * has_bands + [TENSION_SENTENCE] * tension_side
     return Figure(make_title(sources), words, panels, legend, notes)
 
@@ -86,38 +85,38 @@ def _make_bars(sources: Sequence[FigureSource], name: str, given_times: Sequence
             continue
         curve_times = list(given_times) if given_times is not None and len(times) > 1 else times.tolist()
         for t in curve_times:
-            parts = [source.name, f"t = {format_short(t)} s" if len(curve_times) > 1 else ""]
+            parts = [source.name, f"t = {format_short(t, 4)} s" if len(curve_times) > 1 else ""]
             yield BarCurves(": ".join(part for part in parts if part), number, bar, bar.make_lines(t), {})
             number += 1
 
 
 def _describe_source(source: FigureSource, times: Sequence[float] | None) -> Iterator[str]:
-    """Yield the sentence that names the run and its instants."""
+    """Yield what a reader must know of a run: its only instant, its horizon, impulses that are left out."""
     study = source.study
-    results = study.results
-    parts = [source.name or str(results.spec.get("path", ""))]
-    horizon = results.horizon
-    if study.has_one_instant:
-        parts.append("at one instant")
-    else:
-        parts.append(str(results.model.get("method", "")))
-        shown_times = results.time if times is None else times
-        parts += [f"t = {format_short(float(shown_times[0]))} s"] * (len(shown_times) == 1)
+    results, horizon = study.results, study.results.horizon
+    shown_times = results.time if times is None else times
+    parts = []
+    if not study.has_one_instant and len(shown_times) == 1:
+        parts.append(f"t = {format_short(float(shown_times[0]), 4)} s")
     if horizon is not None:
         parts.append(f"no results claimed or drawn from t = {horizon:.6g} s on")
     n_impacts = len(study.history.impulses)
     if study.spec.analysis.type == "impulse":
-        parts[1] = "impulses only"
+        parts.append("impulses only")
     elif n_impacts:
         parts.append(f"{n_impacts} impulse{'s' * (n_impacts > 1)}, not included")
-    yield "; ".join(part for part in parts if part)
+    if parts:
+        yield "; ".join([f"{source.name}: {parts[0]}" if source.name else parts[0], *parts[1:]])
 
 
 def _make_heading(source: FigureSource, name: str) -> str:
-    """Describe the diagrams of a section in the words of its tables."""
-    info = make_labels(source.study.spec).sections[name]
-    axes = f"e1 = {info.first_axis}, e2 = n × e1; moments about {info.moment_point}"
-    return f"{info.body}: force of the far side on the near side of the cut; N > 0 tension; {axes}"
+    """Describe the signs and axes of a section in one line."""
+    labels = make_labels(source.study.spec)
+    info = labels.sections[name]
+    body, section = describe_object("bodies", info.body, labels), describe_object("sections", name, labels)
+    what = body if body == section else f"{section}, body {body}"
+    point = "" if info.moment_point == "the cut's point" else f"; moments about {info.moment_point}"
+    return f"{what}: N > 0 tension; e1 = {info.first_axis}, e2 = n × e1{point}"
 
 
 def _choose_quantities(bars: Sequence[BarCurves]) -> tuple[list[str], list[str]]:
@@ -158,59 +157,44 @@ def _classify(curves: BarCurves, quantity: str) -> str:
 
 
 def _make_panels(
-    name: str, bars: Sequence[BarCurves], quantities: Sequence[str], units: Units, *, tension_side: bool
+    name: str,
+    bars: Sequence[BarCurves],
+    quantities: Sequence[str],
+    units: Units,
+    *,
+    tension_side: bool,
+    has_title: bool,
 ) -> Iterator[Panel]:
-    """Yield the panels of a section; the first shows its name and what is attached along the bar."""
-    unit, size = units.find("m")
-    length = max(bar.bar.length for bar in bars) * size
-    x = Scaling(f"s [{unit}]", *choose_ends(0.0, length, margin=0.02))
-    marks = _make_marks(_collect_attachments(bars), length, size)
+    """Yield the sketches of the bars of a section, and the panels of its quantities on the same axis."""
+    length = max(bar.bar.length for bar in bars)
+    style = choose_reader_style("m", length, units)
+    x = Scaling(f"s [{style.unit}]", *choose_ends(0.0, style.size * length, margin=0.02))
+    lists = _list_attachments(bars)
+    for source_name, attachments in lists.items():
+        title = f"{name}: {source_name}" if len(lists) > 1 else name * has_title
+        yield make_sketch(attachments, x, length, style.size, style.unit, title)
+    places = sorted({style.size * attachment.s for attachments in lists.values() for attachment in attachments})
     for k, quantity in enumerate(quantities):
-        label = f"{quantity} [{units.find(bars[0].bar.find_unit(quantity))[0]}]"
+        panel = make_panel(quantity, bars, units, style, is_inverted=tension_side and quantity in INVERTED)
+        words = WORDS[quantity].removesuffix(f" {quantity}")
+        title = f"{words[:1].upper()}{words[1:]} {quantity}"
         if tension_side and quantity in TENSION_SIDES:
-            label += f", {TENSION_SIDES[quantity]}"
-        panel = make_panel(quantity, bars, units, label, is_inverted=tension_side and quantity in INVERTED)
-        items = (
-            *(VerticalMark(s, "" if k else text, is_above=not k and bool(text)) for s, text in marks),
-            *panel.items,
-        )
+            title += f", {TENSION_SIDES[quantity]} up"
+        items = (*(VerticalMark(s, "") for s in places), *panel.items)
         is_last = k == len(quantities) - 1
-        yield panel._replace(x=x if is_last else x._replace(label=""), items=items, title="" if k else name)
+        yield panel._replace(x=x if is_last else x._replace(hides_label=True), items=items, title=title)
 
 
-def _collect_attachments(bars: Sequence[BarCurves]) -> list[tuple[float, list[str]]]:
-    """Collect what is attached along the bars by its place [m], ascending; if the bars differ, with their names."""
+def _list_attachments(bars: Sequence[BarCurves]) -> dict[str, list[Attachment]]:
+    """List what is attached along the bars by the names of their runs; once if it is the same in all."""
     distinct_bars = {id(bar.bar): bar for bar in reversed(bars)}
-    lists = [
-        (bar.name.partition(INSTANT_SEPARATOR)[0], bar.bar.attachments) for bar in reversed(distinct_bars.values())
-    ]
-    first = lists[0][1]
-    if all(_are_same(first, other) for _, other in lists[1:]):
-        return first
-    return sorted(
-        (s, [f"{bar_name}: {name}" for name in names]) for bar_name, attachments in lists for s, names in attachments
-    )
+    lists = {bar.name.partition(INSTANT_SEPARATOR)[0]: bar.bar.attachments for bar in reversed(distinct_bars.values())}
+    first_name, first = next(iter(lists.items()))
+    return {first_name: first} if all(_are_same(first, other) for other in lists.values()) else lists
 
 
-def _are_same(first: Sequence[tuple[float, list[str]]], other: Sequence[tuple[float, list[str]]]) -> bool:
+def _are_same(first: Sequence[Attachment], other: Sequence[Attachment]) -> bool:
     """Return whether two lists have the same names at the same places."""
-    if [names for _, names in first] != [names for _, names in other]:
+    if [attachment[1:] for attachment in first] != [attachment[1:] for attachment in other]:
         return False
-    return bool(np.allclose([s for s, _ in first], [s for s, _ in other]))
-
-
-def _make_marks(attachments: Sequence[tuple[float, list[str]]], length: float, size: float) -> list[tuple[float, str]]:
-    """Return places and the names there; the names of close places are joined at the first."""
-    marks: list[tuple[float, str]] = []
-    first = 0  # index of the place where joined names are shown
-    for s, names in attachments:
-        text = ", ".join(names)
-        if marks and (size * s - marks[first][0]) < LETTER_WIDTH * length * 0.5 * (
-            len(marks[first][1]) + len(text) + 2
-        ):
-            marks[first] = marks[first][0], f"{marks[first][1]}, {text}"
-            text = ""
-        else:
-            first = len(marks)
-        marks.append((size * s, text))
-    return [(s, text if len(text) <= MAX_NAMES_LENGTH else f"{text[:MAX_NAMES_LENGTH]}…") for s, text in marks]
+    return bool(np.allclose([attachment.s for attachment in first], [attachment.s for attachment in other]))

@@ -13,7 +13,7 @@ from heuncli.output.figures.courses import FigureSource, NumberCourse, find_jump
 from heuncli.results.results import Array, Results
 
 MAX_REPEATED_LABELS = 5  # more repetitions are labelled once
-INSTANT_DIGITS = 6  # maximum, as in tables
+INSTANT_DIGITS = 4
 
 
 def make_marks(
@@ -21,7 +21,7 @@ def make_marks(
 ) -> tuple[list[VerticalMark], list[str]]:
     """Make the marks, ascending, each instant once, and notes; of several runs the events of any of them.
 
-    An event that repeats often is labelled only at its first instant.
+    An event that repeats often is a tick without a label; a note tells how often it happens.
     """
     names: dict[float, dict[str, None]] = {}  # by instant: names of what happens in any run, in order
     for source in sources:
@@ -45,8 +45,9 @@ def make_marks(
     marks = [
         VerticalMark(
             time,
-            words if time == times_of_text[words][0] or len(times_of_text[words]) <= MAX_REPEATED_LABELS else "",
+            words if len(times_of_text[words]) <= MAX_REPEATED_LABELS else "",
             format_event(words, time),
+            is_tick=bool(words) and len(times_of_text[words]) > MAX_REPEATED_LABELS,
         )
         for time, words in sorted(texts.items())
     ]

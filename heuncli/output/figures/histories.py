@@ -1,4 +1,7 @@
-"""Histories: numbers over time, or over another number of the same run, in stacked panels, one for each unit."""
+"""Histories: numbers over time, or over another number of the same run, in stacked panels, one for each unit.
+
+Load cases of one instant are bars, a group for each case.
+"""
 
 from __future__ import annotations
 
@@ -7,25 +10,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.drawing.figure import (
-    HEIGHT,
-    Band,
-    Blank,
-    Figure,
-    Item,
-    Panel,
-    Scaling,
-    Spot,
-    Trace,
-    VerticalMark,
-    share_x_axis,
-)
+from heuncli.output.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, VerticalMark, share_x_axis
+from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.output.drawing.ticks import choose_ends, format_short, is_zero_near
 from heuncli.output.figures.courses import (
     FigureSource,
     NumberCourse,
     choose_instants,
+    describe_number,
     find_jumps,
     find_values,
     is_varying,
@@ -33,23 +25,21 @@ from heuncli.output.figures.courses import (
     make_title,
     require_one_number,
 )
-from heuncli.output.figures.error_bands import is_visible
-from heuncli.output.figures.event_marks import format_instant, make_marks
+from heuncli.output.figures.event_marks import make_marks
+from heuncli.output.figures.history_curves import HorizontalAxis, PanelCourse, draw_case_bars, draw_curves
 from heuncli.output.figures.measured_points import MeasuredPoints, draw_points
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.thinning import find_visible_points
 from heuncli.results.results import Array
 from heuncli.study.compose.smoothed_friction import has_smoothed_friction
-from heuncli.study.quantities.digits import format_error
+from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
-from heuncli.study.queries.measure import Peak
 from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.study.queries.smoothed_friction import make_friction_warning
 
-MAX_DIGITS = 5  # maximum in labels of extremes
-LABEL_MARGIN = 0.12  # share above and below the curves, for labels
-PANEL_HEIGHTS = (280.0, 210.0, HEIGHT)  # pixels of a panel, by the number of panels: one, two, more
-MAX_PATH_HEIGHT = 480.0  # maximum height of the path of a point, pixels
+LABEL_MARGIN, BAR_MARGIN = 0.14, 0.2  # share above and below the curves, for labels; above bars
+PANEL_HEIGHTS = (290.0, 220.0, PANEL_HEIGHT)  # pixels of a panel, by the number of panels: one, two, more
+MAX_PATH_HEIGHT = 520.0  # maximum height of the path of a point, pixels
 MAX_TIME_INSTANTS, MAX_NUMBER_INSTANTS = 1_000_000, 20_000  # maxima over time (thinned later), over a number
 BEYOND_HORIZON_NOTE = "past the horizon: no results claimed"
 ALL_OPEN_NOTE = "open: statically indeterminate, depends on stiffness"
@@ -59,26 +49,6 @@ QUANTITY_NAMES = {
     "m/s": "velocity", "rad/s": "angular velocity", "m/s²": "acceleration", "rad/s²": "angular acceleration",
     "J": "energy", "W": "power", "Pa": "stress",
 }  # fmt: skip
-
-
-class PanelCourse(NamedTuple):
-    """A course in a panel: its name in the legend, pen, run, and the values along the horizontal axis (n,), SI
-    units.
-    """
-
-    name: str
-    pen: int
-    source: FigureSource
-    x: Array
-    course: NumberCourse
-
-
-class HorizontalAxis(NamedTuple):
-    """The horizontal axis: its path (None for time), its display unit, and how many of these are one SI unit."""
-
-    path: str | None
-    unit: str
-    size: float
 
 
 def make_history(
@@ -96,39 +66,99 @@ def make_history(
     """
     _require_one_axis(sources, x_path)
     curves = list(_make_curves(sources, paths, x_path))
-    x_axis = HorizontalAxis(
-        x_path, *(("s", 1.0) if x_path is None else units.find(find_unit(x_path, sources[0].study.spec)))
-    )
     groups: dict[str, list[PanelCourse]] = {}
     for curve in curves:
-        groups.setdefault(curve.course.unit, []).append(curve)
+        own = groups.setdefault(curve.course.unit, [])
+        own.append(curve._replace(pen=len(own)))
+    if x_path is None and len(sources) > 1 and all(source.study.has_one_instant for source in sources):
+        return _make_case_figure(sources, groups, units)
+    x_axis = _choose_x_axis(sources, curves, x_path, units)
     x = _make_x_axis(sources, curves, measured_points, x_axis)
     marks, notes = ([], []) if x_path is not None else make_marks(sources, [curve.course for curve in curves])
     # a length over a length is the path of a point: a circle must look like one
     has_equal_scales = x_path is not None and list(groups) == ["m"] and find_unit(x_path, sources[0].study.spec) == "m"
     height = MAX_PATH_HEIGHT if has_equal_scales else PANEL_HEIGHTS[min(len(groups), len(PANEL_HEIGHTS)) - 1]
     panels: list[Panel] = []
+    entries: list[tuple[str, int, str]] = []
     for unit, courses in groups.items():
-        points_of_unit = [(len(curves) + k, curve) for k, curve in enumerate(measured_points) if curve.unit == unit]
-        y = _make_y_axis(unit, courses, [curve for _, curve in points_of_unit], units)
-        size = units.find(unit)[1]
-        words = marks if not panels else [VerticalMark(mark.x, "") for mark in marks]
-        points = [item for pen, curve in points_of_unit for item in draw_points(curve, pen, x_axis.size, size)]
+        points_of_unit = [(len(courses) + k, c) for k, c in enumerate(c for c in measured_points if c.unit == unit)]
+        entries += [(curve.name, pen, "square") for pen, curve in points_of_unit]
+        style = _choose_style(unit, courses, x_axis if has_equal_scales else None, units)
+        label = courses[0].caption if has_equal_scales and len(courses) == 1 else QUANTITY_NAMES.get(unit, "")
+        y = _make_y_axis(label, style, courses, [curve for _, curve in points_of_unit], is_path=has_equal_scales)
+        words = marks if not panels else [VerticalMark(mark.x, "", is_tick=mark.is_tick) for mark in marks]
         items = [
             *words,
             *_draw_blanks(sources, courses, x, x_axis),
-            *points,
-            *_draw_curves(courses, y, size, x_axis, height),
+            *(item for pen, curve in points_of_unit for item in draw_points(curve, pen, x_axis.size, style.size)),
+            *draw_curves(courses, x, y, style, x_axis, height),
         ]
-        panels.append(Panel(x, y, tuple(items), height, has_equal_scales))
-    return Figure(
-        make_title(sources),
-        [sentence for source in sources for sentence in _describe_source(source)],
-        share_x_axis(panels),
-        [(curve.name, curve.pen) for curve in curves],
-        [*_make_notes(curves, panels), *notes],
-        [(curve.name, len(curves) + k, "square") for k, curve in enumerate(measured_points)],
+        title, legend = _choose_names(courses)
+        panels.append(Panel(x, y, tuple(items), height, has_equal_scales, title=title, legend=legend))
+    sentences = [sentence for source in sources for sentence in _describe_source(source)]
+    notes = [*_make_notes(curves, panels), *notes]
+    return Figure(make_title(sources), sentences, share_x_axis(panels), (), notes, entries)
+
+
+def _make_case_figure(sources: Sequence[FigureSource], groups: dict[str, list[PanelCourse]], units: Units) -> Figure:
+    """Make the figure of numbers of one instant each: load cases along the axis, paths as colours."""
+    names = [source.name for source in sources]
+    x = Scaling("load case", -0.5, len(names) - 0.5, tick_texts=tuple((float(k), name) for k, name in enumerate(names)))
+    panels = []
+    for unit, courses in groups.items():
+        paths = list(dict.fromkeys(curve.course.path for curve in courses))
+        own = [curve._replace(pen=paths.index(curve.course.path)) for curve in courses]
+        style = _choose_style(unit, own, None, units)
+        values = style.size * np.array([curve.course.values[0] for curve in own])
+        low, high = _find_range(values)
+        ends = choose_ends(min(low, 0.0), max(high, 0.0), zero=True, margin=BAR_MARGIN)
+        captions = {curve.pen: describe_number(curve.source, curve.course.path) for curve in own}
+        legend = tuple((caption, pen) for pen, caption in captions.items())
+        y = Scaling(_join_label(QUANTITY_NAMES.get(unit, ""), style.unit), *ends)
+        title = legend[0][0] if len(legend) == 1 else ""
+        items = tuple(draw_case_bars(own, style))
+        height = PANEL_HEIGHTS[min(len(groups), 2)]
+        panels.append(Panel(x, y, items, height, title=title, legend=legend if len(legend) > 1 else ()))
+    curves = [curve for own in groups.values() for curve in own]
+    return Figure(make_title(sources), (), share_x_axis(panels), (), _make_notes(curves, []))
+
+
+def _choose_names(courses: Sequence[PanelCourse]) -> tuple[str, tuple[tuple[str, int], ...]]:
+    """Return the title of a panel in words and its legend: what all curves share stands in the title once."""
+    captions = list(dict.fromkeys(curve.caption for curve in courses))
+    if len(courses) == 1:
+        return ": ".join(part for part in (courses[0].source.name, captions[0]) if part), ()
+    if len(captions) == 1:
+        return captions[0], tuple((curve.source.name, curve.pen) for curve in courses)
+    return "", tuple(
+        (f"{curve.source.name}: {curve.caption}" if curve.source.name else curve.caption, curve.pen)
+        for curve in courses
     )
+
+
+def _choose_x_axis(
+    sources: Sequence[FigureSource], curves: Sequence[PanelCourse], x_path: str | None, units: Units
+) -> HorizontalAxis:
+    """Choose the unit of the horizontal axis: that of the user, else by size."""
+    if x_path is None:
+        return HorizontalAxis(None, "s", 1.0)
+    largest = max((float(np.nanmax(np.abs(curve.x), initial=0.0)) for curve in curves), default=0.0)
+    style = choose_reader_style(find_unit(x_path, sources[0].study.spec), largest, units)
+    return HorizontalAxis(x_path, style.unit, style.size)
+
+
+def _choose_style(
+    unit: str, courses: Sequence[PanelCourse], x_axis: HorizontalAxis | None, units: Units
+) -> ReaderStyle:
+    """Choose how the numbers of a panel are written; of a path in the unit of its horizontal axis."""
+    peaks = [abs(peak.value) for curve in courses for peak in (curve.course.low, curve.course.high)]
+    style = choose_reader_style(unit, max((peak for peak in peaks if math.isfinite(peak)), default=0.0), units)
+    return style if x_axis is None else style._replace(unit=x_axis.unit, size=x_axis.size)
+
+
+def _join_label(words: str, unit: str) -> str:
+    """Return the label of an axis: what it is, and its unit."""
+    return f"{words} [{'-' if unit in ('', '1') else '°' if unit == 'deg' else unit}]".strip()
 
 
 def _make_curves(sources: Sequence[FigureSource], paths: Sequence[str], x_path: str | None) -> Iterator[PanelCourse]:
@@ -141,10 +171,11 @@ def _make_curves(sources: Sequence[FigureSource], paths: Sequence[str], x_path: 
         x = times if x_path is None else find_values(source.study, x_path, times)
         for path in dict.fromkeys(paths):
             name = f"{source.name}: {path}" if source.name else path
+            caption = describe_number(source, path)
             course = make_course(source.study, path, times)
             if x_path is None:
                 course = _thin_course(course)
-            yield PanelCourse(name, number, source, course.times if x_path is None else x, course)
+            yield PanelCourse(name, number, source, course.times if x_path is None else x, course, caption)
             number += 1
 
 
@@ -180,18 +211,23 @@ def _make_x_axis(
     if x_axis.path is None:
         values += [source.study.results.time for source in sources]
     low, high = _find_range(np.concatenate(values) * x_axis.size)
-    label = f"{x_axis.path or 't'} [{x_axis.unit if x_axis.unit not in ('', '1') else '-'}]"
+    words = "t" if x_axis.path is None else describe_number(sources[0], x_axis.path)
+    label = _join_label(words, x_axis.unit)
     if low == high:  # the horizon leaves one instant only
         return Scaling(label, *choose_ends(low, high), tick_texts=((low, format_short(low)),))
     return Scaling(label, *choose_ends(low, high, margin=0.0 if x_axis.path is None else 0.04))
 
 
 def _make_y_axis(
-    unit: str, curves: Sequence[PanelCourse], measured_points: Sequence[MeasuredPoints], units: Units
+    words: str,
+    style: ReaderStyle,
+    curves: Sequence[PanelCourse],
+    measured_points: Sequence[MeasuredPoints],
+    *,
+    is_path: bool = False,
 ) -> Scaling:
-    """Make the vertical axis of a panel: around the curves, with zero if that is near."""
-    shown_unit, size = units.find(unit)
-    label = f"{QUANTITY_NAMES.get(unit, '')} [{'-' if shown_unit in ('', '1') else shown_unit}]".strip()
+    """Make the vertical axis of a panel: around the curves, from zero if that is near; is_path: of a point."""
+    label, size = _join_label(words, style.unit), style.size
     if _are_all_open(curves):
         return Scaling(label, 0.0, 1.0, tick_texts=((0.0, ""),))
     peaks = [peak.value for curve in curves for peak in (curve.course.low, curve.course.high)]
@@ -203,6 +239,8 @@ def _make_y_axis(
     band = size * (low - margin), size * (high + margin)  # of errors, which may extend beyond the curves
     if not is_varying(low, high, error):
         low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
+    if is_path:
+        return Scaling(label, *choose_ends(size * low, size * high))
     low, high = choose_ends(size * low, size * high, zero=is_zero_near(low, high), margin=LABEL_MARGIN)
     return Scaling(label, min(low, band[0]), max(high, band[1]))
 
@@ -235,90 +273,30 @@ def _draw_blanks(
         yield Blank(last_horizon, x.high, BEYOND_HORIZON_NOTE)
 
 
-def _draw_curves(
-    curves: Sequence[PanelCourse], y: Scaling, size: float, x_axis: HorizontalAxis, height: float
-) -> Iterator[Item]:
-    """Draw the curves with their extremes, and with the bands of their errors where these are visible."""
-    for curve in curves:
-        values, x = size * curve.course.values, x_axis.size * curve.x
-        error = size * (curve.course.error or 0.0)
-        if is_visible(error, y, height):
-            yield Band(f"stated error of {curve.name}", x, values - error, values + error, curve.pen)
-        yield Trace(curve.name, x, values, curve.pen)
-    for curve in curves:
-        yield from _mark_extremes(curve, size, x_axis)
-
-
-def _mark_extremes(curve: PanelCourse, size: float, x_axis: HorizontalAxis) -> Iterator[Spot]:
-    """Mark the lowest and highest value with their instants; of a constant its value."""
-    low, high, error = curve.course.low, curve.course.high, curve.course.error or 0.0
-    has_range = is_varying(low.value, high.value, error)
-    for word, peak in (("maximum", high), ("minimum", low)) if has_range else (("", high),):
-        if peak.time is None or not math.isfinite(peak.value):
-            continue
-        x, place_text = _locate_peak(curve, peak, x_axis)
-        if has_range:
-            text = f"{format_number(peak.value, error, size)} at {place_text}"
-        else:
-            text = format_constant(peak.value, error, size) + ("" if len(curve.x) == 1 else " at all times")
-            x = x_axis.size * float(curve.x[np.argmax(np.isfinite(curve.x + curve.course.values))])
-        if not math.isfinite(x):  # the number on the horizontal axis is open there
-            continue
-        yield Spot(x, size * peak.value, text, curve.pen, is_filled=True, note=f"{curve.name}: {word} {text}")
-
-
-def _locate_peak(curve: PanelCourse, peak: Peak, x_axis: HorizontalAxis) -> tuple[float, str]:
-    """Return the place of an extreme along the horizontal axis, as a number and as text."""
-    assert peak.time is not None
-    if x_axis.path is None:
-        return peak.time, format_instant(peak.time)
-    x = x_axis.size * float(find_values(curve.source.study, x_axis.path, np.array([peak.time]))[0])
-    return x, f"{format_short(x, 4)} {'' if x_axis.unit == '1' else x_axis.unit}".rstrip()
-
-
-def format_constant(value: float, error: float, size: float) -> str:
-    """Format a number that does not vary. If it is below its error, so that its sign is unknown, format that error;
-    `?`: unknown.
-    """
-    if 0.0 < abs(value) <= error:
-        return "?" if math.isinf(error) else f"within its stated error, {format_error(size * error)},"
-    return format_number(value, error, size)
-
-
-def format_number(value: float, error: float, size: float) -> str:
-    """Format a number in its display unit, with no more digits than its error leaves."""
-    if value == 0.0 or abs(value) <= error:
-        return "?" if math.isinf(error) else "0"
-    digits = MAX_DIGITS
-    if error > 0.0:
-        digits = min(MAX_DIGITS, math.floor(math.log10(abs(value))) - math.floor(math.log10(error)))
-    return format_short(size * value, max(digits, 1))
-
-
 def _describe_source(source: FigureSource) -> Iterator[str]:
-    """Yield the sentence that names the run and its accuracy."""
+    """Yield what a reader must know of a run: the axes of its joint loads, and its horizon."""
     results = source.study.results
-    horizon = results.horizon
-    parts = [source.name or str(results.spec.get("path", "")), f"method {results.model.get('method', 'none')}"]
-    motion = results.accuracy.get("estimate", {}).get("motion")
-    if motion:
-        parts.append(f"motion within {format_error(motion)} of model size")
+    parts = []
     if "axes" in results.model and any(results.joints):
         parts.append(f"joint loads in the axes of the '{results.model['axes']}' body")
-    if horizon is not None:
-        parts.append(f"no results claimed from t = {horizon:.6g} s on")
-    yield "; ".join(parts)
+    if results.horizon is not None:
+        parts.append(f"no results claimed from t = {results.horizon:.6g} s on")
+    if parts:
+        yield f"{source.name}: {'; '.join(parts)}" if source.name else "; ".join(parts)
 
 
 def _make_notes(curves: Sequence[PanelCourse], panels: Sequence[Panel]) -> list[str]:
     """Return notes on curves that are open throughout or in part, and on the error bands."""
     gaps = [np.isnan(curve.course.values) for curve in curves]
-    all_open = [curve.name for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.all()]
-    in_parts = [curve.name for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.any() and not is_gap.all()]
+    all_open = [curve.caption for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.all()]
+    in_parts = [curve.caption for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.any() and not is_gap.all()]
     notes = [f"open, not drawn: {', '.join(all_open)}"] if all_open else []
     notes += [f"open or unknown at some times, not drawn there: {', '.join(in_parts)}"] if in_parts else []
-    if any(isinstance(item, Band) for panel in panels for item in panel.items):
+    bands = [item.name for panel in panels for item in panel.items if isinstance(item, Band)]
+    if any(name.startswith("stated error") for name in bands):
         notes.append("light bands: stated error")
+    if any(name.startswith("range") for name in bands):
+        notes.append("bands between thin lines: the range of an oscillation of more than 30 periods")
     return [*notes, *_warn_of_friction(curves)]
 
 

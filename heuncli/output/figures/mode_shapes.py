@@ -7,7 +7,8 @@ later.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.linearisation.oscillations import Mode
 from heuncli.multibody.mechanism.model import Body
 from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, Strokes, Trace
+from heuncli.output.drawing.ticks import write_minus
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.views import SceneView
@@ -24,7 +26,10 @@ from heuncli.output.tables.mode_words import describe_coordinate, describe_modes
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 
-HEIGHT = 230.0  # pixels
+HEIGHT = 220.0  # pixels
+MAX_COLUMNS = 3
+ENTRY = re.compile(r"\b(?:forces|drives|joints|couplings)\.(\w+)")  # an entry of the spec in a sentence
+DIGITS = 4  # of frequencies and dampings
 MAX_MODES = 12  # maximum number drawn
 DISPLACEMENT_SHARE = 0.12  # of the machine's extent: largest displacement drawn
 MAX_TURN = 0.35  # [rad] largest turn for which first-order lines keep their length
@@ -81,7 +86,21 @@ def make_mode_shapes(moved_bodies: BodyModes, machine: Machine, view: SceneView)
         " (with phase differences: a quarter period later)" if any(mode.is_quarter_later for mode in mode_lines) else ""
     )
     legend = [("one extreme", ONE), (f"other extreme{later_phrase}", OTHER)]
-    return Figure(moved_bodies.modes.title, describe_modes(moved_bodies.modes), panels, legend, sentences)
+    sentences += _describe_equal_frequencies(modes)
+    columns = min(MAX_COLUMNS, len(panels))
+    words = [ENTRY.sub(r"\1", sentence) for sentence in describe_modes(moved_bodies.modes)]
+    return Figure(moved_bodies.modes.title, words, panels, legend, sentences, n_columns=columns)
+
+
+def _describe_equal_frequencies(modes: Sequence[Mode]) -> Iterator[str]:
+    """Yield which modes have the same frequency to all digits that are certain."""
+    numbers: dict[str, list[int]] = {}
+    for k, mode in enumerate(modes[:MAX_MODES], 1):
+        if mode.frequency:
+            numbers.setdefault(format_mode(mode).frequency, []).append(k)
+    groups = [f"{', '.join(map(str, same[:-1]))} and {same[-1]}" for same in numbers.values() if len(same) > 1]
+    if groups:
+        yield f"equal frequencies: modes {'; '.join(groups)}: any mixture of their shapes is a mode, too"
 
 
 def _iter_lines(moved_bodies: BodyModes, machine: Machine) -> Iterator[MovingLine]:
@@ -91,7 +110,7 @@ def _iter_lines(moved_bodies: BodyModes, machine: Machine) -> Iterator[MovingLin
         k = places[body.name]
         body_lines = [edge for surface in body.surfaces for edge in surface.edges] or list(body.strokes)
         if sum(map(len, body_lines)) < 2:
-            body_lines = _make_cross(moved_bodies.scene.mechanism.bodies[k])
+            body_lines = _make_box(moved_bodies.scene.mechanism.bodies[k])
         for line in body_lines:
             yield MovingLine(body.name, _to_world(moved_bodies, k, line), (k,) * len(line))
     ropes = [(j.name, j.a, j.p, j.b, j.q) for j in machine.joints if JOINTS[j.kind].keeps_distance]
@@ -104,11 +123,13 @@ def _iter_lines(moved_bodies: BodyModes, machine: Machine) -> Iterator[MovingLin
         yield MovingLine(name, points, ends)
 
 
-def _make_cross(body: Body) -> list[Array]:
-    """Return lines along the axes of a body without shape and points, as long as its mass extends."""
+def _make_box(body: Body) -> list[Array]:
+    """Return the edges of the box of even density that has the mass moments of a body without shape and points."""
     second = (0.5 * np.trace(body.inertia) - np.diag(body.inertia)) / body.mass
-    half_lengths = np.sqrt(np.maximum(second, 0.0))
-    return [np.array([body.center - a * e, body.center + a * e]) for a, e in zip(half_lengths, np.eye(3), strict=True)]
+    a, b, c = np.sqrt(3.0 * np.maximum(second, 0.0))  # half its sides: a²/3 is the mean square of x
+    ring = np.array([(-a, -b), (a, -b), (a, b), (-a, b), (-a, -b)])
+    ends = [np.column_stack([ring, np.full(5, side)]) for side in (-c, c)]
+    return [body.center + line for line in (*ends, *np.stack(ends, axis=1)[:4])]
 
 
 def _iter_supports(machine: Machine) -> Iterator[Array]:
@@ -156,15 +177,22 @@ def _make_mode_lines(moved_bodies: BodyModes, k: int, mode: Mode, lines: list[Mo
 
 
 def _make_title(k: int, mode: Mode, moved_bodies: BodyModes) -> str:
-    """Return a mode in one line: its number, frequency and damping or growth, and what moves most."""
+    """Return a mode in two lines: its number, frequency and damping ratio or growth; what moves most."""
     texts = format_mode(mode)
     moving = ", ".join(map(describe_coordinate, moved_bodies.modes.largest[k]))
     if mode.kind == "free":
-        return f"mode {k + 1}: free; {moving}"
+        return f"mode {k + 1}: free\n{moving}"
     unstable = "UNSTABLE, " if mode.growth > 0.0 else ""
     if not mode.frequency:
-        return f"mode {k + 1}: {unstable}{mode.kind}, growth {texts.growth} 1/s; {moving}"
-    return f"mode {k + 1}: {unstable}{texts.frequency} Hz, damping {texts.damping}; {moving}"
+        return f"mode {k + 1}: {unstable}{mode.kind}, growth {_shorten(texts.growth)} 1/s\n{moving}"
+    damping = f"ζ = {_shorten(texts.damping)}"
+    return f"mode {k + 1}: {unstable}{_shorten(texts.frequency)} Hz, {damping}\n{moving}"
+
+
+def _shorten(text: str) -> str:
+    """Shorten a number to four digits; other words stay."""
+    digits = text.partition("e")[0].lstrip("-0.").replace(".", "")
+    return write_minus(f"{float(text):#.{DIGITS}g}" if digits.isdecimal() and len(digits) > DIGITS else text)
 
 
 def _make_panel(

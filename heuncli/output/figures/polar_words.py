@@ -9,31 +9,47 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.output.drawing.ticks import format_short
-from heuncli.output.figures.certain import format_certain
-from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.courses import FigureSource, describe_number
+from heuncli.output.figures.history_curves import format_number
 from heuncli.output.figures.planes import project_vectors
 from heuncli.output.figures.tips import LargestVector, TipCurve
+from heuncli.study.quantities.digits import UNKNOWN
+from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 
-def describe_runs(sources: Sequence[FigureSource], curves: Sequence[TipCurve], axes: str) -> Iterator[str]:
-    """Yield what is shown of each run, whose loads these are, and in which axes."""
+def describe_runs(sources: Sequence[FigureSource], curves: Sequence[TipCurve]) -> Iterator[str]:
+    """Yield what is shown of each run, and whose loads these are."""
     for source in sources:
         curve = next(curve for curve in curves if curve.study is source.study)
-        name = source.name or str(source.study.results.spec.get("path", ""))
-        yield f"{name}: {curve.turning.description}"
-    yield _describe_axes(axes, curves)
+        turning = curve.turning
+        text = turning.describe(describe_number(source, turning.path) if turning.path else "")
+        yield f"{source.name}: {text}" if source.name else text
 
 
-def _describe_axes(axes: str, curves: Sequence[TipCurve]) -> str:
-    """Describe whose loads these are, and in which axes."""
-    joints = [curve for curve in curves if curve.path.startswith("joints.")]
-    phrases = ["joint: reaction of `from` on `to`"] if joints else []
-    phrases += ["foundation: force on it"] if any(curve.path.startswith("foundation.") for curve in curves) else []
-    if axes == "world" or not joints:
-        return "; ".join([*phrases, "world axes"])
-    bodies = {_find_body(curve, axes) for curve in joints}
-    return "; ".join([*phrases, f"joints in the axes of {', '.join(sorted(bodies))} (`{axes}`)"])
+def describe_frame(curve: TipCurve, axes: str) -> str:
+    """Describe what a curve's loads act on, and in which axes they are drawn."""
+    if curve.path.startswith("joints."):
+        joint = curve.study.spec.joints[curve.path.split(".")[1]]
+        frame = "world axes" if axes == "world" else f"in the axes of {_find_body(curve, axes)}"
+        return f"reaction of {joint.a} on {joint.b}, {frame}"
+    return "force on the foundation, world axes" if curve.path.startswith("foundation.") else "world axes"
+
+
+def format_magnitude(largest: LargestVector, style: ReaderStyle) -> str:
+    """Format the magnitude with its unit; `?` if its error is as large."""
+    if largest.magnitude <= largest.error:
+        return f"{UNKNOWN} {style.unit}"
+    return format_number(largest.magnitude, largest.error, style)
+
+
+def describe_angle(curve: TipCurve, largest: LargestVector) -> str:
+    """Return the crank angle of the largest vector, else its instant."""
+    turning = curve.turning
+    if not turning.path:
+        return f"{format_short(largest.time, 4)} s"
+    angle = float(np.interp(largest.time, turning.times, turning.degrees))
+    return _format_degrees(angle, 360.0 * turning.turns)
 
 
 def _find_body(curve: TipCurve, axes: str) -> str:
@@ -44,39 +60,38 @@ def _find_body(curve: TipCurve, axes: str) -> str:
 
 def make_notes(curve: TipCurve, largest: LargestVector | None, units: Units) -> Iterator[str]:
     """Yield the largest vector with its direction and instant, and what is not drawn."""
-    unit, size = units.find(curve.unit)
+    style = choose_reader_style(curve.unit, 0.0 if largest is None else largest.magnitude, units)
     if largest is None:
-        yield f"{curve.name}: open or unknown, not drawn"
+        yield f"{curve.caption}: open or unknown, not drawn"
         return
-    magnitude_text = f"{format_certain(size * largest.magnitude, size * largest.error)} {unit}"
+    magnitude_text = format_magnitude(largest, style)
     if largest.is_constant:
-        yield f"{curve.name}: {magnitude_text} at all times"
+        yield f"{curve.caption}: {magnitude_text} at all times"
     else:
-        yield f"{curve.name}: largest {magnitude_text} {_describe_largest(curve, largest)}"
+        yield f"{curve.caption}: largest {magnitude_text} {_describe_largest(curve, largest)}"
     normal_components = project_vectors(curve.vectors, curve.plane.normal)
     largest_normal = float(np.nanmax(np.abs(normal_components), initial=0.0))
-    if largest_normal > tolerances.TOLD_ACROSS * largest.magnitude:
-        yield f"{curve.name}: normal to the plane up to {size * largest_normal:.4g} {unit}, not drawn"
+    if largest_normal > max(tolerances.TOLD_ACROSS * largest.magnitude, largest.error):
+        yield f"{curve.caption}: normal to the plane up to {style.size * largest_normal:.4g} {style.unit}, not drawn"
     if np.isnan(curve.x + curve.y).any():
-        yield f"{curve.name}: partly open or unknown, not drawn there"
+        yield f"{curve.caption}: partly open or unknown, not drawn there"
     elif np.isnan(normal_components).any():
-        yield f"{curve.name}: normal component open or unknown, not drawn"
+        yield f"{curve.caption}: normal component open or unknown, not drawn"
     if "1" in curve.plane.names:
         words = (f"({', '.join(f'{x:.4g}' for x in e + 0.0)})" for e in (curve.plane.right, curve.plane.upward))
-        yield f"{curve.name}: directions 1 and 2 are {' and '.join(words)}"
+        yield f"{curve.caption}: directions 1 and 2 are {' and '.join(words)}"
 
 
 def _describe_largest(curve: TipCurve, largest: LargestVector) -> str:
     """Describe the direction, the instant and the crank angle of the largest vector."""
     first, second = curve.plane.names
-    direction_text = (
-        f"at {_format_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
-    )
-    when = f"at t = {format_short(largest.time, 5)} s"
+    direction = _format_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)
+    direction_text = f"at {direction} from {first} to {second}"
+    when = f"at t = {format_short(largest.time, 4)} s"
     turning = curve.turning
     if turning.path:
-        angle = float(np.interp(largest.time, turning.times, turning.degrees))
-        when += f", {turning.path} = {_format_degrees(angle, 360.0 * turning.turns)}"
+        caption = describe_number(FigureSource("", curve.study), turning.path)
+        when += f", {caption} = {describe_angle(curve, largest)}"
     return f"{direction_text}, {when}"
 
 

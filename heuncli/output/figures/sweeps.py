@@ -24,7 +24,7 @@ from heuncli.output.drawing.figure import (
     Trace,
     share_x_axis,
 )
-from heuncli.output.drawing.pens import PENS
+from heuncli.output.drawing.style import PENS
 from heuncli.output.figures.certain import format_certain
 from heuncli.output.figures.error_bands import is_visible
 from heuncli.output.figures.refusals import NotDrawable

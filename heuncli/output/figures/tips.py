@@ -11,19 +11,30 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.figures.courses import FigureSource, choose_instants, find_vectors, is_varying
+from heuncli.output.figures.courses import (
+    FigureSource,
+    choose_instants,
+    describe_number,
+    find_values,
+    find_vectors,
+    is_varying,
+)
 from heuncli.output.figures.planes import Plane, choose_plane, make_axis_plane
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run, list_angle_paths
 from heuncli.results.results import Array
 from heuncli.results.results_schema import SPACE
+from heuncli.scene.file_format.models import Actuator, Spec
+from heuncli.scene.file_format.names import GROUND
 from heuncli.study.queries.measure_uncertainty import find_search_error, find_unit
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 
+MIN_PEAK_RATIO = 4.0  # of the mean over a cycle: a gas force with a higher peak fires
+
 
 class TipCurve(NamedTuple):
-    """The tips of a vector (n, 3) over the instants of a turning run, with their plane, name and pen."""
+    """The tips of a vector (n, 3) over the instants of a turning run, with their plane, name, caption and pen."""
 
     name: str
     path: str
@@ -33,6 +44,7 @@ class TipCurve(NamedTuple):
     turning: TurningRun
     vectors: Array
     plane: Plane
+    caption: str
 
     @property
     def x(self) -> Array:
@@ -77,7 +89,9 @@ def make_tip_curves(
                 else choose_plane(study, path, vectors, turning.times, axes, turning.path)
             )
             name = f"{source.name}: {path}" if source.name else path
-            yield TipCurve(name, path, find_unit(path, study.spec), number, study, turning, vectors, plane)
+            words = describe_number(source, path)
+            caption = f"{source.name}: {words}" if source.name else words
+            yield TipCurve(name, path, find_unit(path, study.spec), number, study, turning, vectors, plane, caption)
             number += 1
 
 
@@ -100,6 +114,28 @@ def _find_turning_run(study: Study, paths: Sequence[str]) -> TurningRun:
         lambda t: np.stack([find_vectors(study, path, t) for path in paths], axis=1), np.nan_to_num(errors, posinf=0.0)
     )
     return find_turning_run(study, choose_instants(study), candidates, vectors)
+
+
+def list_firing_paths(spec: Spec) -> list[str]:
+    """List the paths of the forces that may be those of gas: actuators with an end on the ground."""
+    return [
+        f"forces.{name}.value"
+        for name, force in spec.forces.items()
+        if isinstance(force, Actuator) and GROUND in (force.from_.body, force.to.body)
+    ]
+
+
+def find_firings(curve: TipCurve) -> Iterator[tuple[float, str]]:
+    """Find the instants of firing in a cycle of a crank: where an actuator on the ground has a sharp peak."""
+    turning, spec = curve.turning, curve.study.spec
+    if not turning.path:
+        return
+    for path in list_firing_paths(spec):
+        values = np.abs(find_values(curve.study, path, turning.times))
+        if np.isfinite(values).all() and values.max() > MIN_PEAK_RATIO * values.mean():
+            k = int(values.argmax())
+            angle = turning.degrees[k] % (360.0 * turning.turns or math.inf)
+            yield float(turning.times[k]), f"{path.split('.')[1]} fires, {angle:.0f}°"
 
 
 def find_largest(curve: TipCurve) -> LargestVector | None:

@@ -14,6 +14,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.ticks import format_short
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
@@ -60,13 +61,12 @@ class TurningRun(NamedTuple):
             degrees = degrees - cycle * math.floor(float(min(degrees[0], degrees[-1])) / cycle + TURN_TOLERANCE)
         return np.asarray(degrees)
 
-    @property
-    def description(self) -> str:
-        """A sentence on the part of the run that is shown."""
-        span = f"t = {self.times[0]:.6g} to {self.times[-1]:.6g} s"
+    def describe(self, angle_name: str) -> str:
+        """Describe the part of the run that is shown; angle_name: words for its angle."""
+        span = f"t = {format_short(float(self.times[0]), 4)} to {format_short(float(self.times[-1]), 4)} s"
         if not self.turns:
             return f"the whole run, {span}"
-        return f"the last {'revolution' if self.turns == 1 else 'two revolutions'} of {self.path}, {span}"
+        return f"the last {'revolution' if self.turns == 1 else 'two revolutions'} of {angle_name}, {span}"
 
 
 def list_angle_paths(spec: Spec) -> list[str]:

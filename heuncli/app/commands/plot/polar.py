@@ -13,6 +13,7 @@ from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.planes import AXIS_LETTERS, list_rotation_paths
 from heuncli.output.figures.polar import make_polar_figure
+from heuncli.output.figures.tips import list_firing_paths
 from heuncli.output.figures.turning import list_angle_paths
 from heuncli.output.snapshots import measure
 from heuncli.results.path_words import split_path
@@ -41,7 +42,7 @@ def draw(target: PlotTarget, request: PlotRequest) -> Figure:
         _require_vectors(paths, spec)
     sources = []
     for name, spec in specs:
-        needed = [*paths, *list_angle_paths(spec)]
+        needed = [*paths, *list_angle_paths(spec), *list_firing_paths(spec)]
         sources.append(solve_source(name, spec, [*needed, *list_rotation_paths(needed, spec)], request))
     return make_polar_figure(sources, paths, parse_units(request.units), axes, view)
 

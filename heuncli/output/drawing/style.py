@@ -1,0 +1,68 @@
+"""The style sheet of all pictures: sizes, strokes, colours and spacing, for SVG, matplotlib and the terminal alike.
+
+A picture is 720 pixels wide. Printed 160 mm wide a pixel is 0.222 mm, and capitals (0.72 of a face) are 2.9 mm
+high in titles, 2.2 mm in names and 2.1 mm in numbers, above the 1.8 mm that DIN EN ISO 3098 allows as the smallest.
+Colours are those of Okabe and Ito (2008), darkened until they are legible on white; curves differ by dashes, too, so
+that a picture is readable in grey and by colour-blind readers.
+"""
+
+from __future__ import annotations
+
+from heuncli.base.named_tuples import NamedTuple
+
+# Letters: font sizes in pixels, and the shape of the face in font sizes.
+FONT = "sans-serif"
+TITLE_SIZE, NAME_SIZE, SMALL_SIZE = 18.0, 14.0, 13.0  # of titles, of names and axes, of numbers and notes
+WIDTH_FACTOR, LETTER_WIDTH = 0.6, 0.54  # largest and usual mean width of letters
+HEIGHT_FACTOR, BASE_FACTOR = 1.2, 0.92  # height of a line; from its top to its base
+HALO = 3.0  # width of the white outline of words
+
+# Places, in pixels.
+WIDTH = 720.0  # of a picture
+LEFT, RIGHT, TOP = 80.0, 24.0, 28.0  # margins of panels, and of the base of the title
+INDENT = 16.0  # left of titles and notes
+LINE_HEIGHT, TITLE_HEIGHT = 18.0, 23.0
+AXIS_SPACE, PANEL_SPACE = 48.0, 20.0  # below a panel with the label of its axis, and without
+PANEL_HEIGHT = 170.0
+PER_TICK_X, PER_TICK_Y = 84.0, 36.0  # smallest distance of ticks
+TICK_LENGTH, EVENT_LENGTH = 4.0, 9.0  # of a number of an axis, of an event that repeats often
+
+# Strokes and marks, in pixels.
+CURVE_WIDTH, THIN_WIDTH, ENVELOPE_WIDTH = 2.0, 1.0, 0.9
+AXIS_WIDTH, GRID_WIDTH, HATCH_WIDTH, SYMBOL_WIDTH = 1.0, 0.7, 0.6, 1.2
+MARK_SIZE, POINT_SIZE = 3.2, 1.8  # half the size of a mark, and of a single point of a curve
+MARK_EDGE, SIGN_SIZE = 1.2, 8.0  # the second half the disc of a sign
+ARROW_WIDTH, ARROW_HEAD = 1.8, 9.0
+HATCH_STEP = 9.0  # between the lines of a blank area
+LINK_WIDTH, ARM_WIDTH, RIM_WIDTH, OUTLINE_WIDTH = 3.0, 2.0, 1.3, 0.7  # of bodies: lines, by shapes, on shapes, edges
+DASH_DOT = (9.0, 3.0, 2.0, 3.0)  # strokes and gaps of pitch circles
+
+# Colours; opacities of areas.
+BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#d9d9d9", "#ffffff"
+BAND_OPACITY, FILL_OPACITY, BAR_OPACITY = 0.12, 0.14, 0.85
+TINT_SHARE, LIGHT_SHARE = 0.18, 0.07  # of its colour in the fill of a body, and of a large one
+GHOST_SHARE, GHOST_LABEL = 0.3, 0.6  # of its colour in what is of another instant, and in its label
+HATCH_SHARE = 0.4  # of the colour in the lines of a hatch, the rest is white
+# From low to high, dark to light, which can be told apart in grey as well.
+SHADE_COLOURS = ((0x1F, 0x2A, 0x5A), (0x1F, 0x7A, 0x8C), (0x8F, 0xB9, 0x6A), (0xFD, 0xE7, 0x9A))
+
+
+class Pen(NamedTuple):
+    """A colour, a dash (lengths of strokes and gaps [pixels]), the letter in its place, and the code of terminals."""
+
+    colour: str
+    dash: tuple[float, ...]
+    letter: str
+    code: str
+
+
+PENS = (
+    Pen("#0072b2", (), "a", "34"),
+    Pen("#d55e00", (7.0, 3.0), "b", "31"),
+    Pen("#007a5a", (2.0, 2.5), "c", "32"),
+    Pen("#aa3377", (9.0, 3.0, 2.0, 3.0), "d", "35"),
+    Pen("#8a6d00", (4.0, 2.0), "e", "33"),
+    Pen("#000000", (12.0, 4.0), "f", "39"),
+    Pen("#2a9fd6", (12.0, 3.0, 2.0, 3.0, 2.0, 3.0), "g", "36"),
+    Pen("#666666", (1.5, 3.0), "h", "90"),
+)

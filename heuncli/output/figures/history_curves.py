@@ -1,0 +1,170 @@
+"""The curves of a history: traces, envelopes of long oscillations, bars of load cases, and their marked extremes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.figure import Arrow, Band, Bars, Item, Scaling, Spot, Trace
+from heuncli.output.drawing.ticks import format_short
+from heuncli.output.figures.courses import FigureSource, NumberCourse, find_values, is_varying
+from heuncli.output.figures.error_bands import is_visible
+from heuncli.results.results import Array
+from heuncli.study.quantities.digits import UNKNOWN, format_error
+from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.queries.measure import Peak
+
+MAX_PERIODS, MAX_STRETCHES = 30, 240  # with more periods the curve is an envelope of at most so many stretches
+ARROW_PLACES, ARROW_SHARE = (0.2, 0.55, 0.9), 0.03  # of a closed curve's points, and of the panel's width
+GROUP_WIDTH = 0.8  # share of a load case that its bars take
+
+
+class PanelCourse(NamedTuple):
+    """A course in a panel: its name, pen, run, the values along the horizontal axis (n,), SI units, and its caption."""
+
+    name: str
+    pen: int
+    source: FigureSource
+    x: Array
+    course: NumberCourse
+    caption: str = ""
+
+
+class HorizontalAxis(NamedTuple):
+    """The horizontal axis: its path (None for time), its display unit, and how many of these are one SI unit."""
+
+    path: str | None
+    unit: str
+    size: float
+
+
+def draw_curves(
+    curves: Sequence[PanelCourse], x: Scaling, y: Scaling, style: ReaderStyle, x_axis: HorizontalAxis, height: float
+) -> Iterator[Item]:
+    """Draw the curves with their extremes, and with the bands of their errors where these are visible."""
+    for curve in curves:
+        values, places = style.size * curve.course.values, x_axis.size * curve.x
+        error = style.size * (curve.course.error or 0.0)
+        if is_visible(error, y, height):
+            yield Band(f"stated error of {curve.name}", places, values - error, values + error, curve.pen)
+        if x_axis.path is None and _count_periods(curve.course.values) > MAX_PERIODS:
+            yield _make_envelope(curve, places, values)
+            continue
+        yield Trace(curve.name, places, values, curve.pen)
+        if x_axis.path is not None:
+            length = ARROW_SHARE * (x.high - x.low)
+            yield from draw_direction_arrows(places, values, curve.pen, length, (y.high - y.low) / (x.high - x.low))
+    for curve in curves:
+        yield from _mark_extremes(curve, style, x_axis)
+
+
+def _count_periods(values: Array) -> float:
+    """Count how often a course passes its middle, two passes a period."""
+    known = values[np.isfinite(values)]
+    above = known > 0.5 * (known.min(initial=np.inf) + known.max(initial=-np.inf))
+    return 0.5 * float(np.count_nonzero(above[1:] != above[:-1]))
+
+
+def _make_envelope(curve: PanelCourse, x: Array, values: Array) -> Band:
+    """Return the lowest and highest value of stretches of at least two periods each as a band."""
+    is_known = np.isfinite(values)
+    x, values = x[is_known], values[is_known]
+    count = min(int(0.5 * _count_periods(values)), MAX_STRETCHES)
+    edges = np.linspace(x[0], x[-1], count + 1)
+    first = np.unique(np.minimum(np.searchsorted(x, edges[:-1]), len(x) - 1))
+    low, high = np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
+    middle = 0.5 * (x[first] + np.append(x[first[1:]], x[-1]))
+    places = np.concatenate([x[:1], middle, x[-1:]])
+    low, high = (np.concatenate([edge[:1], edge, edge[-1:]]) for edge in (low, high))
+    return Band(f"range of {curve.name}", places, low, high, curve.pen, has_edges=True)
+
+
+def draw_direction_arrows(x: Array, y: Array, number: int, length: float, aspect: float = 1.0) -> Iterator[Arrow]:
+    """Draw short arrows along a curve in the direction of time; aspect: units of y as long as a unit of x."""
+    for share in ARROW_PLACES:
+        k = int(share * (len(x) - 1))
+        distances = np.hypot(x[k + 1 :] - x[k], (y[k + 1 :] - y[k]) / aspect)
+        far_enough = np.flatnonzero(distances >= 0.5 * length)
+        if len(far_enough):
+            j = k + 1 + int(far_enough[0])
+            scale = length / float(distances[far_enough[0]])
+            yield Arrow(x[k], y[k], scale * (x[j] - x[k]), scale * (y[j] - y[k]), number)
+
+
+def _mark_extremes(curve: PanelCourse, style: ReaderStyle, x_axis: HorizontalAxis) -> Iterator[Spot]:
+    """Mark the greatest magnitude with its instant, and the lowest value if it is negative; of a constant its value."""
+    low, high, error = curve.course.low, curve.course.high, curve.course.error or 0.0
+    if not is_varying(low.value, high.value, error):
+        if high.time is not None and math.isfinite(high.value):
+            x = x_axis.size * float(curve.x[np.argmax(np.isfinite(curve.x + curve.course.values))])
+            text = format_constant(high.value, error, style) + ("" if len(curve.x) == 1 else " at all times")
+            if math.isfinite(x):
+                yield _make_spot(x, high, text, curve, style, "")
+        return
+    marked = [("maximum", high)] if high.value > 0.0 else []
+    marked += [("minimum", low)] if low.value < 0.0 else []
+    for word, peak in marked or [("maximum", high)]:
+        if peak.time is None or not math.isfinite(peak.value):
+            continue
+        x, place_text = _locate_peak(curve, peak, x_axis)
+        if math.isfinite(x):  # else the number on the horizontal axis is open there
+            yield _make_spot(x, peak, f"{format_number(peak.value, error, style)} at {place_text}", curve, style, word)
+
+
+def _make_spot(x: float, peak: Peak, text: str, curve: PanelCourse, style: ReaderStyle, word: str) -> Spot:
+    note = f"{curve.caption or curve.name}: {word} {text}"
+    return Spot(x, style.size * peak.value, text, curve.pen, is_filled=True, note=note)
+
+
+def _locate_peak(curve: PanelCourse, peak: Peak, x_axis: HorizontalAxis) -> tuple[float, str]:
+    """Return the place of an extreme along the horizontal axis, as a number and as text."""
+    assert peak.time is not None
+    if x_axis.path is None:
+        return peak.time, f"{format_short(peak.time, 4)} s"
+    x = x_axis.size * float(find_values(curve.source.study, x_axis.path, np.array([peak.time]))[0])
+    return x, join_unit(format_short(x, 4), x_axis.unit)
+
+
+def join_unit(number: str, unit: str) -> str:
+    """Join a number with its unit; degrees have a sign without a blank."""
+    return number if unit in ("", "1") else f"{number}°" if unit in ("deg", "°") else f"{number} {unit}"
+
+
+def format_constant(value: float, error: float, style: ReaderStyle) -> str:
+    """Format a number that does not vary. If it is below its error, so that its sign is unknown, format that error;
+    `?`: unknown.
+    """
+    if 0.0 < abs(value) <= error:
+        return UNKNOWN if math.isinf(error) else f"within its stated error, {format_error(style.size * error)},"
+    return format_number(value, error, style)
+
+
+def format_number(value: float, error: float, style: ReaderStyle) -> str:
+    """Format a number with its unit, no digits below its error, and the error if it reaches the last digit."""
+    if value == 0.0 or abs(value) <= error:
+        return UNKNOWN if math.isinf(error) else join_unit("0", style.unit)
+    shown = style.size * error
+    decimals = min(style.decimals, max(0, -math.ceil(math.log10(2.0 * shown)))) if shown > 0.0 else style.decimals
+    text = style._replace(decimals=decimals, error=0.0).write(value)
+    is_coarse = shown >= 0.5 * 10.0**-decimals
+    return join_unit(f"{text} ± {format_error(shown)}" if is_coarse else text, style.unit)
+
+
+def draw_case_bars(curves: Sequence[PanelCourse], style: ReaderStyle) -> Iterator[Item]:
+    """Draw numbers of one instant as bars: load cases along the axis, a pen for each path."""
+    names = list(dict.fromkeys(curve.source.name for curve in curves))
+    pens = sorted({curve.pen for curve in curves})
+    width = GROUP_WIDTH / len(pens)
+    for pen in pens:
+        own = [curve for curve in curves if curve.pen == pen]
+        offset = (pens.index(pen) + 0.5) * width - 0.5 * GROUP_WIDTH
+        x = np.array([names.index(curve.source.name) + offset for curve in own])
+        values = [float(curve.course.values[0]) for curve in own]
+        yield Bars(own[0].course.path, x, style.size * np.array(values), pen, 0.9 * width)
+        for place, value, curve in zip(x.tolist(), values, own, strict=True):
+            if math.isfinite(value):
+                text = format_number(value, curve.course.error or 0.0, style).removesuffix(f" {style.unit}")
+                yield Spot(place, style.size * value, text, pen, is_filled=True)
