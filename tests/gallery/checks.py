@@ -26,6 +26,7 @@ PATH = re.compile(r"\b(?:joints|forces|coordinates|bodies|couplings|foundation|p
 NOISE = re.compile(r"\d[eE][-−](?:[6-9]|\d\d)\b|\b0\.000\d+ (?!s\b)")
 DIGITS = re.compile(r"(?<![\w.])[-−]?(\d+\.?\d*)(?:e[-−+]?\d+)?(?![\w.])")
 FOLDER = re.compile(r"(?:^|\s)/[\w.-]+/[\w./-]+")
+PREFIXES = {"k": 1e3, "M": 1e6}
 MOST_DIGITS = 5  # significant ones that a reader takes in
 
 
@@ -200,6 +201,7 @@ def _iter_ink(root: tree.Element) -> Iterator[tuple[float, float]]:
         if element.tag == f"{SVG}text":
             box = _text_box(element)
             yield from ((x, box.top) for x in _even(box.left, box.right))
+            yield from ((box.left, y) for y in _even(box.top, box.bottom))
         elif element.tag == f"{SVG}polyline" and (not is_dark(element) or is_frame(points_of(element))):
             continue
         elif element.tag in (f"{SVG}polyline", f"{SVG}polygon"):
@@ -278,13 +280,15 @@ def find_in_document(tab: Tab) -> list[Finding]:
 
 
 def find_other_numbers(svg: str, extremes: Sequence[float]) -> list[Finding]:
-    """Find the marked numbers of a history (`24.6 at 0.02 s`) that are none of its extremes, as they are rounded."""
+    """Find the marked numbers of a history (`24.6 kN at 0.02 s`) that are none of its extremes (SI), as rounded."""
     found = []
     for box in text_boxes(tree.fromstring(svg.encode())):
-        shown = re.match(r"([-−]?\d[\d.]*(?:e-?\d+)?)(?: \S+)? at ", box.words)
+        shown = re.match(r"([-−]?\d[\d.]*(?:e[-−]?\d+)?)(?: (\S+))? at ", box.words)
         if shown is None:
             continue
-        value, half = read_rounded(shown[1])
+        unit = shown[2] or ""
+        size = 1e-3 if unit.startswith("mm") else PREFIXES.get(unit[:1], 1.0)
+        value, half = (size * number for number in read_rounded(shown[1]))
         if not any(math.isclose(value, extreme, rel_tol=0.0, abs_tol=1.01 * half) for extreme in extremes):
             found.append(Finding("number", f"{box.words}: none of {list(extremes)}", box.left, box.top))
     return found

@@ -48,7 +48,7 @@ def test_a_curve_over_one_variable(heun: Heun, swept: Heun, file: str) -> None:
     (curve,) = panel.lines("joints.pivot.force.z")
     assert np.abs(curve[:, 1] - G * curve[:, 0]).max() < panel.pixel
     assert curve[[0, -1], 0].tolist() == pytest.approx([1.0, 3.0], abs=panel.pixel)
-    assert len(panel.spots(filled=False)) == 7 and "29.43 at 3" in words and "9.81 at 1" in words
+    assert len(panel.spots(filled=False)) == 7 and "29.43 N at 3" in words and "9.81 N at 1" in words
 
 
 def test_values_by_ratios_stand_evenly(heun: Heun, swept: Heun) -> None:
@@ -73,7 +73,7 @@ def test_a_field_over_two(heun: Heun, swept: Heun, file: str) -> None:
         assert fill in near
     levels = shades.x.values(np.array([shades.left, shades.right]))
     assert levels == pytest.approx([1.0, 27.0], abs=0.1)
-    assert any("min. 1.0 N at m = 1, g = 1; max. 27.0 N at m = 3, g = 9" in word for word in words)
+    assert any("min. 1.00 N at m = 1, g = 1; max. 27.00 N at m = 3, g = 9" in word for word in words)
 
 
 def test_what_could_not_be_solved_is_a_hole_and_counted(heun: Heun, swept: Heun) -> None:
@@ -178,7 +178,7 @@ def test_open_measures_are_counted(heun: Heun) -> None:
     assert heun("sweep", door, "gravity=[0,0,-9],[0,0,-10]", *measures, "-q", "-o", "s.csv", "--store", "s.sqlite")
     for file in ("s.csv", "s.sqlite"):
         _, words = drawn(heun, file)
-        assert "joints.top.force.z: open in 2 of 2 variants, not drawn there" in words
+        assert "Top, Fz: open in 2 of 2 variants, not drawn there" in words
 
 
 def test_hostile_names_are_shown_and_do_nothing(heun: Heun, folder: Path) -> None:

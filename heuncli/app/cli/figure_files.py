@@ -7,7 +7,7 @@ from heuncli.app.cli.guard import is_same_file
 from heuncli.app.cli.target import require_writable
 from heuncli.base.errors import Problem
 from heuncli.base.files import STDOUT
-from heuncli.output.drawing.drawing_files import find_form
+from heuncli.output.drawing.drawing_files import find_form, require_encoder
 
 
 def require_figure_form(name: str, option: str) -> str:
@@ -16,10 +16,7 @@ def require_figure_form(name: str, option: str) -> str:
     """
     form = find_form(name, option)
     require_writable(name, option)
-    if form != "svg":
-        from heuncli.output.drawing.matplotlib_file import require_plot
-
-        require_plot(f"{option} {name}")
+    require_encoder(form, f"{option} {name}")
     return form
 
 

@@ -31,7 +31,7 @@ class Diagram:
         return to_svg(self._picture)
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Write the diagram in the format of the file's ending: .svg, or .png or .pdf by matplotlib. Raises UsageError,
+        """Write the diagram in the format of the file's ending: .svg, .png or .pdf. Raises UsageError,
         OSError.
         """
         check_arguments(("file", file, FILE), optional=False)

@@ -1,4 +1,7 @@
-"""Encode drawings as files, by the ending of the name: SVG, which needs no library, or PNG or PDF by matplotlib."""
+"""Encode drawings as files, by the ending of the name: SVG, which needs no library, or PNG and PDF.
+
+A program on PATH makes PNG and PDF (output/drawing/svg_converters.py), else matplotlib, an optional dependency.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +22,26 @@ def find_form(name: str, option: str) -> str:
     return form
 
 
+def require_encoder(form: str, what: str) -> None:
+    """Raise SpecError before the work if nothing is installed that writes a form; what: the file, in messages."""
+    if form == "svg":
+        return
+    from heuncli.output.drawing.matplotlib_file import require_plot
+    from heuncli.output.drawing.svg_converters import find_converters
+
+    if next(find_converters(form), None) is None:
+        require_plot(what)
+
+
 def encode_drawing(drawing: VectorDrawing, form: str) -> bytes:
-    """Encode the drawing in a form. Raises SpecError if the library that it needs is not installed."""
+    """Encode the drawing in a form. Raises SpecError if nothing is installed that writes it."""
     if form == "svg":
         return to_svg(drawing).encode()
+    from heuncli.output.drawing.svg_converters import convert
+
+    content = convert(drawing, form)
+    if content is not None:
+        return content
     from heuncli.output.drawing.matplotlib_file import render
 
     return render(drawing, form)

@@ -185,18 +185,23 @@ def _draw_vertical_mark(item: VerticalMark, box: PanelBox) -> Iterator[Shape]:
         yield Text(middle, box.top - 5.0, escape(item.text), style.SMALL_SIZE, "middle", style.GREY)
 
 
+def _hatch_box(left: float, top: float, right: float, bottom: float) -> Iterator[Shape]:
+    """Draw slanted lines in a rectangle."""
+    height = bottom - top
+    for k in range(math.ceil((left - height) / style.HATCH_STEP), math.floor(right / style.HATCH_STEP) + 1):
+        x = k * style.HATCH_STEP  # a line that rises to the right from the bottom at x
+        low, high = max(left, x), min(right, x + height)
+        if low < high:
+            yield Line(((low, bottom - (low - x)), (high, bottom - (high - x))), style.GRID, style.HATCH_WIDTH)
+
+
 def _draw_blank(item: Blank, box: PanelBox) -> Iterator[Shape]:
     left, right = box.to_pixel_x(item.low), box.to_pixel_x(item.high)
     yield Area(
         ((left, box.top), (right, box.top), (right, box.bottom), (left, box.bottom)), "#ffffff", 1.0, escape(item.text)
     )
     height = box.bottom - box.top
-    first = math.ceil((left - height) / style.HATCH_STEP)
-    for k in range(first, math.floor(right / style.HATCH_STEP) + 1):
-        x = k * style.HATCH_STEP  # a line that rises to the right from the bottom at x
-        low, high = max(left, x), min(right, x + height)
-        if low < high:
-            yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), style.GRID, style.HATCH_WIDTH)
+    yield from _hatch_box(left, box.top, right, box.bottom)
     x, y = 0.5 * (left + right), box.top + 0.3 * height
     yield Text(x, y, escape(item.text), style.SMALL_SIZE, "middle", style.GREY, has_halo=True)
 
@@ -222,6 +227,8 @@ def _draw_cells(item: Cells, box: PanelBox) -> Iterator[Shape]:
     is_known = np.pad(np.isfinite(item.values), ((0, 1), (0, 1)))
     for j, row in enumerate(item.values.tolist()):
         for i, value in enumerate(row):
+            if not is_known[j, i]:
+                yield from _hatch_box(xs[i], ys[j + 1], xs[i + 1], ys[j])
             if is_known[j, i]:
                 share = (value - low) / (high - low) if high > low else 0.5
                 right = xs[i + 1] + (CELL_OVERLAP if is_known[j, i + 1] else 0.0)

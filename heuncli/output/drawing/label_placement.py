@@ -7,7 +7,7 @@ passes. No words are placed over other words or marks.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -18,6 +18,10 @@ MAX_LINES = 5  # maximum distance of words, in lines of text
 ROUNDING = 1e-6  # of rounding
 COST_PER_LINE = 7.0  # cost of a line of distance
 CURVE_COST = 3.0  # cost of a cell of a curve
+
+
+N_SAMPLES = 25  # places along a line that may strike words
+Place = tuple[float, float]
 
 
 class WordBox(NamedTuple):
@@ -65,6 +69,17 @@ class WordField:
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
         row, column = row[inside], column[inside]
         self.cost[row, column] = np.maximum(self.cost[row, column], CURVE_COST)
+
+    def add_area(self, corners: Array) -> None:
+        """Add the cost of an upright rectangle with corners (n, 2)."""
+        (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+        self._select_cells(WordBox(left, top, right, bottom))[:] = CURVE_COST
+
+    def is_struck(self, begin: Place, end: Place, except_boxes: Sequence[WordBox]) -> bool:
+        """Return whether a line between two places crosses words or marks other than `except_boxes`."""
+        x, y = (np.linspace(a, b, N_SAMPLES) for a, b in zip(begin, end, strict=True))
+        others = [box for box in self.occupied if box not in except_boxes and not box.contains(WordBox(*begin, *begin))]
+        return any(bool(((x > box.left) & (x < box.right) & (y > box.top) & (y < box.bottom)).any()) for box in others)
 
     def occupy(self, box: WordBox) -> None:
         """Occupy a box with words or a mark."""

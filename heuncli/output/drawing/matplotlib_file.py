@@ -14,13 +14,16 @@ PER_INCH = 96.0  # pixels
 FIXED_AXES: dict[str, Any] = {"scalex": False, "scaley": False}  # keep the limits of the axes
 POINTS = 72.0 / PER_INCH  # in a pixel
 RESOLUTION = 2.0  # PNG pixels for a pixel of the drawing
-INSTALL_HINT = 'pip install "heuncli[plot]"; or use a file name ending in .svg, which needs no extra package'
+INSTALL_HINT = (
+    'pip install "heuncli[plot]", or have rsvg-convert, resvg or Chromium on PATH; or use a file name ending in .svg, '
+    "which needs none of them"
+)
 
 
 def require_plot(what: str) -> None:
     """Raise SpecError before the work if matplotlib is not installed."""
     if importlib.util.find_spec("matplotlib") is None:
-        message = f"{what} requires matplotlib, which is not installed"
+        message = f"{what} requires rsvg-convert, resvg, Chromium or matplotlib, none of which is installed"
         raise SpecError(Problem("missing-extra", message, hint=INSTALL_HINT))
 
 

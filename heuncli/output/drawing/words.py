@@ -13,7 +13,7 @@ from heuncli.output.drawing.figure import Item, Spot, VerticalMark
 from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
 from heuncli.output.drawing.pens import find_colour
 from heuncli.output.drawing.scales import PanelBox
-from heuncli.output.drawing.shapes import Line, Mark, Shape, Text
+from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text
 
 CELL_SIZE = 3.0  # pixels of a cell of the word field
 MARK_DISTANCE = 2.0  # pixels from a mark to its words
@@ -56,6 +56,9 @@ def make_field(shapes: Sequence[Shape], area: WordBox) -> WordField:
         if isinstance(shape, Line):
             if shape.name or shape.width >= MIN_LINE_WIDTH or shape.width == style.HATCH_WIDTH:
                 field.add_curve(np.array(shape.points))
+        elif isinstance(shape, Area):
+            if shape.opacity == style.BAR_OPACITY:
+                field.add_area(np.array(shape.points))
         elif isinstance(shape, Mark):
             field.occupy(_make_mark_box(shape))
         elif isinstance(shape, Text):
@@ -101,7 +104,8 @@ def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> list[Shape
         has_halo=True,
     )
     end = min(max(mark.x, place.left), place.right), min(max(mark.y, place.top), place.bottom)
-    if math.hypot(end[0] - mark.x, end[1] - mark.y) <= MAX_UNLINKED_DISTANCE:
+    is_near = math.hypot(end[0] - mark.x, end[1] - mark.y) <= MAX_UNLINKED_DISTANCE
+    if is_near or field.is_struck((mark.x, mark.y), end, except_boxes=(place, _make_mark_box(mark))):
         return [words]
     return [Line(((mark.x, mark.y), end), colour, style.GRID_WIDTH), words]
 

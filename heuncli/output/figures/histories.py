@@ -290,8 +290,8 @@ def _make_notes(curves: Sequence[PanelCourse], panels: Sequence[Panel]) -> list[
     gaps = [np.isnan(curve.course.values) for curve in curves]
     all_open = [curve.caption for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.all()]
     in_parts = [curve.caption for curve, is_gap in zip(curves, gaps, strict=True) if is_gap.any() and not is_gap.all()]
-    notes = [f"open, not drawn: {', '.join(all_open)}"] if all_open else []
-    notes += [f"open or unknown at some times, not drawn there: {', '.join(in_parts)}"] if in_parts else []
+    notes = [f"open, not drawn: {'; '.join(all_open)}"] if all_open else []
+    notes += [f"open or unknown at some times, not drawn there: {'; '.join(in_parts)}"] if in_parts else []
     bands = [item.name for panel in panels for item in panel.items if isinstance(item, Band)]
     if any(name.startswith("stated error") for name in bands):
         notes.append("light bands: stated error")

@@ -64,7 +64,9 @@ def draw_curves(
 def _count_periods(values: Array) -> float:
     """Count how often a course passes its middle, two passes a period."""
     known = values[np.isfinite(values)]
-    above = known > 0.5 * (known.min(initial=np.inf) + known.max(initial=-np.inf))
+    if not known.size:
+        return 0.0
+    above = known > 0.5 * (known.min() + known.max())
     return 0.5 * float(np.count_nonzero(above[1:] != above[:-1]))
 
 

@@ -9,14 +9,17 @@ import numpy as np
 from heuncli.analyses.balancing.balance_labels import format_cycle, format_reference_point, get_unit
 from heuncli.analyses.balancing.results import BalanceResults, OrderRow
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot
-from heuncli.output.drawing.ticks import choose_ends
+from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot, share_x_axis
+from heuncli.output.drawing.ticks import choose_ends, format_short
+from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 QUANTITY_TITLES = {
-    "force": "inertia force on the foundation", "moment": "inertia moment on the foundation",
-    "torque": "shaft torque from inertia", "load": "shaft torque from loads and weight",
+    "force": "Inertia force on the foundation", "moment": "Inertia moment on the foundation",
+    "torque": "Shaft torque from inertia", "load": "Shaft torque from loads and weight",
 }  # fmt: skip
+AXIS_NAMES = {"force": "force", "moment": "moment", "torque": "torque", "load": "torque"}
+GROUP_WIDTH, DIGITS = 0.7, 3  # width of the bars of an order, digits of their values
 BARS_SENTENCE = "bars: largest magnitude of each order over a revolution"
 MIN_LABELLED = 1e-3  # of the largest bar: smaller bars have no label
 COUNTERBALANCED = "with counterweights"
@@ -36,24 +39,33 @@ class BalancedScene(NamedTuple):
 
 
 def make_orders_figure(sources: Sequence[BalancedScene], units: Units) -> Figure:
-    """Make the figure of some balances: a panel for each quantity, with the same limits for all scenes."""
-    panels = []
+    """Make the figure of some balances: a panel for each quantity, with the same limits for all scenes.
+
+    A quantity of which all orders cancel is a sentence.
+    """
+    panels, cancelled = list[Panel](), list[str]()
     for quantity in QUANTITY_TITLES:
         sources_with_quantity = [source for source in sources if quantity in source.results.orders]
         high: dict[str, float] = {}
         for source in sources_with_quantity:
             unit = get_unit(source.results, quantity)
             high[unit] = max(high.get(unit, 0.0), _find_largest(source.results, quantity))
-        panels += [
-            _make_panel(source, quantity, high[get_unit(source.results, quantity)], units)
-            for source in sources_with_quantity
-        ]
+        for source in sources_with_quantity:
+            largest = high[get_unit(source.results, quantity)]
+            if _find_largest(source.results, quantity) > 0.0:
+                panels.append(_make_panel(source, quantity, largest, units))
+            else:
+                prefix = f"{source.name}: " if source.name else ""
+                cancelled.append(f"{prefix}{QUANTITY_TITLES[quantity]}: cancels (all orders)")
     words = [*(sentence for source in sources for sentence in _describe_source(source)), BARS_SENTENCE]
     has_counterweights = any(source.results.counterbalance is not None for source in sources)
-    legend = [("without counterweights", PEN), (COUNTERBALANCED, COUNTERBALANCED_PEN)] if has_counterweights else []
-    notes = [note for source in sources for note in source.results.notes]
+    names = (("without counterweights", PEN), (COUNTERBALANCED, COUNTERBALANCED_PEN)) if has_counterweights else ()
+    marks = [(name, pen, "square") for name, pen in names]
+    notes = [*cancelled, *(note for source in sources for note in source.results.notes)]
+    if len({panel.x for panel in panels}) == 1:
+        panels = share_x_axis(panels)
     titles = dict.fromkeys(source.results.title for source in sources if source.results.title)
-    return Figure(" · ".join(titles) or "Balance", words, panels, legend, notes)
+    return Figure(" · ".join(titles) or "Balance", words, panels, (), notes, marks)
 
 
 def make_order_sizes_figure(results: BalanceResults) -> Figure:
@@ -90,31 +102,34 @@ def _find_counterbalanced_orders(results: BalanceResults) -> Mapping[str, tuple[
 def _make_panel(source: BalancedScene, quantity: str, high: float, units: Units) -> Panel:
     """Make the panel of one quantity, a bar for each order."""
     results = source.results
-    unit, size = units.find(get_unit(results, quantity))
+    style = choose_reader_style(get_unit(results, quantity), high, units)
+    size = style.size
     places = {order: float(k) for k, order in enumerate(results.shown_orders)}
     names = tuple((place, f"{order:g}") for order, place in places.items())
     x = Scaling("order", -0.5, max(len(places), 1) - 0.5, tick_texts=names)
-    y = Scaling(f"[{unit}]", 0.0, choose_ends(0.0, size * high or 1.0, margin=0.25)[1])
+    y = Scaling(f"{AXIS_NAMES[quantity]} [{style.unit}]", 0.0, choose_ends(0.0, size * high, margin=0.25)[1])
     point_phrase = f", about {format_reference_point(results)}" if quantity == "moment" else ""
     title = f"{f'{source.name}: ' if source.name else ''}{QUANTITY_TITLES[quantity]}{point_phrase}"
-    sizes = {row.order: size * row.peak for row in results.orders[quantity] if row.order in places and row.peak > 0.0}
-    items: list[Item] = [
-        Bars(
-            QUANTITY_TITLES[quantity], np.array([places[order] for order in sizes]), np.array(list(sizes.values())), PEN
-        )
-    ]
-    items += _label_bars(sizes, places, size * high)
-    for row in _find_counterbalanced_orders(results).get(quantity, ()):
-        if row.order in places:
-            items.append(Spot(places[row.order], size * row.peak, "", COUNTERBALANCED_PEN, "diamond", is_filled=True))
+    rows = [(QUANTITY_TITLES[quantity], results.orders[quantity], PEN)]
+    counterbalanced = _find_counterbalanced_orders(results).get(quantity, ())
+    if counterbalanced:
+        rows.append((COUNTERBALANCED, counterbalanced, COUNTERBALANCED_PEN))
+    width = GROUP_WIDTH / len(rows)
+    items: list[Item] = []
+    for k, (name, orders, pen) in enumerate(rows):
+        offset = (k + 0.5) * width - 0.5 * GROUP_WIDTH
+        drawn = [row for row in orders if row.order in places and row.peak > 0.0]
+        sizes = {places[row.order] + offset: size * row.peak for row in drawn}
+        items.append(Bars(name, np.array(list(sizes)), np.array(list(sizes.values())), pen, 0.9 * width))
+        items += _label_bars(sizes, size * high, pen)
     return Panel(x, y, tuple(items), title=title)
 
 
-def _label_bars(sizes: Mapping[float, float], places: Mapping[float, float], largest: float) -> Iterator[Spot]:
+def _label_bars(sizes: Mapping[float, float], largest: float, pen: int) -> Iterator[Spot]:
     """Label the bars that are large enough to be visible."""
-    for order, value in sizes.items():
+    for place, value in sizes.items():
         if value > MIN_LABELLED * largest:
-            yield Spot(places[order], value, f"{value:.4g}", PEN, is_filled=True)
+            yield Spot(place, value, format_short(value, DIGITS), pen, is_filled=True)
 
 
 def _describe_source(source: BalancedScene) -> Iterator[str]:

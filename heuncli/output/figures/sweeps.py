@@ -5,6 +5,7 @@ There is a panel for each measure. A variant without a number is not drawn; a no
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
@@ -24,9 +25,10 @@ from heuncli.output.drawing.figure import (
     Trace,
     share_x_axis,
 )
-from heuncli.output.drawing.style import PENS
-from heuncli.output.figures.certain import format_certain
+from heuncli.output.drawing.style import PANEL_HEIGHT, PENS
+from heuncli.output.figures.contours import draw_contours
 from heuncli.output.figures.error_bands import is_visible
+from heuncli.output.figures.history_curves import format_number
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.sweep_tables import (
     SweepNumbers,
@@ -38,6 +40,9 @@ from heuncli.output.figures.sweep_tables import (
 )
 from heuncli.output.figures.variable_axes import MAX_NAMES, find_cell_edges, make_axis, make_measure_axis
 from heuncli.results.results import Array, Indices
+from heuncli.study.quantities.captions import describe_path
+from heuncli.study.quantities.labels import Labels
+from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 MAX_MARKED = 40  # points of a curve; with more they have no marks
@@ -46,6 +51,9 @@ MAX_CURVE_LEVELS = 3  # of the second of two variables: up to this, curves and n
 MAX_CELLS = 40_000
 MAX_SPOTS = 1_500
 MAX_PANELS = 16
+FOLDERS = re.compile(r"(?:[^\s:]*/)+")  # before the name of a file
+REDUCERS = {"max": "greatest", "min": "least", "mean": "mean", "rms": "effective", "abs": "magnitude of"}
+CURVE_HEIGHT = 260.0  # of a single panel
 # heights of a field and of its scale in pixels; shades of the scale
 FIELD_HEIGHT, SHADES_HEIGHT, N_SHADES = (300.0, 16.0, 48)
 
@@ -61,8 +69,27 @@ def make_sweep_figure(table: SweepTable, units: Units, words: Sequence[str] = ()
     if not picked_table.variables:
         raise NotDrawable(f"{table.origin}: a single variant gives no curve", "vary a parameter or fix fewer variables")
     panels, legend, notes = _choose_kind(picked_table)(picked_table, units)
-    sentences = [table.origin, *(["with " + ", ".join(picked_table.fixed_texts)] if picked_table.fixed_texts else [])]
-    return Figure(table.title, sentences, panels, legend, [*notes, *_count_variants(picked_table.table)])
+    sentences = [
+        FOLDERS.sub("", table.origin),
+        *(["with " + ", ".join(picked_table.fixed_texts)] if picked_table.fixed_texts else []),
+    ]
+    return Figure(
+        FOLDERS.sub("", table.title), sentences, panels, legend, [*notes, *_count_variants(picked_table.table)]
+    )
+
+
+def describe_measure(text: str) -> str:
+    """Describe a measure such as `max joints.main.force` in words; a name of its own stays."""
+    *reducers, path = text.split(" ")
+    if "." not in path or not set(reducers) <= REDUCERS.keys():
+        return text
+    words = " ".join([*(REDUCERS[reducer] for reducer in reducers), describe_path(path, Labels())])
+    return f"{words[:1].upper()}{words[1:]}"
+
+
+def _choose_style(measure: SweepNumbers, units: Units) -> ReaderStyle:
+    """Choose how the numbers of a measure are written."""
+    return choose_reader_style(measure.unit, float(np.nanmax(np.abs(measure.values), initial=0.0)), units)
 
 
 FigureParts = tuple[list[Panel], list[tuple[str, int]], list[str]]
@@ -91,7 +118,8 @@ def _draw_curves(picked_table: SweepSelection, units: Units) -> FigureParts:
     x = make_axis(x_variable)
     panels = []
     for measure in picked_table.table.measures:
-        shown_unit, size = units.find(measure.unit)
+        style = _choose_style(measure, units)
+        shown_unit, size = style.unit, style.size
         items: list[Item] = []
         y = make_measure_axis(shown_unit, size * measure.values, size * measure.errors)
         for number, (name, rows) in enumerate(groups):
@@ -99,8 +127,9 @@ def _draw_curves(picked_table: SweepSelection, units: Units) -> FigureParts:
             x_values, values = x_variable.values[order], size * measure.values[order]
             if not x_variable.texts:  # there is nothing between names
                 items += _draw_curve(name or measure.text, x_values, values, size * measure.errors[order], y, number)
-            items += _draw_points(x_variable, measure, size, order, number, mark_extremes=len(groups) == 1)
-        panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
+            items += _draw_points(x_variable, measure, style, order, number, mark_extremes=len(groups) == 1)
+        height = CURVE_HEIGHT if len(picked_table.table.measures) == 1 else PANEL_HEIGHT
+        panels.append(Panel(x.scaling, y, tuple(items), height, title=describe_measure(measure.text)))
     legend = [(name, number) for number, (name, _) in enumerate(groups) if name]
     return share_x_axis(panels), legend, [x.note] if x.note else []
 
@@ -152,19 +181,26 @@ def _draw_curve(name: str, x: Array, values: Array, errors: Array, y: Scaling, n
 
 
 def _draw_points(
-    x_variable: SweepVariable, measure: SweepNumbers, size: float, order: Indices, number: int, *, mark_extremes: bool
+    x_variable: SweepVariable,
+    measure: SweepNumbers,
+    style: ReaderStyle,
+    order: Indices,
+    number: int,
+    *,
+    mark_extremes: bool,
 ) -> Iterator[Spot]:
     """Draw the points of a curve if they are few; mark_extremes: label the largest and the smallest with their
     places.
     """
-    x, values, errors = x_variable.values[order], size * measure.values[order], size * measure.errors[order]
+    x, values = x_variable.values[order], style.size * measure.values[order]
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return
     high, low = int(np.nanargmax(values)), int(np.nanargmin(values))
     extremes = [high, low] if mark_extremes and values[high] > values[low] else []
     for k in extremes:
-        text = f"{format_certain(float(values[k]), float(errors[k]))} at {x_variable.format_value(x[k])}"
+        number_text = format_number(float(measure.values[order[k]]), float(measure.errors[order[k]]), style)
+        text = f"{number_text} at {x_variable.format_value(x[k])}"
         yield Spot(float(x[k]), float(values[k]), text, number, is_filled=True)
     isolated = [k for k in known.tolist() if np.isfinite(values[max(k - 1, 0) : k + 2]).sum() == 1]
     shape = POINT_SHAPES[number % len(POINT_SHAPES)] if x_variable.texts else POINT_SHAPES[0]
@@ -179,7 +215,8 @@ def _draw_bars(picked_table: SweepSelection, units: Units) -> FigureParts:
     x = make_axis(x_variable)
     panels = []
     for measure in picked_table.table.measures:
-        shown_unit, size = units.find(measure.unit)
+        style = _choose_style(measure, units)
+        shown_unit, size = style.unit, style.size
         values, errors = size * measure.values, size * measure.errors
         y = make_measure_axis(shown_unit, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
         items: list[Item] = [Bars(measure.text, x_variable.values, values)]
@@ -192,11 +229,11 @@ def _draw_bars(picked_table: SweepSelection, units: Units) -> FigureParts:
             )
             items.append(Strokes(np.stack([low, high], axis=1), width=1.4))
         items += [
-            Spot(a, b, format_certain(b, error), 0, is_filled=True)
+            Spot(a, b, format_number(b / size, error / size, style), 0, is_filled=True)
             for a, b, error in zip(x_variable.values.tolist(), values.tolist(), errors.tolist(), strict=True)
             if np.isfinite(b) and len(values) <= MAX_NAMES
         ]
-        panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
+        panels.append(Panel(x.scaling, y, tuple(items), title=describe_measure(measure.text)))
     return share_x_axis(panels), [], [x.note] if x.note else []
 
 
@@ -213,7 +250,8 @@ def _draw_fields(picked_table: SweepSelection, units: Units) -> FigureParts:
     panels: list[Panel] = []
     notes = [axis.note for axis in (x, y) if axis.note]
     for measure in picked_table.table.measures:
-        shown_unit, size = units.find(measure.unit)
+        style = _choose_style(measure, units)
+        shown_unit, size = style.unit, style.size
         values = np.full((len(y_variable.levels), len(x_variable.levels)), np.nan)
         cell_indices = (
             np.searchsorted(y_variable.levels, y_variable.values),
@@ -223,17 +261,16 @@ def _draw_fields(picked_table: SweepSelection, units: Units) -> FigureParts:
         cells = Cells(
             measure.text, find_cell_edges(x_variable, x.scaling), find_cell_edges(y_variable, y.scaling), values
         )
-        panels.append(
-            Panel(x.scaling, y.scaling, (cells,), FIELD_HEIGHT, title=f"{measure.text} [{shown_unit or '-'}]")
-        )
+        items = (cells, *draw_contours(cells, x_variable.levels, y_variable.levels))
+        panels.append(Panel(x.scaling, y.scaling, items, FIELD_HEIGHT, title=describe_measure(measure.text)))
         known = np.isfinite(measure.values)
         if known.any():
-            panels += _draw_shades(values, shown_unit)
-            notes.append(_describe_extremes(measure, size, shown_unit, (x_variable, y_variable)))
+            panels += _draw_shades(values, f"{describe_measure(measure.text)} [{shown_unit or '-'}]")
+            notes.append(_describe_extremes(measure, style, (x_variable, y_variable)))
     return panels, [], notes
 
 
-def _draw_shades(field: Array, unit: str) -> Iterator[Panel]:
+def _draw_shades(field: Array, label: str) -> Iterator[Panel]:
     """Draw the scale of the shades of a field."""
     low, high = float(np.nanmin(field)), float(np.nanmax(field))
     if not high > low:
@@ -241,21 +278,19 @@ def _draw_shades(field: Array, unit: str) -> Iterator[Panel]:
     cells = Cells(
         "shades", np.linspace(low, high, N_SHADES + 1), np.array([0.0, 1.0]), np.linspace(low, high, N_SHADES)[None]
     )
-    yield Panel(
-        Scaling(f"[{unit or '-'}]", low, high), Scaling("", 0.0, 1.0, tick_texts=((0.5, ""),)), (cells,), SHADES_HEIGHT
-    )
+    yield Panel(Scaling(label, low, high), Scaling("", 0.0, 1.0, tick_texts=((0.5, ""),)), (cells,), SHADES_HEIGHT)
 
 
 def _describe_extremes(
-    measure: SweepNumbers, size: float, unit: str, variables: tuple[SweepVariable, SweepVariable]
+    measure: SweepNumbers, style: ReaderStyle, variables: tuple[SweepVariable, SweepVariable]
 ) -> str:
     """Describe where a field is smallest and largest."""
     texts = []
     for name, k in (("min.", int(np.nanargmin(measure.values))), ("max.", int(np.nanargmax(measure.values)))):
         place = ", ".join(f"{variable.name} = {variable.format_value(variable.values[k])}" for variable in variables)
-        value = format_certain(size * float(measure.values[k]), size * float(measure.errors[k]))
-        texts.append(f"{name} {value} {unit}".rstrip() + f" at {place}")
-    return f"{measure.text}: {'; '.join(texts)}"
+        value = format_number(float(measure.values[k]), float(measure.errors[k]), style)
+        texts.append(f"{name} {value} at {place}")
+    return f"{describe_measure(measure.text)}: {'; '.join(texts)}"
 
 
 def _draw_scatter(picked_table: SweepSelection, units: Units) -> FigureParts:
@@ -271,12 +306,13 @@ def _draw_scatter(picked_table: SweepSelection, units: Units) -> FigureParts:
     chosen = picked_table.variables[:1] if picked_table.has_named_axis else picked_table.variables
     panels = []
     for measure, variable in product(picked_table.table.measures, chosen):
-        shown_unit, size = units.find(measure.unit)
+        style = _choose_style(measure, units)
+        shown_unit, size = style.unit, style.size
         values = size * measure.values
         y, x = make_measure_axis(shown_unit, values, np.zeros_like(values)), make_axis(variable)
         drawn_points = zip(variable.values[::stride].tolist(), values[::stride].tolist(), strict=True)
         spots = tuple(Spot(a, b, "", 0) for a, b in drawn_points if np.isfinite(b))
-        panels.append(Panel(x.scaling, y, spots, title=measure.text))
+        panels.append(Panel(x.scaling, y, spots, title=describe_measure(measure.text)))
     notes = [f"one in {stride} of {picked_table.table.n_rows:,} variants is drawn"] if stride > 1 else []
     return panels, [], notes + [note for chosen_variable in chosen if (note := make_axis(chosen_variable).note)]
 
@@ -291,4 +327,4 @@ def _count_variants(table: SweepTable) -> Iterator[str]:
         yield f"{failed.total():,} of {table.n_rows:,} variants could not be solved (not drawn): {codes}"
     for measure in table.measures:
         for word, count in Counter(word for word in measure.missing_reasons if word).items():
-            yield f"{measure.text}: {word} in {count:,} of {table.n_rows:,} variants, not drawn there"
+            yield f"{describe_measure(measure.text)}: {word} in {count:,} of {table.n_rows:,} variants, not drawn there"

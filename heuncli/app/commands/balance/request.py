@@ -14,7 +14,7 @@ class BalanceRequest(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
     save: Annotated[
         str | None,
-        Option(("--save",), "Also draw the orders in this file: chart.svg; .png and .pdf with matplotlib.", "FILE"),
+        Option(("--save",), "Also draw the orders in this file: chart.svg, .png or .pdf.", "FILE"),
     ] = None
     cycle: Annotated[
         str | None, Option(("--cycle",), "Angle that defines the cycle. Default: the driven one.", "J.angle")

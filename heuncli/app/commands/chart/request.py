@@ -14,7 +14,7 @@ class ChartRequest(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
     save: Annotated[
         str | None,
-        Option(("--save",), "Also draw the chart in this file: chart.svg; .png and .pdf with matplotlib.", "FILE"),
+        Option(("--save",), "Also draw the chart in this file: chart.svg, .png or .pdf.", "FILE"),
     ] = None
     methods: Annotated[
         str | None, Option(("--methods",), "Run only these methods; heun methods lists them.", "NAME,...")

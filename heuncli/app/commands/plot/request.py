@@ -35,7 +35,7 @@ class PlotRequest(NamedTuple):
         str | None,
         Option(
             ("--output", "-o"),
-            "Output file: x.svg; .png and .pdf with matplotlib. Default: draw on the terminal.",
+            "Output file: x.svg, x.png or x.pdf. Default: draw on the terminal.",
             "FILE",
         ),
     ] = None

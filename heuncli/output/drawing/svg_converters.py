@@ -1,0 +1,94 @@
+"""Convert SVG to PNG or PDF with a program on PATH: rsvg-convert, resvg, or a Chromium.
+
+The program gets a file in a temporary folder; a Chromium resolves no names. Impure: runs a program.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.shapes import VectorDrawing, to_svg
+
+ZOOM = 2  # PNG pixels for a pixel of the drawing
+MAX_SECONDS = 60.0
+MAGIC = {"png": b"\x89PNG", "pdf": b"%PDF"}  # how a file of a form begins
+BROWSERS = (
+    "chromium", "chromium-browser", "chromium-headless-shell", "google-chrome", "google-chrome-stable", "chrome",
+    "msedge", "microsoft-edge",
+)  # fmt: skip
+BROWSER_OPTIONS = (
+    "--headless", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-background-networking",
+    "--disable-sync", "--disable-component-update", "--disable-dev-shm-usage", "--hide-scrollbars",
+    "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9", "--user-data-dir={folder}/profile",
+)  # fmt: skip
+PAGE = """<!doctype html><meta charset="utf-8"><style>@page{{size:{width}px {height}px;margin:0}}
+html,body{{margin:0}}svg{{display:block}}</style>{svg}"""
+
+
+class Converter(NamedTuple):
+    """A program: its names on PATH, and its options by the form that it writes, with {svg}, {page}, {out} and sizes."""
+
+    names: tuple[str, ...]
+    options: dict[str, tuple[str, ...]]
+
+
+CONVERTERS = (
+    Converter(
+        ("rsvg-convert",),
+        {
+            "png": ("--format=png", f"--zoom={ZOOM}", "--output={out}", "{svg}"),
+            "pdf": ("--format=pdf", "--output={out}", "{svg}"),
+        },
+    ),
+    Converter(("resvg",), {"png": (f"--zoom={ZOOM}", "{svg}", "{out}")}),
+    Converter(
+        BROWSERS,
+        {
+            "png": (
+                *BROWSER_OPTIONS, f"--force-device-scale-factor={ZOOM}", "--window-size={width},{height}",
+                "--screenshot={out}", "{page}",
+            ),
+            "pdf": (*BROWSER_OPTIONS, "--no-pdf-header-footer", "--print-to-pdf={out}", "{page}"),
+        },
+    ),
+)  # fmt: skip
+
+
+def find_converters(form: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the programs on PATH that write a form, the best first, each with its options."""
+    for converter in CONVERTERS:
+        for name in converter.names if form in converter.options else ():
+            path = shutil.which(name)
+            if path is not None:
+                is_root = name in BROWSERS and hasattr(os, "geteuid") and os.geteuid() == 0
+                yield path, (("--no-sandbox",) if is_root else ()) + converter.options[form]
+
+
+def convert(drawing: VectorDrawing, form: str) -> bytes | None:
+    """Convert a drawing with the first program that succeeds; None if none does."""
+    svg = to_svg(drawing)
+    width, height = (str(math.ceil(length)) for length in (drawing.width, drawing.height))
+    for path, options in find_converters(form):
+        with tempfile.TemporaryDirectory() as folder:
+            files = {name: Path(folder, name) for name in ("drawing.svg", "page.html", f"drawing.{form}")}
+            source, page, target = files.values()
+            source.write_text(svg, encoding="utf-8")
+            body = svg.partition("\n")[2]  # without the declaration of XML
+            page.write_text(PAGE.format(width=width, height=height, svg=body), encoding="utf-8")
+            values = {"svg": source, "page": page.as_uri(), "out": target, "folder": folder}
+            words = [option.format(**values, width=width, height=height) for option in options]
+            try:
+                subprocess.run([path, *words], check=True, capture_output=True, timeout=MAX_SECONDS)
+                content = target.read_bytes()
+            except (OSError, subprocess.SubprocessError):
+                continue
+        if content.startswith(MAGIC[form]):
+            return content
+    return None
