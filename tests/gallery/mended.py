@@ -7,16 +7,16 @@ every row has all kinds.
 
 from __future__ import annotations
 
-DIAGRAMS = ("history", "sections", "polar", "modes", "balance", "sweep", "chart")
+PLOTS = ("scene", "history", "sections", "polar", "modes", "balance", "sweep", "chart")
 MENDED: dict[str, tuple[str, ...]] = {
-    "overlap": DIAGRAMS,  # words over words
-    "struck": DIAGRAMS,  # a stroke through words
-    "outside": DIAGRAMS,  # words beyond the picture or the window
-    "empty": DIAGRAMS,  # a third of the picture without ink
-    "path": DIAGRAMS,  # joints.main.force in place of a name
+    "overlap": PLOTS,  # words over words
+    "struck": PLOTS,  # a stroke through words
+    "outside": PLOTS,  # words beyond the picture or the window
+    "empty": PLOTS,  # a third of the picture without ink
+    "path": PLOTS,  # joints.main.force in place of a name
     "noise": ("scene", "history", "sections", "polar", "modes", "balance", "sweep"),  # 3e-15, 0.000219 kN
-    "digits": DIAGRAMS,  # more than five significant ones
-    "folder": DIAGRAMS,  # a folder of the machine that drew it
+    "digits": PLOTS,  # more than five significant ones
+    "folder": PLOTS,  # a folder of the machine that drew it
     "narrow": (),  # a long table on less than half of the sheet
     "number": ("history",),  # a marked number that is no extreme of the run
 }
