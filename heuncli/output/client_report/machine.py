@@ -26,7 +26,7 @@ def make_drawing_parts(data: ReportData) -> list[Part]:
         return [Sentence("No positions are claimed: all output times are past the horizon.")]
     case = f", load case {run.name}" if run.name else ""
     figure = make_scene_figure(FigureSource("", run.study), data.units)
-    return [Drawing(figure._replace(title="", words=()), f"The machine at its worst instant{case}: {figure.words[0]}")]
+    return [Drawing(figure._replace(title="", words=()), f"The machine{case}, {figure.words[0]}")]
 
 
 def make_model_parts(data: ReportData) -> list[Part]:
