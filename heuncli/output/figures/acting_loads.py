@@ -32,7 +32,7 @@ from heuncli.scene.file_format.names import GROUND
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_reader_style
+from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_prefix, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
@@ -295,6 +295,9 @@ def label_loads(
 ) -> Iterator[PlaceLabel]:
     """Label the loads with names and magnitudes, the largest first; those below 1 % of the largest have none."""
     (force, of_force), (length, of_length) = units.find("N"), units.find("m")
+    if loads.distributed and not units.is_chosen("N"):
+        densest = max(float(np.linalg.norm(density)) for own in loads.distributed for density in own.densities)
+        force, of_force = choose_prefix("N", densest / of_length)
     for distributed in loads.distributed:
         tail = _find_tails(distributed, loads, view, size, side)[0][N_DISTRIBUTED_ARROWS // 2]
         values = [
