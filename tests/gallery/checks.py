@@ -201,6 +201,7 @@ def _iter_ink(root: tree.Element) -> Iterator[tuple[float, float]]:
         if element.tag == f"{SVG}text":
             box = _text_box(element)
             yield from ((x, box.top) for x in _even(box.left, box.right))
+            yield from ((box.left, y) for y in _even(box.top, box.bottom))
         elif element.tag == f"{SVG}polyline" and (not is_dark(element) or is_frame(points_of(element))):
             continue
         elif element.tag in (f"{SVG}polyline", f"{SVG}polygon"):

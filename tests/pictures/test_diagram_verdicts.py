@@ -75,12 +75,13 @@ def test_what_no_law_decides_is_drawn_as_open_where_it_is() -> None:
     assert any(note.startswith("open: ") for note in figure.notes)
 
 
-def test_in_letters_hatches_are_dots_and_signs_are_plain() -> None:
+def test_in_letters_there_are_no_hatches_and_signs_are_plain() -> None:
     """Where a terminal shows no braille: the curve alone has its letter, and the minus is one that it has."""
     text = in_letters(drawn(study(HELD_TWICE), "along"), TerminalStyle(80, has_braille=False, has_colours=False))
     shear = text.partition("Q2 [N]")[2].partition("T [")[0].splitlines()
     assert "\N{MINUS SIGN}" not in text
-    assert any("a" in line and "." in line and "+" in line for line in shear)
+    assert any("a" in line and "+" in line for line in shear)
+    assert sum(line.count(".") > 8 for line in shear) <= 1  # the zero line
 
 
 def test_open_all_along_is_told_as_open() -> None:

@@ -15,7 +15,6 @@ PlaceOf = Callable[[float, float], tuple[float, bool]]  # of a number at x, y: w
 SVG = "{http://www.w3.org/2000/svg}"
 SCALE_BAR, ABOVE_BAR = "scale bar: ", 17.0  # title of a scale bar; pixels from it up to the view
 METRES = {"mm": 1e-3, "m": 1.0, "km": 1e3, "in": 0.0254}
-BELOW, BESIDE, BASE = 16.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
 BELOW, BESIDE, BASE = 18.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
 
 

@@ -39,9 +39,9 @@ class Strokes(NamedTuple):
     """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). For hatches, ordinates, symbols.
 
     dash: lengths of strokes and gaps [pixels]
-    is_ghost: whether they are pale: of another instant than the one that is shown
     is_hatch: whether they fill an area, thin and pale
     is_faint: whether they are lines of a grid
+    is_ghost: whether they are pale: of another instant than the one that is shown
     name: title shown to readers
     """
 
@@ -49,9 +49,9 @@ class Strokes(NamedTuple):
     pen: int | None = None
     width: float = 0.7
     dash: tuple[float, ...] = ()
-    is_ghost: bool = False
     is_hatch: bool = False
     is_faint: bool = False
+    is_ghost: bool = False
     name: str = ""
 
 

@@ -135,7 +135,8 @@ def _draw_parts(
             yield Area(points, colour, name=name)
         else:
             if part.fill:
-                yield Area(points, mix_with_white(colour, style.TINT_SHARE) if part.fill == "tint" else style.WHITE)
+                fill = mix_with_white(colour, style.TINT_SHARE) if part.fill == "tint" else style.WHITE
+                yield Area(points, fill)
             yield Line((*points, points[0]) if part.is_closed else points, colour, style.SYMBOL_WIDTH, name=name)
         name = ""  # only once
 

@@ -13,15 +13,14 @@ from heuncli.output.drawing.label_placement import WordBox, WordField
 from heuncli.output.drawing.pens import find_colour, mix_with_white
 from heuncli.output.drawing.scales import PanelBox
 from heuncli.output.drawing.shapes import Line, Mark, Shape, Text
-from heuncli.output.drawing.style import BASE_FACTOR, GREY, HEIGHT_FACTOR, SMALL_SIZE
+from heuncli.output.drawing.style import BASE_FACTOR, GHOST_LABEL, GREY, HEIGHT_FACTOR, SMALL_SIZE
 from heuncli.output.drawing.words import estimate_width
 
 N_DIRECTIONS = 16  # in which places are tried
 DISTANCES = (9.0, 14.0, 20.0, 28.0, 38.0)  # pixels from the place to the words
 MAX_UNLINKED_DISTANCE = 18.0  # pixels up to which there is no line to the place
 DISTANCE_COST = 0.12  # cost of a pixel of distance, in cells of a curve
-CIRCLE_SIZE = 7.5  # pixels, half the size of the circle around a number
-GHOST_SHARE = 0.6  # of its colour in the label of another instant
+CIRCLE_SIZE = 8.5  # pixels, half the size of the circle around a number
 
 
 def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
@@ -43,7 +42,7 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
             lines.append(Line(((x, y), nearest), GREY, 0.6))
         colour, base = find_colour(label.pen), place.top + BASE_FACTOR * SMALL_SIZE
         if label.is_ghost:
-            colour = mix_with_white(colour, GHOST_SHARE)
+            colour = mix_with_white(colour, GHOST_LABEL)
         if label.number:
             middle = 0.5 * (place.left + place.right), 0.5 * (place.top + place.bottom)
             texts.append(Mark(*middle, "circle", colour, False, CIRCLE_SIZE))

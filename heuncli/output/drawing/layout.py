@@ -14,7 +14,7 @@ from heuncli.output.drawing.labels import place_labels
 from heuncli.output.drawing.pens import find_pen
 from heuncli.output.drawing.scales import PanelBox
 from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, VectorDrawing
-from heuncli.output.drawing.space_key import choose_sheet_width, compute_view_width, lay_out_key
+from heuncli.output.drawing.space_key import choose_sheet_width, lay_out_key
 from heuncli.output.drawing.ticks import choose_ticks
 from heuncli.output.drawing.words import drop_close_marks, estimate_width, make_field, place_words
 
@@ -96,22 +96,23 @@ def _lay_out_row(
     shapes: list[Shape] = []
     y = top
     for panel, (left, right) in zip(row, cells, strict=True):
-        begin = left if n_columns > 1 else style.LEFT
+        begin = left if n_columns > 1 else style.LEFT if panel.key is None else style.INDENT
         head_shapes, below = _lay_out_head(panel, begin, top, right)
         shapes += head_shapes
         y = max(y, below)
     bottom, omitted = y, list[str]()
     for panel, (left, right) in zip(row, cells, strict=True):
-        edges = (style.LEFT, width - style.RIGHT) if n_columns == 1 else (left, right)
-        edges = (0.0, width) if n_columns == 1 and panel.key is not None else edges
+        edges = (left, right) if n_columns > 1 else (style.LEFT, width - style.RIGHT)
+        if panel.key is not None:
+            edges = (style.INDENT, width - style.INDENT)
         box = _make_box(panel, y, *edges)
         panel_shapes, without_words = _lay_out_panel(panel, box, WordBox(left, box.top, right, box.bottom))
         shapes += panel_shapes
         omitted += without_words
         below = box.bottom + (style.AXIS_SPACE if panel.x.shown_label else style.PANEL_SPACE)
         if panel.key is not None:
-            pixels_per_unit = (box.right - box.left) / (panel.x.high - panel.x.low)
-            key_shapes, below = lay_out_key(panel.key, pixels_per_unit, box.bottom, width)
+            scale = (box.right - box.left) / (panel.x.high - panel.x.low)
+            key_shapes, below = lay_out_key(panel.key, scale, box.bottom, width)
             shapes += key_shapes
         bottom = max(bottom, below)
     return bottom, shapes, omitted
@@ -140,11 +141,7 @@ def _lay_out_head(panel: Panel, left: float, top: float, right: float) -> tuple[
 def _make_box(panel: Panel, top: float, left: float, right: float) -> PanelBox:
     """Return the field of a panel below a height; with equal scales it is as wide as needed, in the middle."""
     height = panel.height
-    if panel.key is not None:
-        middle, view_width = 0.5 * (left + right), compute_view_width(panel, right - left)
-        left, right = middle - 0.5 * view_width, middle + 0.5 * view_width
-        height = view_width * (panel.y.high - panel.y.low) / (panel.x.high - panel.x.low)
-    elif panel.has_equal_scales:
+    if panel.has_equal_scales:
         x_span, y_span = panel.x.high - panel.x.low, panel.y.high - panel.y.low
         scale = min((right - left) / x_span, height / y_span)
         middle = (left + right) / 2.0

@@ -105,9 +105,9 @@ def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str
     lines = [*(head for head in heads if head)]
     lines += _draw_legend([(name, number, "") for name, number in panel.legend], style)
     if panel.is_bare:
-        indent = "" if panel.has_equal_scales else " " * (LABEL_WIDTH + 2)  # as panels with axes on the same axis
         scale = columns / (panel.x.high - panel.x.low)
         explained = format_key(panel.key, scale, style) if panel.key is not None else []
+        indent = "" if panel.has_equal_scales else " " * (LABEL_WIDTH + 2)  # as panels with axes on the same axis
         drawn = [f"{indent}{line}".rstrip() for line in canvas.format_lines()]
         return lines + drawn + explained + key, omitted
     labels_above = {

@@ -9,14 +9,22 @@ from heuncli.base.text_safety import escape
 from heuncli.output.drawing.figure import Figure, KeyArrow, Panel, SpaceKey
 from heuncli.output.drawing.pens import find_colour
 from heuncli.output.drawing.shapes import Area, Line, Shape, Text
-from heuncli.output.drawing.style import ARROW_HEAD, ARROW_WIDTH, BLACK, GREY, SMALL_SIZE
+from heuncli.output.drawing.style import (
+    ARROW_HEAD,
+    ARROW_WIDTH,
+    BLACK,
+    GREY,
+    INDENT,
+    LINE_HEIGHT,
+    SMALL_SIZE,
+    SYMBOL_WIDTH,
+)
 from heuncli.output.drawing.words import estimate_width
 
-INDENT = 20.0  # pixels at both sides of the sheet
 MIN_WIDTH = 420.0  # pixels of a sheet, for its title and key
 AXES_LENGTH, GRAVITY_LENGTH = 20.0, 26.0  # pixels of a unit vector
 AXES_WIDTH, GRAVITY_WIDTH = 64.0, 42.0  # pixels of their places in the key
-KEY_HEIGHT, LINE_HEIGHT = 52.0, 16.0
+KEY_HEIGHT = 56.0  # pixels
 GAP = 22.0  # pixels between the entries of the key
 MAX_COLUMNS = 4  # of the names of numbers
 
@@ -42,7 +50,7 @@ def lay_out_key(key: SpaceKey, pixels_per_unit: float, top: float, width: float)
         a, b = (GRAVITY_LENGTH * part for part in key.gravity)
         middle_x, middle_y = x + 0.4 * GRAVITY_WIDTH, top + 0.5 * KEY_HEIGHT
         shapes += draw_arrow(middle_x - 0.5 * a, middle_y + 0.5 * b, a, -b, GREY, "gravity")
-        shapes.append(Text(middle_x + 7.0, middle_y + 4.0, "g", SMALL_SIZE, colour=GREY))
+        shapes.append(Text(middle_x + 7.0, middle_y + 4.5, "g", SMALL_SIZE, colour=GREY))
         x += GRAVITY_WIDTH
     left, y = x, top + LINE_HEIGHT
     length, words = pixels_per_unit * key.bar[0], key.bar[1]
@@ -82,22 +90,22 @@ def _draw_axes(key: SpaceKey, left: float, top: float) -> Iterator[Shape]:
             continue
         yield from draw_arrow(x, y, a, b, BLACK, f"axis: {name}")
         off = 7.0 / length
-        yield Text(x + a * (1.0 + off), y + b * (1.0 + off) + 4.0, name, SMALL_SIZE, "middle")
+        yield Text(x + a * (1.0 + off), y + b * (1.0 + off) + 4.5, name, SMALL_SIZE, "middle")
 
 
 def _draw_bar(x: float, y: float, length: float, words: str) -> Iterator[Shape]:
     """Draw a scale bar between two strokes, with its words."""
     for end in (x, x + length):
-        yield Line(((end, y - 4.0), (end, y + 4.0)), BLACK, 1.2)
-    yield Line(((x, y), (x + length, y)), BLACK, 1.2, name=f"scale bar: {words}")
-    yield Text(x + length + 6.0, y + 4.0, words, SMALL_SIZE)
+        yield Line(((end, y - 4.0), (end, y + 4.0)), BLACK, SYMBOL_WIDTH)
+    yield Line(((x, y), (x + length, y)), BLACK, SYMBOL_WIDTH, name=f"scale bar: {words}")
+    yield Text(x + length + 6.0, y + 4.5, words, SMALL_SIZE)
 
 
 def _draw_key_arrow(arrow: KeyArrow, x: float, y: float, length: float, text: str) -> Iterator[Shape]:
     """Draw an arrow of a key with its words."""
     colour = find_colour(arrow.pen)
     yield from draw_arrow(x, y, length, 0.0, colour, text, is_double=arrow.is_double)
-    yield Text(x + length + 6.0, y + 4.0, text, SMALL_SIZE, colour=colour)
+    yield Text(x + length + 6.0, y + 4.5, text, SMALL_SIZE, colour=colour)
 
 
 def draw_arrow(
@@ -119,7 +127,7 @@ def draw_arrow(
     head = min(ARROW_HEAD, (0.4 if is_double else 0.6) * length)
     tips = [length, length - head] if is_double else [length]
     back = tips[-1] - head
-    yield Line(((x, y), (x + back * a, y + back * b)), colour, width, name=name)
+    yield Line(((x, y), (x + back * a, y + back * b)), colour, ARROW_WIDTH, name=name)
     for k, tip in enumerate(tips):
         root_x, root_y, side = x + (tip - head) * a, y + (tip - head) * b, 0.4 * head
         corners = (

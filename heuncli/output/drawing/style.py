@@ -34,12 +34,14 @@ MARK_SIZE, POINT_SIZE = 3.2, 1.8  # half the size of a mark, and of a single poi
 MARK_EDGE, SIGN_SIZE = 1.2, 8.0  # the second half the disc of a sign
 ARROW_WIDTH, ARROW_HEAD = 1.8, 9.0
 HATCH_STEP = 9.0  # between the lines of a blank area
+LINK_WIDTH, ARM_WIDTH, RIM_WIDTH, OUTLINE_WIDTH = 3.0, 2.0, 1.3, 0.7  # of bodies: lines, by shapes, on shapes, edges
+DASH_DOT = (9.0, 3.0, 2.0, 3.0)  # strokes and gaps of pitch circles
 
 # Colours; opacities of areas.
 BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#d9d9d9", "#ffffff"
 BAND_OPACITY, FILL_OPACITY, BAR_OPACITY = 0.12, 0.14, 0.85
 TINT_SHARE, LIGHT_SHARE = 0.18, 0.07  # of its colour in the fill of a body, and of a large one
-GHOST_SHARE = 0.3  # of its colour in what is of another instant
+GHOST_SHARE, GHOST_LABEL = 0.3, 0.6  # of its colour in what is of another instant, and in its label
 HATCH_SHARE = 0.4  # of the colour in the lines of a hatch, the rest is white
 # From low to high, dark to light, which can be told apart in grey as well.
 SHADE_COLOURS = ((0x1F, 0x2A, 0x5A), (0x1F, 0x7A, 0x8C), (0x8F, 0xB9, 0x6A), (0xFD, 0xE7, 0x9A))

@@ -32,7 +32,7 @@ from heuncli.scene.file_format.names import GROUND
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_reader_style
+from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_prefix, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
@@ -295,6 +295,9 @@ def label_loads(
 ) -> Iterator[PlaceLabel]:
     """Label the loads with names and magnitudes, the largest first; those below 1 % of the largest have none."""
     (force, of_force), (length, of_length) = units.find("N"), units.find("m")
+    if loads.distributed and not units.is_chosen("N"):
+        densest = max(float(np.linalg.norm(density)) for own in loads.distributed for density in own.densities)
+        force, of_force = choose_prefix("N", densest / of_length)
     for distributed in loads.distributed:
         tail = _find_tails(distributed, loads, view, size, side)[0][N_DISTRIBUTED_ARROWS // 2]
         values = [
@@ -308,13 +311,13 @@ def label_loads(
     moment_texts = {(p.kind, p.name): moments[id(p)] for p in loads.loads if id(p) in moments}
     with_force = {(p.kind, p.name) for p in loads.loads if id(p) in forces}
     for pull in sorted(loads.loads, key=lambda load: -load.magnitude / loads.find_largest(moments=load.is_moment)):
-        text, key = (moments if pull.is_moment else forces).get(id(pull)), (pull.kind, pull.name)
-        if text is None or pull.is_reaction or (pull.is_moment and key in with_force):
+        value, key = (moments if pull.is_moment else forces).get(id(pull)), (pull.kind, pull.name)
+        if value is None or pull.is_reaction or (pull.is_moment and key in with_force):
             continue
         place = size * view.project(pull.place)
         faces = pull.is_moment and abs(float(view.compute_depth(pull.vector))) >= MIN_FACING * pull.magnitude
         tip = place if faces else place + scales.find(pull) * view.project(pull.vector)
-        both = [text, moment_texts.pop(key)] if not pull.is_moment and key in moment_texts else [text]
+        both = [value, moment_texts.pop(key)] if not pull.is_moment and key in moment_texts else [value]
         name = describe_object(pull.kind, pull.name, labels)
         yield PlaceLabel(*to_pair(tip), f"{name} {' / '.join(both)}", name, pull.pen)
 

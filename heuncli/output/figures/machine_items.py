@@ -16,6 +16,7 @@ from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
+from heuncli.output.drawing.style import ARM_WIDTH, DASH_DOT, LINK_WIDTH, OUTLINE_WIDTH, RIM_WIDTH, THIN_WIDTH
 from heuncli.output.figures.letter_names import iter_letters
 from heuncli.output.machine_geometry.joint_symbols import (
     find_guided_actuators,
@@ -43,8 +44,6 @@ DRIVE_PEN, LOAD_PEN = 3, 3
 MIN_AXIS_LENGTH = 0.35  # visible length of a unit axis; a shorter one points to the viewer
 MAX_NAMED = 60  # bodies and joints; with more of them there are no names
 MAX_CENTRES = 40  # bodies; with more of them no centres of mass are marked
-BAR, ARM, RIM, PITCH, THIN = 3.0, 2.0, 1.3, 1.0, 0.7  # pixels: bodies of lines, lines by shapes, on them, later ones
-DASH_DOT = (9.0, 3.0, 2.0, 3.0)  # pixels: of pitch circles
 LARGE_SIDE, LARGE_AREA = 0.5, 0.25  # of the machine's side and area: a larger part is light, and behind the others
 SAME_DEPTH = 1e-6  # share of the figure's depth: closer pieces are equally far
 DOWN, UP = (0.0, -1.0), (0.0, 1.0)
@@ -172,7 +171,7 @@ def draw_bodies(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> l
     pieces.sort(key=order)
     circles = [] if thin else _draw_pitch_circles(posed_machine, k)
     paths = (posed_machine.project(GROUND, path, k) for path in posed_machine.machine.paths if not thin)
-    path_strokes: list[Item] = [Strokes(np.stack([ends[:-1], ends[1:]], axis=1), None, THIN) for ends in paths]
+    path_strokes: list[Item] = [Strokes(np.stack([ends[:-1], ends[1:]], axis=1), None, OUTLINE_WIDTH) for ends in paths]
     return [*path_strokes, *(item for piece in pieces for item in piece.items), *circles]
 
 
@@ -189,8 +188,8 @@ def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int, thin: 
         lines: tuple[Item, ...] = ()
         if not thin:
             edges = select_visible_edges(solid, posed_machine.poses.orientations[body.name][k], posed_machine.view)
-            lines = (Strokes(posed_machine.project(body.name, edges, k), pen, THIN, is_ghost=is_large),)
-        width = THIN if thin or is_large else 1.3
+            lines = (Strokes(posed_machine.project(body.name, edges, k), pen, OUTLINE_WIDTH, is_ghost=is_large),)
+        width = OUTLINE_WIDTH if thin or is_large else RIM_WIDTH
         shape = Polygon(body.name, contour, pen, is_opaque=not thin, width=width, is_ghost=thin, is_light=is_large)
         yield DrawnPiece(-np.inf if is_large else depth, compute_area(contour), (shape, *lines))
     middle = max((posed_machine.find_depth(body.name, own.corners, k) for own in body.surfaces), default=-np.inf)
@@ -203,8 +202,16 @@ def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int, thin: 
             ends = posed_machine.project(body.name, line, k)
             item: Item = Link(*to_pair(ends[0]), *to_pair(ends[-1]), "bar", pen, body.name)
             if thin or not is_link:
-                width = RIM if number >= len(body.bars) else ARM if posed_machine.solids[body.name] else BAR
-                item = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width, is_ghost=thin)
+                width = (
+                    RIM_WIDTH
+                    if number >= len(body.bars)
+                    else ARM_WIDTH
+                    if posed_machine.solids[body.name]
+                    else LINK_WIDTH
+                )
+                item = Strokes(
+                    np.stack([ends[:-1], ends[1:]], axis=1), pen, OUTLINE_WIDTH if thin else width, is_ghost=thin
+                )
             yield DrawnPiece(depth, 0.0, (item,))
 
 
@@ -213,7 +220,7 @@ def _draw_pitch_circles(posed_machine: PosedMachine, k: int) -> Iterator[Strokes
     for body in posed_machine.machine.bodies:
         for circle in body.pitch_circles:
             ends = posed_machine.project(body.name, circle, k)
-            yield Strokes(np.stack([ends[:-1], ends[1:]], axis=1), posed_machine.pens[body.name], PITCH, DASH_DOT)
+            yield Strokes(np.stack([ends[:-1], ends[1:]], axis=1), posed_machine.pens[body.name], THIN_WIDTH, DASH_DOT)
     for mesh in posed_machine.machine.pitch_points:
         place = to_pair(posed_machine.project(mesh.carrier, mesh.point, k))
         yield Symbol(*place, "pitch point", (1.0, 0.0), None, f"{mesh.name}: pitch point")
@@ -231,10 +238,21 @@ def _draw_mesh(posed_machine: PosedMachine, body: BodyGeometry, solid: SolidEdge
     items: list[Item] = [
         Polygon(body.name, np.concatenate([contour, *return_path]), pen, is_opaque=not thin, has_outline=False)
     ]
-    items.append(Strokes(np.concatenate([flat[:0].reshape(0, 2, 2), *rims]), pen, THIN if thin else 1.3, is_ghost=thin))
+    items.append(
+        Strokes(
+            np.concatenate([flat[:0].reshape(0, 2, 2), *rims]),
+            pen,
+            OUTLINE_WIDTH if thin else RIM_WIDTH,
+            is_ghost=thin,
+        )
+    )
     if not thin:
         items.append(
-            Strokes(posed_machine.project(body.name, select_visible_edges(solid, R, posed_machine.view), k), pen, THIN)
+            Strokes(
+                posed_machine.project(body.name, select_visible_edges(solid, R, posed_machine.view), k),
+                pen,
+                OUTLINE_WIDTH,
+            )
         )
     depth = float(
         posed_machine.view.compute_depth(posed_machine.poses.locate_points(body.name, solid.surface.corners, k)).mean()
@@ -351,7 +369,7 @@ def draw_force_line(posed_machine: PosedMachine, look: LineGeometry, k: int, *, 
 def draw_belt_strands(posed_machine: PosedMachine, k: int) -> Iterator[Strokes]:
     """Draw the strands of belts."""
     for belt in posed_machine.machine.belts:
-        yield Strokes(posed_machine.project(belt.carrier, belt.strands, k), LOAD_PEN, ARM)
+        yield Strokes(posed_machine.project(belt.carrier, belt.strands, k), LOAD_PEN, ARM_WIDTH)
 
 
 def _draw_bushing(posed_machine: PosedMachine, look: LineGeometry, k: int, thin: bool) -> list[Item]:
@@ -359,7 +377,7 @@ def _draw_bushing(posed_machine: PosedMachine, look: LineGeometry, k: int, thin:
     displaced.
     """
     first, second = (posed_machine.project(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
-    displacement_line = Strokes(np.array([[first, second]]), LOAD_PEN, THIN, is_ghost=thin)
+    displacement_line = Strokes(np.array([[first, second]]), LOAD_PEN, OUTLINE_WIDTH, is_ghost=thin)
     if thin:
         return [displacement_line]
     items: list[Item] = [displacement_line]
@@ -377,7 +395,7 @@ def _draw_link(
     """Draw the link between two points, with the ground at those that are fixed to it."""
     first, second = (posed_machine.project(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
     if thin:
-        return [Strokes(np.array([[first, second]]), pen, THIN, is_ghost=True)]
+        return [Strokes(np.array([[first, second]]), pen, OUTLINE_WIDTH, is_ghost=True)]
     items: list[Item] = []
     for body, place, other in ((look.a, first, second), (look.b, second, first)):
         if body == GROUND:

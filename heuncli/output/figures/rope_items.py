@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from heuncli.output.drawing.figure import PlaceLabel, Strokes, Symbol
-from heuncli.output.figures.machine_items import ARM, LOAD_PEN, THIN, PosedMachine, to_pair
+from heuncli.output.drawing.style import ARM_WIDTH, OUTLINE_WIDTH
+from heuncli.output.figures.machine_items import LOAD_PEN, PosedMachine, to_pair
 from heuncli.output.machine_geometry.ropes import iter_rope_lines
 from heuncli.results.results import Array
 
@@ -19,7 +20,12 @@ def draw_ropes(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> It
     for rope in posed_machine.machine.ropes:
         for line in iter_rope_lines(rope, posed_machine.poses, k):
             flat = posed_machine.size * posed_machine.view.project(line)
-            yield Strokes(np.stack([flat[:-1], flat[1:]], axis=1), LOAD_PEN, THIN if thin else ARM)
+            yield Strokes(
+                np.stack([flat[:-1], flat[1:]], axis=1),
+                LOAD_PEN,
+                OUTLINE_WIDTH if thin else ARM_WIDTH,
+                is_ghost=thin,
+            )
 
 
 def draw_marks(posed_machine: PosedMachine, k: int) -> Iterator[Symbol]:
