@@ -44,11 +44,9 @@ def _make_figure(data: ReportData, runs: Sequence[ReportedRun], paths: Sequence[
     names = [run.name for run in runs] if len(runs) > 1 else [""]
     sources = [FigureSource(name, run.study) for name, run in zip(names, runs, strict=True)]
     figures = [make_history(sources, [path], data.units) for path in paths]
-    panels = [figure.panels[0]._replace(title=path) for figure, path in zip(figures, paths, strict=True)]
+    panels = [figure.panels[0] for figure in figures]
     notes = dict.fromkeys(note for figure in figures for note in figure.notes)
-    pens = [pen for _, pen in figures[0].legend]
-    legend = list(zip(names, pens, strict=True)) if len(runs) > 1 else []
-    return Figure("", (), share_x_axis(panels), legend, list(notes))
+    return Figure("", (), share_x_axis(panels), (), list(notes))
 
 
 def _choose_paths(data: ReportData) -> Iterator[tuple[str, str]]:
