@@ -134,7 +134,7 @@ def test_the_table_draws_the_orders_in_letters(heun: Heun, crank: str) -> None:
 def test_a_picture_is_saved(heun: Heun, crank: str, folder: Path) -> None:
     assert heun("balance", crank, "--save", "orders.svg", "-o", "orders.json").returncode == 0
     drawn = (folder / "orders.svg").read_text()
-    assert drawn.startswith("<?xml") and "inertia force on the foundation" in drawn and ">[N]<" in drawn
+    assert drawn.startswith("<?xml") and "Inertia force on the foundation" in drawn and ">force [kN]<" in drawn
     assert json.loads((folder / "orders.json").read_text())["cycle"]["turns"] == 1
 
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 PLOTS = ("scene", "history", "sections", "polar", "modes", "balance", "sweep", "chart")
 MENDED: dict[str, tuple[str, ...]] = {
-    "overlap": ("scene", "page", "report"),  # words over words
-    "struck": ("scene",),  # a stroke through words
-    "outside": ("scene", "page", "report"),  # words beyond the picture or the window
-    "empty": ("scene",),  # a third of the picture without ink
-    "path": ("scene", "page"),  # joints.main.force in place of a name
-    "noise": ("scene", "page", "history", "sections", "polar", "modes", "balance", "sweep"),  # 3e-15, 0.000219 kN
-    "digits": ("scene", "page"),  # more than five significant ones
-    "folder": ("scene", "page", "report"),  # a folder of the machine that drew it
+    "overlap": (*PLOTS, "page", "report"),  # words over words
+    "struck": PLOTS,  # a stroke through words
+    "outside": (*PLOTS, "page", "report"),  # words beyond the picture or the window
+    "empty": PLOTS,  # a third of the picture without ink
+    "path": (*PLOTS, "page"),  # joints.main.force in place of a name
+    "noise": (*PLOTS[:-1], "page"),  # 3e-15, 0.000219 kN
+    "digits": (*PLOTS, "page"),  # more than five significant ones
+    "folder": (*PLOTS, "page", "report"),  # a folder of the machine that drew it
     "narrow": ("report",),  # a long table on less than half of the sheet
     "number": ("history",),  # a marked number that is no extreme of the run
 }

@@ -105,7 +105,7 @@ def test_points_where_variants_are_random(heun: Heun, swept: Heun, file: str) ->
 def test_bars_over_names(heun: Heun) -> None:
     axles = str(SPECS / "axle_loads.yaml")
     heun("sweep", axles, "case=all", "--measure", "joints.front.force.z", "-q", "-o", "s.csv")
-    (panel,), words = drawn(heun, "s.csv")
+    (panel,), words = drawn(heun, "s.csv", "--units", "N")
     with Path("s.csv").open() as text:
         rows = [(row[1], float(row[2])) for row in list(csv.reader(text))[1:]]
     bars = panel.areas("joints.front.force.z")

@@ -45,7 +45,7 @@ def test_it_is_xml_with_its_text_as_text() -> None:
     texts = [e.text or "" for e in root.iter(f"{SVG}text")]
     assert root.findtext(f"{SVG}title") == "A scene: speed against accuracy" == texts[0]
     assert set(METHODS) <= set(texts) and any("agree: motion to 1e-13" in t for t in texts)
-    assert "1e-6" in texts and "10" in texts and "processor time of the integration only [ms]" in texts
+    assert "1e−6" in texts and "10" in texts and "processor time of the integration only [ms]" in texts
 
 
 def test_nothing_comes_from_outside() -> None:
@@ -121,7 +121,7 @@ def test_below_the_table_letters_stand_where_time_and_error_say() -> None:
     lines = draw_figure(make_panels(made)[0].figure).splitlines()
     assert lines[0] == "a A   b B   c Euler" and max(map(len, lines)) <= 100
     row = {line.split("│")[0].strip(): line.partition("│")[2] for line in lines if "│" in line}
-    assert row["0.0001"].index("a") < row["1e-8"].index("a") < row["0.0001"].index("b")
+    assert row["0.0001"].index("a") < row["1e−8"].index("a") < row["0.0001"].index("b")
     assert "c" in row["× 1"] and "[ms]" in lines[-1] and "Judged" not in "".join(lines)
 
 

@@ -169,11 +169,11 @@ def _make_panels(
     length = max(bar.bar.length for bar in bars)
     style = choose_reader_style("m", length, units)
     x = Scaling(f"s [{style.unit}]", *choose_ends(0.0, style.size * length, margin=0.02))
-    lists = _list_attachments(bars)
-    for source_name, attachments in lists.items():
-        title = f"{name}: {source_name}" if len(lists) > 1 else name * has_title
-        yield make_sketch(attachments, x, length, style.size, style.unit, title)
-    places = sorted({style.size * attachment.s for attachments in lists.values() for attachment in attachments})
+    sketched = _list_distinct_bars(bars)
+    for source_name, bar in sketched.items():
+        title = f"{name}: {source_name}" if len(sketched) > 1 else name * has_title
+        yield make_sketch(bar.attachments, x, bar.length, style.size, style.unit, title)
+    places = sorted({style.size * attachment.s for bar in sketched.values() for attachment in bar.attachments})
     for k, quantity in enumerate(quantities):
         panel = make_panel(quantity, bars, units, style, is_inverted=tension_side and quantity in INVERTED)
         words = WORDS[quantity].removesuffix(f" {quantity}")
@@ -185,12 +185,16 @@ def _make_panels(
         yield panel._replace(x=x if is_last else x._replace(hides_label=True), items=items, title=title)
 
 
-def _list_attachments(bars: Sequence[BarCurves]) -> dict[str, list[Attachment]]:
-    """List what is attached along the bars by the names of their runs; once if it is the same in all."""
+def _list_distinct_bars(bars: Sequence[BarCurves]) -> dict[str, WholeBar]:
+    """List the bars by the names of their runs; once if what is attached to them is the same in all."""
     distinct_bars = {id(bar.bar): bar for bar in reversed(bars)}
-    lists = {bar.name.partition(INSTANT_SEPARATOR)[0]: bar.bar.attachments for bar in reversed(distinct_bars.values())}
-    first_name, first = next(iter(lists.items()))
-    return {first_name: first} if all(_are_same(first, other) for other in lists.values()) else lists
+    named = {bar.name.partition(INSTANT_SEPARATOR)[0]: bar.bar for bar in reversed(distinct_bars.values())}
+    name, first = next(iter(named.items()))
+    are_same = all(
+        np.isclose(first.length, other.length) and _are_same(first.attachments, other.attachments)
+        for other in named.values()
+    )
+    return {name: first} if are_same else named
 
 
 def _are_same(first: Sequence[Attachment], other: Sequence[Attachment]) -> bool:
