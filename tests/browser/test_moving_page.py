@@ -100,7 +100,18 @@ def test_every_control_is_reached_by_the_tabulator_and_has_a_name(browser: Chrom
         for _ in range(len(controls) + 3):
             tab.press("Tab")
             reached.add(tab.evaluate("document.activeElement.id || document.activeElement.tagName"))
-        assert {"machine", "play", "time", "speed", "section", "load", "path", "more", "tab-summary", "tab-all"} <= reached
+        assert {
+            "machine",
+            "play",
+            "time",
+            "speed",
+            "section",
+            "load",
+            "path",
+            "more",
+            "tab-summary",
+            "tab-all",
+        } <= reached
 
 
 def test_the_machine_is_turned_shifted_and_shown_as_at_the_start(browser: Chromium, double: Path) -> None:
