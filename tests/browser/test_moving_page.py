@@ -10,7 +10,7 @@ import pytest
 
 from tests.shared.chromium import Chromium, Tab
 from tests.shared.folders import SPECS
-from tests.shared.shown_numbers import FRAME, frames, numbers, to_frame
+from tests.shared.shown_numbers import FRAME, choose, frames, numbers, to_frame
 
 Pages = Callable[..., Path]
 OUTSIDE = """[...document.querySelectorAll("button, input, select, canvas")].filter(e => e.offsetParent).filter(e => {
@@ -221,15 +221,6 @@ def test_arrows_are_drawn_or_not_and_grow(browser: Chromium, double: Path) -> No
         assert tab.seen("#machine").png != arrows.png
         choose(tab, "reactions", "none")
         assert tab.seen("#machine").marked < arrows.marked
-
-
-def choose(tab: Tab, name: str, option: str) -> None:
-    """Choose an option of a list by its words."""
-    tab.evaluate(f"""(list => {{
-      list.value = [...list.options].find(option => option.textContent === "{option}").value;
-      list.dispatchEvent(new Event("change", {{bubbles: true}}));
-    }})(document.getElementById("{name}"))""")
-    tab.drawn()
 
 
 def test_one_instant_has_nothing_to_play(browser: Chromium, page: Pages) -> None:

@@ -9,12 +9,11 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from tests.browser.test_moving_page import choose
 from tests.gallery.contents import PAGES, find_spec
 from tests.shared.chromium import Chromium
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import data_of
-from tests.shared.shown_numbers import FRAME, SIZES, to_frame
+from tests.shared.shown_numbers import FRAME, SIZES, choose, to_frame
 
 Pages = Callable[..., Path]
 MOST_BYTES = 300_000

@@ -85,9 +85,9 @@ def find_programs(form: FilmFormat) -> FilmPrograms:
     return FilmPrograms(browser, encoder)
 
 
-def make_film(form: FilmFormat, at: float | None) -> Film:
+def make_film(form: FilmFormat, instant: float | None) -> Film:
     """Make what the page is told to draw."""
-    return Film(form.kind, form.width, form.height, form.rate, at)  # type: ignore[arg-type]
+    return Film(form.kind, form.width, form.height, form.rate, instant)  # type: ignore[arg-type]
 
 
 def draw_film(page: str, form: FilmFormat, programs: FilmPrograms, ending: str) -> bytes:
