@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.shared.chromium import Chromium, Tab
+from tests.shared.chromium import Chromium
 from tests.shared.folders import SPECS
 from tests.shared.shown_numbers import FRAME, choose, frames, numbers, to_frame
 
