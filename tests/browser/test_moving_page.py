@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.shared.chromium import Chromium, Tab
+from tests.shared.chromium import Chromium
 from tests.shared.folders import SPECS
-from tests.shared.shown_numbers import FRAME, frames, numbers, to_frame
+from tests.shared.shown_numbers import FRAME, choose, frames, numbers, to_frame
 
 Pages = Callable[..., Path]
 OUTSIDE = """[...document.querySelectorAll("button, input, select, canvas")].filter(e => e.offsetParent).filter(e => {
@@ -100,7 +100,18 @@ def test_every_control_is_reached_by_the_tabulator_and_has_a_name(browser: Chrom
         for _ in range(len(controls) + 3):
             tab.press("Tab")
             reached.add(tab.evaluate("document.activeElement.id || document.activeElement.tagName"))
-        assert {"machine", "play", "time", "speed", "section", "load", "path", "more", "tab-summary", "tab-all"} <= reached
+        assert {
+            "machine",
+            "play",
+            "time",
+            "speed",
+            "section",
+            "load",
+            "path",
+            "more",
+            "tab-summary",
+            "tab-all",
+        } <= reached
 
 
 def test_the_machine_is_turned_shifted_and_shown_as_at_the_start(browser: Chromium, double: Path) -> None:
@@ -210,15 +221,6 @@ def test_arrows_are_drawn_or_not_and_grow(browser: Chromium, double: Path) -> No
         assert tab.seen("#machine").png != arrows.png
         choose(tab, "reactions", "none")
         assert tab.seen("#machine").marked < arrows.marked
-
-
-def choose(tab: Tab, name: str, option: str) -> None:
-    """Choose an option of a list by its words."""
-    tab.evaluate(f"""(list => {{
-      list.value = [...list.options].find(option => option.textContent === "{option}").value;
-      list.dispatchEvent(new Event("change", {{bubbles: true}}));
-    }})(document.getElementById("{name}"))""")
-    tab.drawn()
 
 
 def test_one_instant_has_nothing_to_play(browser: Chromium, page: Pages) -> None:

@@ -82,3 +82,12 @@ def largest_of_run(results: dict[str, Any], path: str) -> float:
         found = found[int(key)] if isinstance(found, list) else found[key]
     block = found[last] if isinstance(found, dict) else found
     return float(np.nanmax(np.abs(np.array(block, dtype=np.float64)), initial=0.0))
+
+
+def choose(tab: Tab, name: str, option: str) -> None:
+    """Choose an option of a list by its words."""
+    tab.evaluate(f"""(list => {{
+      list.value = [...list.options].find(option => option.textContent === "{option}").value;
+      list.dispatchEvent(new Event("change", {{bubbles: true}}));
+    }})(document.getElementById("{name}"))""")
+    tab.drawn()

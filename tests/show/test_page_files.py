@@ -99,7 +99,7 @@ def test_the_policy_lets_run_what_stands_in_the_page_and_nothing_else() -> None:
 def test_no_element_loads_anything() -> None:
     elements = PageElements(assemble_page("", {})).found
     assert not [tag for tag, given in elements if "src" in given or any(key.startswith("on") for key in given)]
-    assert [given["href"] for _, given in elements if "href" in given] == ["data:,"]
+    assert [given["href"] for _, given in elements if "href" in given] == ["data:,", "#about"]
 
 
 def test_every_control_has_a_name() -> None:
@@ -119,7 +119,9 @@ def test_every_control_has_a_name() -> None:
 def test_the_ids_that_scripts_look_for_are_there() -> None:
     there = re.findall(r'\bid="([\w-]+)"', read_page_file("machine.html"))
     assert len(there) == len(set(there))
-    asked = {found for name in sort_scripts() for found in re.findall(r'\bby\("([\w-]+)"\)', read_page_file(f"{name}.js"))}
+    asked = {
+        found for name in sort_scripts() for found in re.findall(r'\bby\("([\w-]+)"\)', read_page_file(f"{name}.js"))
+    }
     assert asked and asked <= set(there)
 
 

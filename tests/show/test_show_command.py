@@ -35,6 +35,10 @@ def test_the_page_goes_where_it_is_told(heun: Heun, folder: Path) -> None:
         (("swinging.yaml", "-o", "x.html", "--frames", "5001"), 2, "expected 2 to 5000"),
         (("swinging.yaml", "-o", "x.html", "--units", "kg"), 2, "--units kg"),
         (("swinging.yaml", "-o", "x.html", "--case", "none"), 2, "none"),
+        (("swinging.yaml", "-o", "x.html", "--case", "all"), 2, "no load cases"),
+        (("swinging.yaml", "-o", "x.png", "--case", "all"), 2, "a page shows all load cases"),
+        (("swinging.yaml", "-o", "x.html", "--at", "0.5"), 2, "--at: only for a picture"),
+        (("swinging.yaml", "-o", "x.gif", "--frames", "10"), 2, "--frames: only for the page"),
         (("nosuch.yaml", "-o", "x.html"), 2, "nosuch.yaml"),
         (("scene.html", "-o", "scene.html"), 2, "the spec itself"),
     ],
@@ -131,3 +135,14 @@ def test_loads_that_were_not_sought_between_the_instants_are_told(
         assert heun("show", "swinging.yaml", "-o", "page.html").returncode == 0
         said = data_of((folder / "page.html").read_text())["told"]
         assert any("Too many loads to search" in text for text in said) == told, said
+
+
+def test_all_load_cases_stand_in_one_page(heun: Heun, folder: Path) -> None:
+    cases = "cases:\n  light: {set: {m: 1}}\n  heavy: {set: {m: 4}}\n"
+    (folder / "cases.yaml").write_text((folder / "hanging.yaml").read_text() + cases)
+    runs = written(heun, folder, "cases.yaml", "--case", "all")["runs"]
+    assert isinstance(runs, list) and [run["case"] for run in runs] == ["light", "heavy"]
+    for run, case in zip(runs, ("light", "heavy"), strict=True):
+        one = written(heun, folder, "cases.yaml", "--case", case)
+        assert one["blocks"] == run["blocks"] and one["case"] == case
+    assert runs[0]["blocks"] != runs[1]["blocks"]

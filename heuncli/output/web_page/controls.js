@@ -247,9 +247,10 @@ export function listenToCurve(chosen, player, changed, panel) {
   const offer = () => {
     fill(by("more"), [["", "…"], ...chosen.others.map((course) => [course.path, course.label])]);
     by("more").disabled = !chosen.others.length || chosen.curves.length >= PENS.length;
-    const chips = chosen.curves.slice(1).map((path) => {
+    const chips = chosen.curves.slice(1).map((path, k) => {
       const { label } = chosen.courses.find((course) => course.path === path);
       const chip = made("button", `${label} ×`, { type: "button", class: "chip" });
+      chip.style.borderLeftColor = `var(--${PENS[(k + 1) % PENS.length][0]})`;
       chip.addEventListener("click", () => {
         chosen.curves = chosen.curves.filter((other) => other !== path);
         offer();

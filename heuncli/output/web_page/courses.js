@@ -66,7 +66,8 @@ export function axesOf(data) {
   return [
     { label: "time", unit: "s", values: data.time },
     ...cranks.map(({ caption, parts }) => {
-      return { label: caption.replace(/, angle$/, " angle"), unit: "°", values: parts[0].values.map((v) => v * DEGREES) };
+      const values = parts[0].values.map((v) => v * DEGREES);
+      return { label: caption.replace(/, angle$/, " angle"), unit: "°", values };
     }),
   ];
 }

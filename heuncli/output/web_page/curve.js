@@ -5,7 +5,7 @@ import { peakOf } from "./courses.js";
 import { roundBelow, short, written } from "./digits.js";
 import { polyline, ring } from "./strokes.js";
 
-const MARGIN = { left: 66, right: 14, top: 24, bottom: 38 };
+const MARGIN = { left: 66, right: 14, top: 24, bottom: 46 };
 const MOST_WORDS = 8;
 /** Names of the colours of the curves, and the dashes that tell them apart without colour. */
 export const PENS = [["positive", []], ["negative", [7, 3]], ["force", [2, 2]], ["moment", [9, 3, 2, 3]]];
@@ -79,12 +79,12 @@ function drawAxes(pen, panel, axis, unit, colours, labels) {
   for (const tick of across) {
     const x = panel.x(tick);
     polyline(pen, [[x, panel.bottom], [x, panel.bottom + 4]], colours.ink, 1);
-    labels.set(`across ${tick}`, told(tick, across), x, panel.bottom + 13, colours.ink, 8, "center");
+    labels.set(`across ${tick}`, told(tick, across), x, panel.bottom + 16, colours.ink, 8, "center");
   }
   const { left, right, top, bottom } = panel;
   polyline(pen, [[left, top], [left, bottom], [right, bottom]], colours.ink, 1);
   labels.set("unit", unit === "1" ? "-" : unit, left - 6, 10, colours.ink, 9, "right");
-  labels.set("axis", `${axis.label} [${axis.unit}]`, right, bottom + 29, colours.ink, 9, "right");
+  labels.set("axis", `${axis.label} [${axis.unit}]`, right, bottom + 33, colours.ink, 9, "right");
 }
 
 /** One line; where it is open it is broken. */

@@ -79,11 +79,11 @@ function instantsOf(data, rate) {
 function draw(data) {
   data.scene.cloud = cloudOf(data.scene, data.count);
   data.scene.cover = coverOf(data.scene);
-  const { kind, width, height, at, rate } = data.film;
+  const { kind, width, height, instant: wanted, rate } = data.film;
   const player = new Player(data.time, () => {});
   const picture = maker(data, width, height);
   if (kind === "png" || data.count === 1) {
-    player.show(at === null ? data.worst : player.nearest(at));
+    player.show(wanted === null ? data.worst : player.nearest(wanted));
     return [picture(player, player).toDataURL("image/png").split(",")[1]];
   }
   const pictures = instantsOf(data, rate).map((t) => {

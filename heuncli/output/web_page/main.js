@@ -34,7 +34,7 @@ function signsOf(chosen, data) {
   const parts = [];
   const { choice, section, load } = chosen;
   if (choice?.key.startsWith("foundation")) parts.push("Arrows: load of the machine on the ground.");
-  else if (choice?.frame !== undefined) parts.push("Arrows: impulses of “from” on “to”, at the frame of the impulse.");
+  else if (choice?.frame !== undefined) parts.push("Arrows: impulses of “from” on “to”, at their frame.");
   else if (choice) parts.push("Arrows: load of “from” on “to”; of gears, belts and ropes on the named body.");
   if (section && load) {
     const [unit, size] = data.length;

@@ -39,14 +39,14 @@ HEADING_NOTES = ("stiff", "split", "status", "warning")  # lines of the heading 
 class Film(NamedTuple):
     """What is drawn of the machine: one picture (png) or gif, or the pictures (frames) of a video.
 
-    width, height: [pixels]; rate: pictures a second; at: the instant of one picture [s], None: of the greatest load
+    width, height: [pixels]; rate: pictures a second; instant: of one picture [s], None: of the greatest load
     """
 
     kind: Literal["png", "gif", "frames"]
     width: int
     height: int
     rate: float
-    at: float | None = None
+    instant: float | None = None
 
 
 def render_moving_page(studies: Mapping[str, Study], units: Units, max_frames: int = MAX_PAGE_FRAMES) -> str:
@@ -61,7 +61,7 @@ def render_moving_page(studies: Mapping[str, Study], units: Units, max_frames: i
 
 def render_film_page(study: Study, units: Units, film: Film, case: str = "") -> str:
     """Render the page that draws the pictures of a film, or one picture, and leaves them as text."""
-    instants = () if film.at is None else (film.at,)
+    instants = () if film.instant is None else (film.instant,)
     data = {**make_page_data(study, units, case=case, instants=instants), "film": film._asdict()}
     return assemble_page(study.results.title, data, FILM_SCRIPT)
 

@@ -148,7 +148,7 @@ def iter_page_rows(
         yield _make_row(channel, labels, shown), any(not is_zero(number, style, certain) for number in numbers)
 
 
-def _make_row(item: Channel, labels: Labels, shown: dict[str, Any]) -> dict[str, Any]:
+def _make_row(item: Channel, labels: Labels, style: dict[str, Any]) -> dict[str, Any]:
     largest = largest_magnitude(item.values)
     parts = [
         [
@@ -161,7 +161,7 @@ def _make_row(item: Channel, labels: Labels, shown: dict[str, Any]) -> dict[str,
     label = item.quantity.replace("_", " ")
     has_magnitude = len(parts) > 1 and item.quantity not in POSITIONS
     return {
-        "path": item.path, "label": label, "caption": describe_path(item.path, labels), **shown, "parts": parts,
+        "path": item.path, "label": label, "caption": describe_path(item.path, labels), **style, "parts": parts,
         "sized": has_magnitude,
     }  # fmt: skip
 
@@ -190,11 +190,11 @@ def choose_rotational_speed(scale: float, error: float) -> dict[str, Any]:
     return _to_shown("rpm", RPM, scale, RPM * error, (0.0, error < scale))
 
 
-def _to_shown(unit: str, size: float, scale: float, error: float, known: tuple[float, bool]) -> dict[str, Any]:
+def _to_shown(unit: str, size: float, scale: float, error: float, certainty: tuple[float, bool]) -> dict[str, Any]:
     """Return unit, size and style in the form that the page reads: decimals, use of an exponent, rounding threshold,
     any digit known.
 
-    error: in the display unit; known: rounding in the display unit, and whether any digit is known
+    error: in the display unit; certainty: rounding in the display unit, and whether any digit is known
     """
     shown = size * scale
     decimals = DIGITS - 1 - math.floor(math.log10(shown)) if shown > 0.0 else 0
@@ -202,7 +202,7 @@ def _to_shown(unit: str, size: float, scale: float, error: float, known: tuple[f
         decimals = min(decimals, math.floor(-math.log10(error)))
     has_exponent = shown > 0.0 and not SMALL <= shown < LARGE
     return {
-        "unit": unit, "size": size, "style": [decimals if has_exponent else max(decimals, 0), has_exponent, *known],
+        "unit": unit, "size": size, "style": [decimals if has_exponent else max(decimals, 0), has_exponent, *certainty],
     }  # fmt: skip
 
 

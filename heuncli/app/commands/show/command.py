@@ -40,7 +40,7 @@ REPORTS = TABLE_DEFAULT | {"motion"}
 def main(request: ShowRequest) -> int:
     """Run the command; returns the exit code."""
     output, glb = _require_output(request), _require_glb(request)
-    form, at = find_format(output), _parse_instant(request)
+    form, instant = find_format(output), _parse_instant(request)
     _require_page(request, form)
     outputs = [(name, option) for name, option in ((output, "-o"), (glb, "--glb")) if name is not None]
     for name, option in outputs:
@@ -54,7 +54,7 @@ def main(request: ShowRequest) -> int:
     case, study = next(iter(studies.items()))
     moving = make_glb(study) if glb is not None else b""
     if output is not None and form is not None and programs is not None:
-        page = render_film_page(study, units_shown, make_film(form, at), case)
+        page = render_film_page(study, units_shown, make_film(form, instant), case)
         film = draw_film(page, form, programs, PurePath(output).suffix.lower())
     elif output is not None:
         page = render_moving_page(studies, units_shown, frame_count)

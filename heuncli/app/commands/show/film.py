@@ -21,7 +21,6 @@ from heuncli.base.errors import OutputError, Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.web_page.moving_page import Film
 
-CODE = "no-film-program"
 MAX_SECONDS = 300.0  # of a program, unless --time-limit leaves less
 MAX_MESSAGE = 300  # characters of what a program says
 DRAW_BUDGET = 600_000  # ms of the browser's own time until it must have drawn all pictures
@@ -79,16 +78,16 @@ def find_programs(form: FilmFormat) -> FilmPrograms:
     """Find the programs that a format needs. Raises OutputError."""
     browser = next((path for path in map(shutil.which, BROWSERS) if path is not None), None)
     if browser is None:
-        raise OutputError(Problem(CODE, "no Chromium or Chrome was found on PATH", hint=HINT))
+        raise OutputError(Problem("no-film-program", "no Chromium or Chrome was found on PATH", hint=HINT))
     encoder = shutil.which("ffmpeg") if form.is_encoded else ""
     if encoder is None:
-        raise OutputError(Problem(CODE, "no ffmpeg was found on PATH", hint=ENCODER_HINT))
+        raise OutputError(Problem("no-film-program", "no ffmpeg was found on PATH", hint=ENCODER_HINT))
     return FilmPrograms(browser, encoder)
 
 
-def make_film(form: FilmFormat, at: float | None) -> Film:
+def make_film(form: FilmFormat, instant: float | None) -> Film:
     """Make what the page is told to draw."""
-    return Film(form.kind, form.width, form.height, form.rate, at)  # type: ignore[arg-type]
+    return Film(form.kind, form.width, form.height, form.rate, instant)  # type: ignore[arg-type]
 
 
 def draw_film(page: str, form: FilmFormat, programs: FilmPrograms, ending: str) -> bytes:
@@ -104,7 +103,9 @@ def draw_film(page: str, form: FilmFormat, programs: FilmPrograms, ending: str) 
         words = [programs.encoder, "-framerate", f"{form.rate:g}", *ENCODER_OPTIONS, str(target)]
         _, message = _run_program(words, folder)
         if not target.is_file() or not target.stat().st_size:
-            raise OutputError(Problem(CODE, f"{programs.encoder} has written no video: {message}", hint=ENCODER_HINT))
+            raise OutputError(
+                Problem("no-film-program", f"{programs.encoder} has written no video: {message}", hint=ENCODER_HINT)
+            )
         return target.read_bytes()
 
 
@@ -126,7 +127,7 @@ def _draw_pictures(page: str, form: FilmFormat, browser: str, folder: Path) -> l
         pictures = []
     if not pictures:
         text = f"{browser} has drawn nothing{f': {message}' if message else ''}"
-        raise OutputError(Problem(CODE, text, hint=HINT))
+        raise OutputError(Problem("no-film-program", text, hint=HINT))
     return pictures
 
 
