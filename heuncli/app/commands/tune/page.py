@@ -59,8 +59,8 @@ def list_facts(results: TuneResults, units: Units) -> Iterator[tuple[str, str]]:
 def describe_jumps(results: TuneResults) -> Iterator[str]:
     """Describe the jumps on which the best rests: a move beyond a certain distance changes a measure at once."""
     for one, range_ in zip(results.task.variables, results.tolerance_ranges, strict=False):
-        for direction, *pair in zip(("down", "up"), range_.of_floor, range_.of_hundredth, strict=True):
-            jumping = next((move for move in pair if move is not None and move.jumps), None)
+        for direction, nearer, farther in zip(("down", "up"), range_.of_floor, range_.of_hundredth, strict=True):
+            jumping = next((move for move in (nearer, farther) if move is not None and move.jumps), None)
             if jumping is not None:
                 distance = f"{jumping.distance:.2g} {one.unit}".rstrip()
                 yield f"beside a jump: {jumping.jumps} jumps where {one.name} goes {direction} by more than {distance}"
