@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from heuncli.base.text_safety import escape
-from heuncli.output.documents.document import OutputTable, format_cell, is_governing
+from heuncli.output.documents.document import OutputTable, is_governing
 from heuncli.output.documents.text_table import align_cells
 
 GOVERNING, UNCLEAR, NOTE, HEADING = "bold red", "yellow", "dim", "bold"
@@ -27,8 +27,8 @@ def render_rich(table: OutputTable, width: int | None) -> str:
     if texts:
         setting = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
         for column in table.columns:
-            justify = "right" if column.is_number else "left"
-            setting.add_column(Text(escape(column.title)), justify=justify, no_wrap=column.is_number)
+            title = Text(escape(column.title))
+            setting.add_column(title, justify="right" if column.is_number else "left", no_wrap=column.is_number)
         rows = [row for row in table.rows if not isinstance(row, str)]
         for row, cells in zip(rows, texts, strict=True):
             setting.add_row(

@@ -83,7 +83,9 @@ def _make_title(rows: Sequence[Hardpoint]) -> str:
     return f"{first.name}  {first.kind}{between}"
 
 
-def _choose_style(runs: Sequence[HardpointRun], name: str, unit: str, values: np.ndarray[Any, Any], size: float) -> Style:
+def _choose_style(
+    runs: Sequence[HardpointRun], name: str, unit: str, values: np.ndarray[Any, Any], size: float
+) -> Style:
     """Choose the decimals of all vectors of one unit."""
     kind = "motion" if name == "position" else "reactions"
     styles = [run.certain.choose_style(kind, unit, largest_magnitude(values) / size) for run in runs]

@@ -134,7 +134,9 @@ def _iter_acting(study: Study, labels: Labels, recovery: Recovery, results: Resu
         load, info = joints[name], labels.joints[name]
         bodies, ends = (load.joint.b, load.joint.a), (info.second_end, info.first_end)
         position, path = np.asarray(block["point"]), f"joints.{name}"
-        yield _Acting(info.type, name, path, *ends, bodies, position, np.asarray(block["force"]), np.asarray(block["moment"]))
+        yield _Acting(
+            info.type, name, path, *ends, bodies, position, np.asarray(block["force"]), np.asarray(block["moment"])
+        )
         yield from (_Acting(kind, own, path, *ends, bodies, position, force, moment)
                     for kind, own, force, moment, path in _iter_joint_additions(load))  # fmt: skip
     indices = {GROUND: GROUND_INDEX} | {body.name: i for i, body in enumerate(recovery.setup.scene.mechanism.bodies)}
@@ -182,7 +184,9 @@ def _name_end(study: Study, end: ActionEnd) -> str:
     bodies = study.setup.scene.mechanism.bodies
     body = GROUND if end.body == GROUND_INDEX else bodies[end.body].name
     points = spec.ground.points if body == GROUND else spec.bodies[body].points
-    name = next((name for name, point in points.items() if end.point is not None and tuple(point) == tuple(end.point)), "")
+    name = next(
+        (name for name, point in points.items() if end.point is not None and tuple(point) == tuple(end.point)), ""
+    )
     return f"{body}.{name}" if name else body
 
 

@@ -10,7 +10,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.as_json import FORMAT
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, TextCell
 from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
-from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, RunSummary, SummaryRow
+from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow
 from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NOTE
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
@@ -209,7 +209,18 @@ def _make_block(row: SummaryRow) -> dict[str, Any]:
     return block | ({"open_at_times": True} if row.is_partly_open else {})
 
 
-CSV_NAMES = ("path", "label", "unit", "value", "error", *(f"direction_{axis}" for axis in XYZ), "time", "angle", "case", "s")
+CSV_NAMES = (
+    "path",
+    "label",
+    "unit",
+    "value",
+    "error",
+    *(f"direction_{axis}" for axis in XYZ),
+    "time",
+    "angle",
+    "case",
+    "s",
+)
 
 
 def make_records(summary: Summary) -> OutputTable:
@@ -218,5 +229,7 @@ def make_records(summary: Summary) -> OutputTable:
     for row in summary.rows:
         direction: Sequence[Cell] = (None, None, None) if row.direction is None else row.direction
         place = None if row.place is None else row.place.s
-        rows.append((row.path, row.label, row.unit, row.value, row.error, *direction, row.time, row.angle, row.case, place))
+        rows.append(
+            (row.path, row.label, row.unit, row.value, row.error, *direction, row.time, row.angle, row.case, place)
+        )
     return OutputTable("", tuple(OutputColumn(name) for name in CSV_NAMES), tuple(rows))
