@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import Literal
 
 from rich import box
 from rich.console import Console
@@ -25,10 +26,12 @@ def render_rich(table: OutputTable, width: int | None) -> str:
     console.print(Text.assemble((escape(heading), HEADING), "  ", (escape(explanation), NOTE)))
     _, *texts = align_cells(table)
     if texts:
-        setting = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-        for column in table.columns:
-            justify = "right" if column.is_number else "left"
-            setting.add_column(Text(escape(column.title)), justify=justify, no_wrap=column.is_number)
+        setting = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+        for column, cells in zip(table.columns, zip(*texts, strict=True), strict=True):
+            narrowest = max(map(len, cells)) if column.is_number else None  # of a number only the head is wrapped
+            justify: Literal["left", "right"] = "right" if column.is_number else "left"
+            title = escape(column.title).replace(" [", "\n[")  # the unit below the name
+            setting.add_column(Text(title), justify=justify, min_width=narrowest)
         rows = [row for row in table.rows if not isinstance(row, str)]
         for row, cells in zip(rows, texts, strict=True):
             setting.add_row(

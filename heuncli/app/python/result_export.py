@@ -37,7 +37,7 @@ STYLE = (
 
 
 def format_text(study: Study, instants: Array | None, units: str | None, selection: str | Sequence[str] | None) -> str:
-    """Return heading and tables as `heun run` writes them into a file.
+    """Return heading and tables as `heun run --full` writes them, without its summary.
 
     instants: (n,) [s], or None for the extremes
     selection: reports or entries, as in `solve`, or None

@@ -69,7 +69,7 @@ def make_hardpoint_table(runs: Sequence[HardpointRun], labels: Labels, axes: str
     for members in groups.values():
         body.append(_make_title([rows[i] for i in members]))
         for i in members:
-            cells_of_row = [rows[i].on, rows[i].case, *(column[i] for column in texts)]
+            cells_of_row = [rows[i].end, rows[i].case, *(column[i] for column in texts)]
             body.append(tuple(cells_of_row[j] for j in shown))
     is_open = any(OPEN in column for column in texts)
     notes = [WEIGHT_NOTE, *[OPEN_NOTE] * is_open, *[NOT_SEARCHED] * (not all(run.is_searched for run in runs))]
@@ -78,8 +78,8 @@ def make_hardpoint_table(runs: Sequence[HardpointRun], labels: Labels, axes: str
 
 def _make_title(rows: Sequence[Hardpoint]) -> str:
     first = rows[0]
-    ends = {row.on for row in rows}
-    between = f", {first.by} → {first.on}" if len(ends) == 1 and first.by else ""
+    ends = {row.end for row in rows}
+    between = f", {first.other_end} → {first.end}" if len(ends) == 1 and first.other_end else ""
     return f"{first.name}  {first.kind}{between}"
 
 
@@ -96,7 +96,7 @@ def _make_block(row: Hardpoint) -> dict[str, Any]:
     vectors = {name: dict(zip(XYZ, vector, strict=True)) for name, vector in
                (("", row.position), ("F", row.force), ("M", row.moment))}  # fmt: skip
     numbers = {f"{name}{axis}": float(value) for name, vector in vectors.items() for axis, value in vector.items()}
-    return {"point": row.name, "kind": row.kind, "on": row.on, "from": row.by, "axes": row.axes, **numbers,
+    return {"point": row.name, "kind": row.kind, "on": row.end, "from": row.other_end, "axes": row.axes, **numbers,
             "time": row.time, "case": row.case or None}  # fmt: skip
 
 

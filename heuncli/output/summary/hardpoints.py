@@ -38,15 +38,15 @@ QUANTITIES: Mapping[str, tuple[str, ...]] = {
 class Hardpoint(NamedTuple):
     """What acts ON one end, SI.
 
-    kind: what exerts it; name: of that; on, by: the end that it acts on, and the other end, as body.point
+    kind: what exerts it; name: of that; end, other_end: that it acts on, and the other, as body.point
     axes: name of the body in whose axes, and from whose origin, the numbers are given; `world`
     position, force, moment (3,): the moment about the position; nan where indeterminate
     """
 
     kind: str
     name: str
-    on: str
-    by: str
+    end: str
+    other_end: str
     axes: str
     position: Array
     force: Array
@@ -64,14 +64,14 @@ class HardpointRun(NamedTuple):
     is_searched: bool = True
 
 
-class _Acting(NamedTuple):
+class EndLoad(NamedTuple):
     """What acts on one end over the evaluated instants, world axes, (n, 3) each; instant: the path that decides it."""
 
     kind: str
     name: str
     path: str
-    on: str
-    by: str
+    end: str
+    other_end: str
     bodies: tuple[int, int]  # acted on, and the other
     position: Array
     force: Array
@@ -127,17 +127,17 @@ def _find_instants(study: Study, labels: Labels, certain: StatedErrors) -> tuple
     return instants, found.is_searched
 
 
-def _iter_acting(study: Study, labels: Labels, recovery: Recovery, results: Results) -> Iterator[_Acting]:
+def _iter_acting(study: Study, labels: Labels, recovery: Recovery, results: Results) -> Iterator[EndLoad]:
     """Yield what acts, in the order of the tables: joints with their drives and stops, couplings, loads."""
     joints = {load.joint.name: load for load in recovery.joints}
     for name, block in results.joints.items():
         load, info = joints[name], labels.joints[name]
         bodies, ends = (load.joint.b, load.joint.a), (info.second_end, info.first_end)
         position, path = np.asarray(block["point"]), f"joints.{name}"
-        yield _Acting(
+        yield EndLoad(
             info.type, name, path, *ends, bodies, position, np.asarray(block["force"]), np.asarray(block["moment"])
         )
-        yield from (_Acting(kind, own, path, *ends, bodies, position, force, moment)
+        yield from (EndLoad(kind, own, path, *ends, bodies, position, force, moment)
                     for kind, own, force, moment, path in _iter_joint_additions(load))  # fmt: skip
     indices = {GROUND: GROUND_INDEX} | {body.name: i for i, body in enumerate(recovery.setup.scene.mechanism.bodies)}
     for name, block in results.couplings.items():
@@ -147,7 +147,7 @@ def _iter_acting(study: Study, labels: Labels, recovery: Recovery, results: Resu
             by = others[0] if len(others) == 1 else ""
             bodies = indices[body], indices[others[0] if others else body]
             vectors = (np.asarray(part[key]) for key in ("point", "force", "moment"))
-            yield _Acting(kind, name, f"couplings.{name}{PART}{body}", body, by, bodies, *vectors)
+            yield EndLoad(kind, name, f"couplings.{name}{PART}{body}", body, by, bodies, *vectors)
     mechanism = recovery.setup.scene.mechanism
     for applied in recovery.loads:
         if mechanism.spec_block(applied.load) == "forces":
@@ -163,7 +163,7 @@ def _iter_joint_additions(load: JointLoads) -> Iterator[tuple[str, str, Array, A
         yield "stop", own.stop.name, own.force, own.moment, f"stops.{own.stop.name}"
 
 
-def _iter_load_ends(study: Study, action: Action, kind: str) -> Iterator[_Acting]:
+def _iter_load_ends(study: Study, action: Action, kind: str) -> Iterator[EndLoad]:
     """Yield the ends of a load: both where they are apart, else its `to` end."""
     ends = [action.to_end] if action.from_end is None or action.from_end.is_offset else [action.from_end, action.to_end]
     for end in ends:
@@ -172,7 +172,7 @@ def _iter_load_ends(study: Study, action: Action, kind: str) -> Iterator[_Acting
         moment = action.moment if end is action.to_end else action.opposite_moment
         by = "" if other is None else _name_end(study, other)
         bodies = end.body, end.body if other is None else other.body
-        yield _Acting(
+        yield EndLoad(
             kind, action.name, f"forces.{action.name}", _name_end(study, end), by, bodies,
             end.position, sign * action.force, moment,
         )  # fmt: skip
@@ -190,7 +190,7 @@ def _name_end(study: Study, end: ActionEnd) -> str:
     return f"{body}.{name}" if name else body
 
 
-def _make_row(acting: _Acting, recovery: Recovery, k: int, axes: str) -> Hardpoint:
+def _make_row(acting: EndLoad, recovery: Recovery, k: int, axes: str) -> Hardpoint:
     """Make the row at an instant, by its index, in the axes of a body, from its origin."""
     names = [body.name for body in recovery.setup.scene.mechanism.bodies]
     body = {"world": GROUND_INDEX, GROUND: GROUND_INDEX, "to": acting.bodies[0], "from": acting.bodies[1]}.get(axes)
@@ -201,7 +201,7 @@ def _make_row(acting: _Acting, recovery: Recovery, k: int, axes: str) -> Hardpoi
         R, origin, label = recovery.states.R[k, body], recovery.states.x[k, body], names[body]
         vectors = R.T @ (vectors[0] - origin), rotate_known(R, vectors[1]), rotate_known(R, vectors[2])
     position, force, moment = (np.asarray(vector) + 0.0 for vector in vectors)
-    return Hardpoint(acting.kind, acting.name, acting.on, acting.by, label, position, force, moment, 0.0)
+    return Hardpoint(acting.kind, acting.name, acting.end, acting.other_end, label, position, force, moment, 0.0)
 
 
 def rotate_known(R: Array, vector: Array) -> Array:

@@ -33,11 +33,13 @@ class IndeterminateGroup(NamedTuple):
     paths: tuple[str, ...]
 
 
-def find_indeterminate_groups(page: Page) -> list[IndeterminateGroup]:
-    """Find the groups of a run, in the order of its tables."""
+def find_indeterminate_groups(page: Page, channels: Sequence[Channel]) -> list[IndeterminateGroup]:
+    """Find the groups of a run, in the order of its tables; channels: those that are searched."""
+    if not any(np.isnan(channel.values).any() for channel in channels):
+        return []
     groups: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
-    for kind, name, channels in _iter_things(page):
-        unknown = [channel for channel in channels if np.isnan(channel.values).all()]
+    for kind, name, rows in _iter_things(page):
+        unknown = [channel for channel in rows if np.isnan(channel.values).all()]
         if unknown and PART not in name:
             names, paths = groups.setdefault((kind, _describe_loads(kind, unknown)), ([], []))
             names.append(name)
@@ -47,8 +49,6 @@ def find_indeterminate_groups(page: Page) -> list[IndeterminateGroup]:
 
 def _iter_things(page: Page) -> Iterator[tuple[str, str, Sequence[Channel]]]:
     """Yield kind, name and channels of all that may be indeterminate; supports and elements repeat joints and loads."""
-    if not any(np.isnan(channel.values).any() for channel in page.make_search().collect(page.results)):
-        return
     for block in page.make_blocks(page.results, only_searched=True):
         if block.kind in ("joints", "stops", "couplings", "sections"):
             yield from ((block.kind, group.name, group.rows) for group in block.groups)

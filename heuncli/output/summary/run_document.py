@@ -58,12 +58,13 @@ def summarise(study: Study, searched: SearchedPage, case: str = "") -> Summary:
     case: name of its load case, if there are several
     """
     page, model = searched.page, study.results.model
-    found = make_run_summary(study, searched, case)
+    channels = page.make_search().collect(page.results)
+    found = make_run_summary(study, searched, channels, case)
     body = model.get("axes")
     axes = f'axes of the "{body}" body' if body else "world axes"
     notes = [] if found.is_searched else [NOT_SEARCHED]
     notes += [found.doubtful_note] if found.doubtful_note else []
     span = float(np.ptp(study.results.time))
-    groups = find_indeterminate_groups(page)
+    groups = find_indeterminate_groups(page, channels)
     redundant = int(model.get("redundant", 0))
     return Summary(found.rows, groups, page.labels, axes, redundant, span, found.crank, notes)

@@ -114,13 +114,18 @@ class RunSummary(NamedTuple):
     doubtful_note: str = ""
 
 
-def make_run_summary(study: Study, searched: SearchedPage, case: str = "") -> RunSummary:
-    """Make the summary of a run from the extremes of its tables."""
+def make_run_summary(
+    study: Study, searched: SearchedPage, searched_channels: Sequence[Channel], case: str = ""
+) -> RunSummary:
+    """Make the summary of a run from the extremes of its tables.
+
+    searched_channels: of the page, at the output times
+    """
     page = searched.page
-    channels = {channel.path: channel for channel in searched.page.make_search().collect(page.results)}
+    channels = {channel.path: channel for channel in searched_channels}
     for run in collect_runs(page.results, page.labels):
         channels |= {channel.path: channel for channel in run.stresses}
-    values = _Values(searched, channels, {path: k for k, path in enumerate(searched.extremes.paths)}
+    values = GreatestValues(searched, channels, {path: k for k, path in enumerate(searched.extremes.paths)}
                      if searched.extremes is not None else {})  # fmt: skip
     rows = [row for kind in KINDS for name in _list_names(kind, page.results)
             if (row := values.find_greatest(kind, name)) is not None]  # fmt: skip
@@ -139,7 +144,7 @@ def _list_names(kind: SummaryKind, results: Results) -> Sequence[str]:
     return [""] * bool(block) if kind.block == "foundation" else list(block)
 
 
-class _Values(NamedTuple):
+class GreatestValues(NamedTuple):
     """The greatest values of a run: from the search, or at the only instant."""
 
     searched: SearchedPage
@@ -236,7 +241,8 @@ def _find_vectors(row: SummaryRow, results: Results, loads: Mapping[str, Action]
     """Return the vectors (n, 3) at the evaluated instants whose magnitude, or value along a line, the row gives."""
     quantity = "moment" if row.unit == "N·m" else "force"
     if row.kind == "joint":
-        return results.joints.get(row.name, {}).get(quantity)
+        vectors = results.joints.get(row.name, {}).get(quantity)
+        return None if vectors is None else np.asarray(vectors)
     if row.kind == "load" and row.name in loads:
         return loads[row.name].moment if row.unit == "N·m" else loads[row.name].force
     return results.foundation.get(quantity) if row.path.startswith("foundation.") else None

@@ -21,7 +21,6 @@ from heuncli.output.summary.run_document import RunParts
 from heuncli.output.summary.summary_document import Summary, merge_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
-from heuncli.study.queries.study import Study
 
 COLUMNS = (
     OutputColumn("of", "path"), OutputColumn("unit", "text"),
@@ -46,7 +45,7 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
         if not (task.measures or task.collective):
             runs[name] = take_run_snapshot(study, task.selection.reports, whole_course=False)
         codes.append(finish(task, scene, study, f"heun: case {name}"))
-    lead = _render_summary(task, study, merge_cases(summaries)) if summaries else ""
+    lead = _render_summary(task, spec.title, list(cases), merge_cases(summaries)) if summaries else ""
     emit(lead + _render_text(task, texts, runs), task.request.output)
     if task.measures:
         note_measure_units(task, study)
@@ -55,11 +54,11 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     return select_exit_code(codes)
 
 
-def _render_summary(task: RunTask, study: Study, summary: Summary) -> str:
-    """Render the summary of all cases, which stands above their tables; study: the last of them."""
+def _render_summary(task: RunTask, title: str, names: Sequence[str], summary: Summary) -> str:
+    """Render the summary of all cases, which stands above their tables."""
     if summary.is_empty:
         return ""
-    parts = RunParts(study.results.title, (), summary, ())
+    parts = RunParts(title, [("cases", ", ".join(names))], summary, ())
     return "".join(render_parts(task, parts)) + "\n"
 
 

@@ -31,9 +31,9 @@ NOTHING = "nothing to summarise: nothing is loaded at an instant"
 
 def require_alone(request: RunRequest) -> None:
     """Raise UsageError if another option asks for something else than the short answer."""
-    option = "--summary" if request.summary else "--hardpoints"
+    option = "--hardpoints" if request.hardpoints else "--summary"
     others = [*NOT_WITH, *(["only", "summary"] if request.hardpoints else [])]
-    other = next((name for name in others if getattr(request, name) and f"--{name}" != option), None)
+    other = next((name for name in others if getattr(request, name)), None)
     if other is not None:
         word = f"--{other.replace('_', '-')}"
         raise UsageError(Problem("bad-option", f"{option} and {word} cannot be combined", hint=f"leave out {word}"))
@@ -46,11 +46,12 @@ def run_overview(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     if has_cases:
         require_cases(cases)
     scenes = cases if has_cases else {"": spec}
-    solved: dict[str, Study] = {}
+    studies: dict[str, Study] = {}
     for name, scene in scenes.items():
-        solved[name] = solve_spec(scene, task.options)
+        studies[name] = solve_spec(scene, task.options)
     make_document = _make_hardpoints if request.hardpoints else _make_summary
-    document = make_document(task, scenes, solved)
+    title = spec.title if has_cases else studies[""].results.title
+    document = make_document(task, title, scenes, studies)
     is_coloured = request.summary and is_rich(task.form, request.output)
     emit(
         render_rich_document(document) if is_coloured else render_document(document, task.form, request.output),
@@ -58,49 +59,51 @@ def run_overview(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     )
     note_si_format(request.units, task.form, request.quiet)
     codes = [
-        finish(task, scenes[name], study, f"heun: case {name}" if name else "heun") for name, study in solved.items()
+        finish(task, scenes[name], study, f"heun: case {name}" if name else "heun") for name, study in studies.items()
     ]
     return select_exit_code(codes)
 
 
-def _make_facts(task: RunTask, solved: Mapping[str, Study]) -> list[tuple[str, str]]:
+def _make_facts(task: RunTask, studies: Mapping[str, Study]) -> list[tuple[str, str]]:
     """Make the lines below the title; of several cases those that all have, and the names of the cases."""
     request = task.request
     headings = [
         make_heading(study.results, request.verbose, brief=not (request.full or request.verbose))
-        for study in solved.values()
+        for study in studies.values()
     ]
     if len(headings) == 1:
         return headings[0]
     shared = [line for line in headings[0] if all(line in heading for heading in headings)]
-    return [*shared, ("cases", ", ".join(solved))]
+    return [*shared, ("cases", ", ".join(studies))]
 
 
-def _make_summary(task: RunTask, scenes: Mapping[str, Spec], solved: Mapping[str, Study]) -> OutputDocument:
+def _make_summary(
+    task: RunTask, title: str, scenes: Mapping[str, Spec], studies: Mapping[str, Study]
+) -> OutputDocument:
     summaries: list[Summary] = []
-    for name, study in solved.items():
+    for name, study in studies.items():
         with attach_locations(scenes[name]):
             labels = replace(make_labels(scenes[name]), units=task.units)
             summaries.append(summarise(study, search_run(study, labels, make_query(task, study, scenes[name])), name))
     merged = merge_cases(summaries)
-    title = next(iter(solved.values())).results.title
     part = Sentence(NOTHING) if merged.is_empty else make_summary_table(merged, full=task.request.full)
     return OutputDocument(
-        title, _make_facts(task, solved), [part], lambda: make_blocks(title, merged),
+        title, _make_facts(task, studies), [part], lambda: make_blocks(title, merged),
         lambda: make_records(merged),
     )  # fmt: skip
 
 
-def _make_hardpoints(task: RunTask, scenes: Mapping[str, Spec], solved: Mapping[str, Study]) -> OutputDocument:
+def _make_hardpoints(
+    task: RunTask, title: str, scenes: Mapping[str, Spec], studies: Mapping[str, Study]
+) -> OutputDocument:
     from heuncli.output.summary.hardpoint_document import make_hardpoint_document
     from heuncli.output.summary.hardpoints import make_hardpoints
 
     axes = task.request.axes or "world"
     runs, labels = [], None
-    for name, study in solved.items():
+    for name, study in studies.items():
         with attach_locations(scenes[name]):
             labels = replace(make_labels(scenes[name]), units=task.units)
             runs.append(make_hardpoints(study, labels, axes, name))
     assert labels is not None
-    title = next(iter(solved.values())).results.title
-    return make_hardpoint_document(title, _make_facts(task, solved), runs, labels, axes)
+    return make_hardpoint_document(title, _make_facts(task, studies), runs, labels, axes)
