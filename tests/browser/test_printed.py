@@ -51,9 +51,9 @@ def test_a_report_is_read_on_any_screen(width: int, dark: bool, browser: Chromiu
 
 
 PICTURES = [
-    ("engine", ("joints.main.force", "joints.big.force"), ("joints.main.force", "joints.big.force", "t [s]")),
-    ("jib", ("sections.along",), ("along", "M1 [N·m]", "s [m]")),
-    ("engine", ("polar", "joints.main"), ("joints.main.force", "force.z [N]")),
+    ("engine", ("joints.main.force", "joints.big.force"), ("Main, force", "Big, force", "t [s]")),
+    ("jib", ("sections.along",), ("along", "Bending moment M1", "s [m]")),
+    ("engine", ("polar", "joints.main"), ("Main, force", "z 90°", "20 kN")),
     ("crane", ("scene",), ("tower", "jib", "load")),
 ]
 
