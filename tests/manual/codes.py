@@ -16,8 +16,8 @@ from tests.shared.folders import ROOT
 PAGE = ROOT / "heuncli" / "manual" / "codes.md"
 GENERATED = "Each with its cause, the remedy, and a spec's lines before (-) and after (+) the cure.\n"
 WIDEST = 120
-NEAR = 8  # characters that are shown around what changes in a line
-LONGEST = 50  # characters of a line that is shown whole
+NEAR = 8  # characters that are shown before what changes in a line
+LONGEST = 40  # characters of a line that is shown whole
 SPECIFIC = (
     "did you mean",
     "for '",
@@ -83,10 +83,10 @@ def shortened(old: str, new: str) -> tuple[str, str]:
 
 
 def part(line: str, start: int, end: int) -> str:
-    """The part of a line from start to end, and whole words beside it."""
+    """The part of a line from start to end in whole words, and some before it."""
     name, colon, _ = line.partition(": ")
     first = max(line.rfind(" ", 0, max(start - NEAR, 0)) + 1, 0)
-    last = line.find(" ", end + NEAR)
+    last = line.find(" ", end)
     last = len(line) if last < 0 else last
     opening = (
         f"{name}: ... " if colon and len(name) < LONGEST // 2 and first > len(name) + 2 else "... " if first else ""
