@@ -16,7 +16,7 @@ from heuncli.results.results import Results
 from heuncli.results.results_schema import REPORTS, ROWS, SHARES, find_quantity
 from heuncli.scene.file_format.load import load
 from heuncli.study.compose import recovery
-from heuncli.study.compose.finiteness import iter_numbers, require_finite
+from heuncli.study.compose.accuracy import iter_numbers, require_finite
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun

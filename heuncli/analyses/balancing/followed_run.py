@@ -25,7 +25,7 @@ from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
-from heuncli.study.search.in_time import refine_for_time_laws
+from heuncli.study.search.law_instants import refine_for_time_laws
 
 STEP_TOLERANCE = 1e-9  # step tolerance; without effect, as every instant is solved to rounding
 SAMPLES_PER_TURN = 64  # even angles of a turn

@@ -16,8 +16,7 @@ from heuncli.base.records import replace
 from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
-from heuncli.study.model.setup import build_with_cuts
+from heuncli.study.model.setup import attach_locations, build_with_cuts
 
 
 def balance(spec: Spec, options: BalanceOptions = DEFAULT_OPTIONS) -> BalanceResults:

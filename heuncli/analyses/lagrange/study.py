@@ -39,7 +39,7 @@ from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.blocks import make_blocks as blocks_of
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 
 QUASI_VELOCITY_NOTE = (
     "{names}: rates are quasi-velocities (components of angular velocity and velocity along the world axes), "

@@ -15,7 +15,7 @@ from heuncli.motion.linearisation.oscillations import SceneModes
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 
 MIN_SHARE = 0.5
 

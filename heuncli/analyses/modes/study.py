@@ -34,8 +34,7 @@ from heuncli.multibody.mechanism.model import RopeLoad
 from heuncli.multibody.tree.layout import find_speed_rows
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
-from heuncli.study.model.setup import Setup, set_up
+from heuncli.study.model.setup import Setup, attach_locations, set_up
 
 REST_HINT = "analysis: {type: rest} finds the rest position"
 CLOSER_START_HINT = "start the model closer to its rest position"

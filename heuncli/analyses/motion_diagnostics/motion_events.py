@@ -25,8 +25,8 @@ from heuncli.loads.redundancy.self_stress import find_neighbour_poses
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.queries.study import Study
+from heuncli.study.search.columns import choose_search_times
 from heuncli.study.search.crossings import Bracket, find_roots
-from heuncli.study.search.instants import choose_search_times
 from heuncli.study.solve.history import resample
 
 MAX_BODY_INSTANTS = 200_000  # bodies times instants whose results are in memory at a time

@@ -21,8 +21,8 @@ from heuncli.analyses.motion_diagnostics.stiffness import find_stiffness
 from heuncli.analyses.motion_diagnostics.verdict import iter_other_troubles, iter_troubles
 from heuncli.base.records import replace
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.options import Options
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.workflow import solve
 
 MAX_LISTED_EVENTS = 100  # listed events of one kind and place

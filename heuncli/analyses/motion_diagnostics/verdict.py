@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, NO_MASS, SINGULAR, Event, Probe
 from heuncli.base import tolerances
-from heuncli.study.model.counts_and_lists import format_count, list_some
+from heuncli.base.sentences import format_count, list_some
 
 MAX_LISTED_TIMES = 3  # listed in a sentence
 

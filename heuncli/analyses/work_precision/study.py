@@ -13,7 +13,7 @@ from heuncli.analyses.work_precision.reference import find_reference
 from heuncli.analyses.work_precision.results import ChartResults, mark_front
 from heuncli.analyses.work_precision.runs import ChartRunner, ReportProgress
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 
 DRIVEN_NOTE = (
     "motion fully prescribed: heun run solves each instant (followed), nothing integrated; the other "

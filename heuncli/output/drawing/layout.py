@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape
-from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing.figure import (
     Arrow,
     Band,

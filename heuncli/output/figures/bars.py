@@ -37,7 +37,7 @@ from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import ChannelSearch, StudyColumns
-from heuncli.study.search.stretches import find_cut_extremes, find_stretch
+from heuncli.study.search.cuts import find_cut_extremes, find_stretch
 
 SECTIONS = frozenset({"sections"})
 N_PLACES, MIN_PLACES = 240, 8  # places along a bar, 3 pixels apart; minimum between two corners

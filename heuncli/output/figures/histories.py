@@ -39,12 +39,12 @@ from heuncli.output.figures.measured_points import MeasuredPoints, draw_points
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.thinning import find_visible_points
 from heuncli.results.results import Array
-from heuncli.study.compose.smoothed_friction import has_smoothed_friction
+from heuncli.study.compose.warnings import has_smoothed_friction
 from heuncli.study.quantities.digits import format_error
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure import Peak
 from heuncli.study.queries.measure_uncertainty import find_unit
-from heuncli.study.queries.smoothed_friction import make_friction_warning
+from heuncli.study.queries.study import make_friction_warning
 
 MAX_DIGITS = 5  # maximum in labels of extremes
 LABEL_MARGIN = 0.12  # share above and below the curves, for labels

@@ -51,7 +51,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings
         }
     if SHARES in reports:
-        from heuncli.study.compose.cause_shares import add_shares  # few runs need them
+        from heuncli.study.solve.cause_shares import add_shares  # few runs need them
 
         add_shares(blocks_by_name, recovery.shares, mechanism, states, recovery.setup.moment_point)
     axes = recovery.setup.selection.axes

@@ -58,7 +58,7 @@ class Recovery:
     given_actions: actions from outside that are no loads of the mechanism: impulses
     causes: the names of the kernel's columns, where these are not those of the mechanism
     skips_indeterminacy_search: indeterminate components at these instants follow from those on either side
-    (study/search/open_between.py), and are not searched for
+    (study/compose/unknown_numbers.py), and are not searched for
     state_instants: for a state and its perturbed copy, the intermediate results already known
     """
 

@@ -235,3 +235,24 @@ def write_times(times: Sequence[float], span: float) -> list[str]:
 def format_error(value: float) -> str:
     """Format an error to one digit: `3e-11`, `0`."""
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") if value else "0"
+
+
+MAX_DIGITS = 10  # digits
+LARGE_ALONE, SMALL_ALONE = 1e10, 1e-4  # beyond these with an exponent
+
+
+def format_with_error(value: float, error: float) -> str:
+    """Format a number so that its last digit is that of the error's first; without an error with up to MAX_DIGITS
+    digits.
+    """
+    if not math.isfinite(value):
+        return "unbounded"
+    if value == 0.0:
+        return "0"
+    if error <= 0.0:
+        return f"{value:.{MAX_DIGITS}g}"
+    lead = math.floor(math.log10(abs(value)))
+    last = min(max(math.floor(math.log10(error)), lead - MAX_DIGITS + 1), lead)
+    if not SMALL_ALONE <= abs(value) < LARGE_ALONE or last > 0:
+        return f"{value:.{lead - last}e}"
+    return f"{value:.{-last}f}"

@@ -211,7 +211,7 @@ class WatchedNumber(NamedTuple):
             values = values * values
         if not self.is_along_cuts:
             return values.reshape(len(times))
-        from heuncli.study.search.stretches import compute_envelope
+        from heuncli.study.search.cuts import compute_envelope
 
         return np.asarray(compute_envelope(values)[:, int(self.condition.is_above)])
 
@@ -263,7 +263,7 @@ def watch_number(
     )
     channel = make_path_channel(numbers)
     if channel.has_cuts:
-        from heuncli.study.search.stretches import replace_runs
+        from heuncli.study.search.cuts import replace_runs
 
         setup = replace_runs(setup, channel.is_nonlinear)
     return WatchedNumber(study, setup, condition, channel.is_magnitude, channel.has_cuts), numbers.keys

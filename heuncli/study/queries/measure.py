@@ -143,7 +143,7 @@ def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) 
 
 def measure_impulse_along_cuts(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
     """Return the extreme of one impulse along a run of cuts, over its whole length."""
-    from heuncli.study.search.stretches import find_cut_extremes, find_stretch  # where there are runs of cuts
+    from heuncli.study.search.cuts import find_cut_extremes, find_stretch  # where there are runs of cuts
 
     setup = study.with_whole_cuts(False)
     whole = replace(study.results, impulses=study.make_impulse_blocks(setup))

@@ -23,8 +23,7 @@ from heuncli.base.units import parse_unit
 from heuncli.output.documents.as_csv import make_columns
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputDocument, OutputTable, append_unit
 from heuncli.output.tables.plurals import format_count
-from heuncli.study.quantities.digits import format_error
-from heuncli.study.quantities.error_digits import format_with_error
+from heuncli.study.quantities.digits import format_error, format_with_error
 from heuncli.study.quantities.table_units import Units
 
 DIRECTIONS = {1: "rises", -1: "falls", 0: "at the end"}

@@ -20,8 +20,7 @@ from heuncli.output.documents.document import (
     format_head,
 )
 from heuncli.output.tables.plurals import format_count
-from heuncli.study.quantities.digits import format_error
-from heuncli.study.quantities.error_digits import format_with_error
+from heuncli.study.quantities.digits import format_error, format_with_error
 from heuncli.study.quantities.table_units import Units
 
 COLUMNS = (

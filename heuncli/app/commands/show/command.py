@@ -22,7 +22,7 @@ from heuncli.output.web_page.frames import MAX_PAGE_FRAMES
 from heuncli.output.web_page.moving_page import render_moving_page
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.workflow import solve
 
 ENDINGS = (".html", ".htm")

@@ -33,7 +33,7 @@ from heuncli.base.errors import Problem, SpecError
 from heuncli.base.records import replace
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
-from heuncli.study.model.memory_estimate import MemoryBudget
+from heuncli.study.model.options import MemoryBudget
 from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.version import VERSION
 

@@ -1,10 +1,14 @@
-"""Find where time laws need more instants, so that no turning point is missed: loads and laws of drives.
+"""Find where laws of time and of coordinates need more instants, so that no turning point is missed.
 
 A body that cannot move feels no push, so that no integration step shows how fast a load on it changes; nor does a
 drive's law force small steps. Each law is sampled on its own, which costs almost nothing: its value and both its
 derivatives, because a ripple that hardly shows in a travel may dominate an acceleration. Instants are added to a grid
 until the cubics through four neighbours predict it (study/search/turnings.py). Features shorter than the distance of
 the samples are found by bounds of the values over intervals of time, which also hold for what was not sampled.
+
+Where such loads push along a constrained direction, no integration step notices them. So they are sampled directly:
+each interval of a grid once, unless cubics through its neighbours predict both its ends, and divided there until the
+cubics through four neighbours predict them (study/search/turnings.py).
 """
 
 from __future__ import annotations
@@ -17,8 +21,10 @@ from heuncli.base import tolerances
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
+from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import sort_distinct
-from heuncli.study.search.turnings import SampledTurns, refine_until_predicted
+from heuncli.study.search.turnings import NO_INSTANTS, SampledTurns, find_doubtful, refine_until_predicted
+from heuncli.study.solve.history import History, resample
 
 MIN_INTERVALS = 256  # intervals of a run whose bounds are checked, however few instants the grid has
 NEGLIGIBLE = 1e-9  # of the largest: smaller changes of a load or a law are in no digit shown
@@ -95,3 +101,38 @@ def refine_to_bounds(time_laws: Sequence[Expression], times: Array, max_instants
             left = k + np.arange(len(k))
             k = np.sort(np.concatenate([left, left + 1]))
     return times, True
+
+
+def refine_for_loads(setup: Setup, history: History, grid: Array, max_instants: int) -> tuple[Array, bool]:
+    """Return a grid (n,), ascending, with more instants where applied loads need them; and whether `max_instants` are
+    enough.
+    """
+
+    def loads(times: Array) -> Array:
+        """Sample forces and moments of all loads, (n_t, 6 n_loads); 0 where one is indeterminate."""
+        own = resample(setup.runner, history, times).loads
+        found = np.concatenate([own["force"], own["moment"]], axis=2).reshape(len(times), -1)
+        return np.where(np.isfinite(found), found, 0.0)
+
+    first_samples = SampledTurns(grid, loads(grid), complete=True)
+    # forces, moments: each of as much as the largest of its kind
+    largest = np.abs(first_samples.values).reshape(-1, 2, 3).max(axis=(0, 2), initial=0.0)
+    unseen = NEGLIGIBLE * np.tile(np.repeat(largest, 3), first_samples.values.shape[1] // 6)
+    probes = (
+        np.setdiff1d(np.linspace(grid[0], grid[-1], MIN_INTERVALS + 1), grid)
+        if len(grid) < MIN_INTERVALS
+        else NO_INSTANTS
+    )
+
+    def slack(size: Array, _: Array) -> Array:
+        return np.broadcast_to(unseen, size.shape)
+
+    found = refine_until_predicted(
+        loads,
+        first_samples,
+        slack,
+        max_instants=max_instants,
+        probes=probes,
+        is_doubtful=find_doubtful(first_samples, slack),
+    )
+    return found.times, found.complete

@@ -1,4 +1,4 @@
-"""Compare the shares by cause between a run and its check run, because their error is not that of the whole.
+"""Shares of loads by cause: put them into the results, and compare them between a run and its check run.
 
 Two shares that nearly cancel are larger than their sum and have a larger error. So the check run compares the shares
 themselves, kind by kind, like the loads.
@@ -7,6 +7,7 @@ themselves, kind by kind, like the loads.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
+from typing import Any
 
 import numpy as np
 
@@ -22,11 +23,36 @@ from heuncli.loads.kinetostatics.shares import (
     find_cause_columns,
     find_shares,
     foundation_shares_blocks,
+    joint_shares_block,
 )
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.results.results import Array
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.results.results import Array, Block
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.balance_terms import BalanceTerms
+from heuncli.study.solve.error_extents import BalanceTerms
+
+
+def add_shares(
+    blocks: dict[str, Any], shares: Shares, mechanism: Mechanism, states: BodyStates, moment_point: Array
+) -> None:
+    """Add shares by cause to the loads of joints and foundation, in place; moment_point: of M_s, (3,)."""
+    if "joints" in blocks:
+        for load in shares.joints:
+            if load.joint.name in blocks["joints"]:  # if single joints are requested, only these are shown
+                blocks["joints"][load.joint.name]["shares"] = joint_shares_block(shares, load)
+        for coupled in shares.couplings:
+            carried = {number.name: number.values for number in list_numbers(coupled) if number.is_sum}
+            blocks["couplings"][coupled.coupling.name]["shares"] = shares.to_blocks(carried)
+    if "foundation" in blocks:
+        for keys, foundation_block in foundation_shares_blocks(mechanism, states, shares, moment_point).items():
+            find_block(blocks["foundation"], keys)["shares"] = foundation_block
+
+
+def find_block(block: Block, keys: tuple[str, ...]) -> Block:
+    """Return the block under some keys."""
+    for key in keys:
+        block = block[key]
+    return block
 
 
 class ComparedShares(NamedTuple):
