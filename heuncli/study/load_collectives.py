@@ -6,7 +6,7 @@ each other have ranges within 2 e, except for cycles no larger than that themsel
 (Cohen-Steiner, Edelsbrunner, Harer 2007). The equivalent range is a norm of the ranges, so its error is at most the
 growth that follows if each of them, including those counted separately, were 2 e larger.
 
-D ∝ Σ n R^m        Palmgren (1924), Miner (1945): damages add up; a Wöhler line of slope m:  N R^m = constant
+    D ∝ Σ n R^m        Palmgren (1924), Miner (1945): damages add up; a Wöhler line of slope m:  N R^m = constant
     R_eq = (Σ n R^m / N)^(1/m)        N: the cycle number that the range belongs to
 Mean stress, endurance limits and the order of the cycles are not considered.
 

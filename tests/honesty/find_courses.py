@@ -24,8 +24,8 @@ import mpmath as mp
 import numpy as np
 
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.measures import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.app.cli.entry import enter
 from heuncli.app.commands.find.page import FindPage, to_block

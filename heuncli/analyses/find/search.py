@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.analyses.find.poles import find_hidden_pole, is_far_from_value
+from heuncli.analyses.find.touches import find_hidden_pole, is_far_from_value
 from heuncli.analyses.variants.course import (
     FIRST_DISTRUST,
     GOLDEN,

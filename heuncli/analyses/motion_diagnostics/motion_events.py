@@ -11,13 +11,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from heuncli.analyses.motion_diagnostics.numerics.attitudes import (
+from heuncli.analyses.motion_diagnostics.chain_shares import (
     SEQUENCES,
+    Loop,
     compute_condition,
+    compute_loop_motions,
+    continue_signs,
+    find_loops,
     project_axis,
     to_quaternions,
 )
-from heuncli.analyses.motion_diagnostics.numerics.shares import Loop, compute_loop_motions, continue_signs, find_loops
 from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple

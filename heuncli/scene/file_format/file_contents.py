@@ -14,9 +14,8 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding, SourceLocation
-from heuncli.base.number_range import are_in_range, is_in_range, range_error
 from heuncli.base.records import replace
-from heuncli.base.units import Dimension, describe
+from heuncli.base.units import Dimension, are_in_range, describe, is_in_range, range_error
 from heuncli.scene.file_format.columns import Columns, iter_rows
 from heuncli.scene.file_format.format import ExpectEntry
 from heuncli.scene.file_format.format_shapes import MeshShape

@@ -1,9 +1,8 @@
 """Judge the results as a whole: make their block `accuracy`, and refuse numbers that are not finite.
 
-The estimates are made while the motion is checked (study/solve/load_errors.py).
-
-`nan` marks what no law decides (`null` in JSON): indeterminate loads of joints and sections, axes and lines that a
-wrench does not have, and numbers that rounding decides close to a singular pose. Everything else is a number.
+Errors are estimated while the motion is checked (study/solve/load_errors.py). `nan` marks what no law decides (`null`
+in JSON): indeterminate loads of joints and sections, axes and lines that a wrench does not have, and numbers that
+rounding decides close to a singular pose. Everything else is a number.
 """
 
 from __future__ import annotations

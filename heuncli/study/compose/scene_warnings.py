@@ -1,7 +1,8 @@
-"""Warn of what a scene leaves out by mistake or by its model: accelerated bodies, and belts, wheels and threads at impulses.
+"""Warn of what a reader of a state or of an impulse should check: accelerated bodies, belts, wheels and threads.
 
-This is checked only where everything stands still, or where drives alone turn at constant rates and nothing moves
-against the bodies they carry. Other motion is intended.
+Bodies that the loads of a state accelerate may miss a cylinder or a support. This is checked only where everything
+stands still, or where drives alone turn at constant rates and nothing moves against the bodies they carry. Belts,
+wheels and threads are watched by events of a motion, which cover neither the instant of a state nor impulses.
 """
 
 from __future__ import annotations

@@ -6,11 +6,12 @@ number feels depends on the motion and on the instant. So the states of such ins
 directions, settled and recovered again: the change of a number is its error, and it is unknown (nan) where that exceeds
 a table's digits of the largest of its kind.
 
-It follows from the pose alone, by the null space of the closures. Between two instants that null space turns steadily
-with the pose as long as its dimension is constant; a component with a share in it on both sides has one between them,
-and a component with none on either side has none, except in single poses. So the search of extremes finds the
-self-stresses on its grid, and between two instants of it with equal verdicts it uses theirs. It does not where the
-number of dependent rows differs, where a contact has closed or opened, or where the pose of either side is singular.
+Whether a component is indeterminate follows from the pose alone, by the null space of the closures. Between two
+instants that null space turns steadily with the pose as long as its dimension is constant; a component with a share in
+it on both sides has one between them, and a component with none on either side has none, except in single poses. So the
+search of extremes finds the self-stresses on its grid, and between two instants of it with equal verdicts it uses
+theirs. It does not where the number of dependent rows differs, where a contact has closed or opened, or where the pose
+of either side is singular.
 """
 
 from __future__ import annotations

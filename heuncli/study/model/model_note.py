@@ -1,8 +1,7 @@
 """Make the block `model` of the results: which model heun made of the scene, which method `auto` begins with, and why.
 
 Driven motions that leave no freedom are followed and not integrated (motion/integration/integrated_scene.py). A motion
-that turns out to be stiff, or cut by events at nearly every step, is restarted (motion/integration/run/supervision.py,
-motion/integration/run/supervision.py).
+that turns out to be stiff, or cut by events at nearly every step, is restarted (motion/integration/run/supervision.py).
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""The options of one command beside the spec: how they override it, which values they take, and the memory that results may take.
+"""The options of one command beside the spec: their values, how they override it, and the memory that results may take.
 
-The schema of results gives the count of numbers at an instant; the bytes per number on its way to the output, and those
-of the kernel's solutions, are measured (`MemoryBudget`, SOLUTION_COPIES). Where results are composed part by part
-(study/compose/parts.py), their numbers go to a file, and memory holds the states of all instants. The number of steps
-is unknown beforehand, except that each jump or kink in time ends one.
+Memory is estimated before anything moves. The schema of results gives the count of numbers at an instant; the bytes per
+number on its way to the output, and those of the kernel's solutions, are measured (`MemoryBudget`, SOLUTION_COPIES).
+Where results are composed part by part (study/compose/parts.py), their numbers go to a file, and memory holds the
+states of all instants. The number of steps is unknown beforehand, except that each jump or kink in time ends one.
 """
 
 from __future__ import annotations

@@ -6,7 +6,8 @@ derivatives, because a ripple that hardly shows in a travel may dominate an acce
 until the cubics through four neighbours predict it (study/search/turnings.py). Features shorter than the distance of
 the samples are found by bounds of the values over intervals of time, which also hold for what was not sampled.
 
-Where such loads push along a constrained direction, no integration step notices them. So they are sampled directly:
+Loads that depend on coordinates change as fast as the body moves that carries them. Where they push along a constrained
+direction, no integration step notices them. So they are sampled directly:
 each interval of a grid once, unless cubics through its neighbours predict both its ends, and divided there until the
 cubics through four neighbours predict them (study/search/turnings.py).
 """

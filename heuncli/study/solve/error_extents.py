@@ -1,7 +1,7 @@
 """Compare two runs of a motion: differences of each quantity, and the terms whose rounding its sums carry.
 
-They have no error in common with positions. A small body in a large scene may turn by far more than its position errors
-suggest; orbital and spin moments of momentum may have opposite errors.
+Momenta and energies have no error in common with positions. A small body in a large scene may turn by far more than its
+position errors suggest; orbital and spin moments of momentum may have opposite errors.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from heuncli.analyses.balancing.options import BalanceOptions
+from heuncli.analyses.balancing.orders import classify_order
+from heuncli.analyses.balancing.results import BalanceOptions
 from heuncli.analyses.balancing.study import balance
-from heuncli.analyses.balancing.verdicts import classify_order
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
 from tests.honesty.boundaries.part import Part, Row

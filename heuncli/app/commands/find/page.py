@@ -15,8 +15,8 @@ from heuncli.analyses.find.results import (
     UnresolvedBracket,
     UnsolvedStretch,
 )
-from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.measures import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
 from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple

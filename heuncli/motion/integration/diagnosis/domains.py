@@ -12,8 +12,8 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem
-from heuncli.base.number_range import range_error
 from heuncli.base.records import replace
+from heuncli.base.units import range_error
 from heuncli.motion.integration.conditions import point_motion
 from heuncli.motion.integration.diagnosis.guide_departures import Moving, cut_path_coordinates, find_left_paths
 from heuncli.motion.integration.evaluator import Evaluation

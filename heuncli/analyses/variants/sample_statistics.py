@@ -1,4 +1,13 @@
-"""Sobol indices: the share of a measure's variance that is due to each parameter.
+"""Estimate statistics from a random sample, and Sobol indices, each with the error that few draws leave.
+
+    mean        x̄ ± t s/√n                                  t: of n - 1 degrees of freedom, 97.5 %
+    deviation   s √c e^(± c z √((γ - (n - 3)/n)/(n - 1))/2) c = n/(n - z), γ: the sample's own kurtosis (Bonett 2006)
+    percentile  between two values of the sample            by how many of n lie below it, which is binomial in any law
+
+An interval contains the true value in 95 of 100 such samples, if the draws are independent of each other. Those of a
+mean and of a deviation do so somewhat less often where few are drawn from a skew law (91 of 100 samples of 100
+exponential numbers have their deviation within). A Latin hypercube or a Sobol sequence is more even than independent
+draws: its mean is more accurate than its interval says.
 
     f_A, f_B   the measure at two independent samples; f_i: at A with its i-th parameter from B
     V          the variance, of f_A and f_B together
@@ -24,13 +33,93 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from heuncli.analyses.variants.sampling import CONFIDENCE, BoundedEstimate
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
+CONFIDENCE = 0.95  # of intervals
+TAIL = 0.5 * (1.0 - CONFIDENCE)
+NORMAL = 1.959963984540054  # z: deviations of a normal law within which 95 % of it lie
+PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)
+MIN_COUNT = 2  # of numbers that have a deviation
+MIN_BOUNDED = 5  # of numbers whose deviation has an interval
+
+
+class BoundedEstimate(NamedTuple):
+    """A number estimated from a sample, and the ends of its interval; None: the sample is too small to bound it."""
+
+    value: float
+    low: float | None
+    high: float | None
+
+
+class SampleStatistics(NamedTuple):
+    """The statistics of a measure; percentiles: by their per cent."""
+
+    draws: int
+    mean: BoundedEstimate
+    deviation: BoundedEstimate
+    percentiles: tuple[tuple[float, BoundedEstimate], ...]
+
+
+def compute_statistics(values: Array) -> SampleStatistics | None:
+    """Compute the statistics of independent draws, (n,); None for fewer than two."""
+    from scipy.special import stdtrit  # a fifth of a second, where there are random sweeps
+
+    n = len(values)
+    if n < MIN_COUNT:
+        return None
+    sorted_values = np.sort(values)
+    mean, s = float(values.mean()), float(values.std(ddof=1))
+    mean_error = float(stdtrit(n - 1, 1.0 - TAIL)) * s / math.sqrt(n)
+    return SampleStatistics(
+        n,
+        BoundedEstimate(mean, mean - mean_error, mean + mean_error),
+        estimate_deviation(sorted_values, s),
+        tuple((percent, estimate_percentile(sorted_values, percent)) for percent in PERCENTS),
+    )
+
+
+def estimate_deviation(sorted_values: Array, s: float) -> BoundedEstimate:
+    """Estimate the standard deviation from a sorted sample, with Bonett's interval (2006, equations 3 to 5)."""
+    n = len(sorted_values)
+    if s == 0.0:
+        return BoundedEstimate(0.0, 0.0, 0.0)
+    if n < MIN_BOUNDED:
+        return BoundedEstimate(s, None, None)
+    cut = int(n / (2.0 * math.sqrt(n - 4)))
+    # the mean without its tails, which draw it to the side of a skew law
+    middle = float(sorted_values[cut : n - cut].mean())
+    kurtosis = n * float(np.sum(((sorted_values - middle) / s) ** 4)) / (n - 1) ** 2
+    c = n / (n - NORMAL)
+    log_error = 0.5 * c * NORMAL * math.sqrt(max(kurtosis - (n - 3) / n, 0.0) / (n - 1))
+    return BoundedEstimate(s, min(s, s * math.sqrt(c) * math.exp(-log_error)), s * math.sqrt(c) * math.exp(log_error))
+
+
+def estimate_percentile(sorted_values: Array, percent: float) -> BoundedEstimate:
+    """Estimate the value below which `percent` per cent lie, from a sorted sample; interpolated between two values
+    where it falls so.
+    """
+    n, share = len(sorted_values), 0.01 * percent
+    low_index, high_index = _find_least_count(TAIL, n, share) - 1, _find_least_count(1.0 - TAIL, n, share)
+    low = float(sorted_values[low_index]) if low_index >= 0 else None
+    high = float(sorted_values[high_index]) if high_index < n else None
+    return BoundedEstimate(float(np.quantile(sorted_values, share)), low, high)
+
+
+def _find_least_count(probability: float, n: int, share: float) -> int:
+    """Find the least k such that at most k of n draws lie below the share's quantile with at least this probability."""
+    from scipy.special import bdtr
+
+    low, high = -1, n
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if bdtr(middle, n, share) >= probability else (middle, high)
+    return high
+
+
 Places = npt.NDArray[np.signedinteger[Any]]
-MIN_COUNT = 8  # of samples for indices
-MIN_BOUNDED = 64  # of samples whose indices have intervals
+MIN_INDEX_COUNT = 8  # of samples for indices
+MIN_INDEX_BOUNDED = 64  # of samples whose indices have intervals
 EXTRA_CONFIDENCE = 0.03  # added to the share p at that many samples; it falls with the root of their number
 MAX_UNITS = 512
 RESAMPLES = 999
@@ -53,7 +142,7 @@ def compute_sobol_indices(rows: Array, repetitions: Places | None = None) -> tup
     Returns None where there are few samples, or the measure does not vary.
     """
     n = len(rows)
-    if n < MIN_COUNT:
+    if n < MIN_INDEX_COUNT:
         return None
     centred = rows - rows[:, :2].mean()
     A, B, exchanged = centred[:, 0], centred[:, 1], centred[:, 2:].T
@@ -63,7 +152,7 @@ def compute_sobol_indices(rows: Array, repetitions: Places | None = None) -> tup
     units = (
         np.arange(n) * min(n, MAX_UNITS) // n if repetitions is None else np.unique(repetitions, return_inverse=True)[1]
     )
-    weights = _draw_weights(int(units.max()) + 1) if n >= MIN_BOUNDED else None
+    weights = _draw_weights(int(units.max()) + 1) if n >= MIN_INDEX_BOUNDED else None
     return tuple(
         SobolIndices(
             _estimate_ratio(B * (f - A), v, units, weights), _estimate_ratio(0.5 * (A - f) ** 2, v, units, weights)
@@ -102,7 +191,7 @@ def _estimate_ratio(m: Array, v: Array, units: Places, weights: Array | None) ->
 
 def _confidence(n: int) -> float:
     """The share of drawings that lie within an interval, for n samples."""
-    return CONFIDENCE + EXTRA_CONFIDENCE * math.sqrt(MIN_BOUNDED / n)
+    return CONFIDENCE + EXTRA_CONFIDENCE * math.sqrt(MIN_INDEX_BOUNDED / n)
 
 
 def _quantile(deviations: Array, n: int) -> float:

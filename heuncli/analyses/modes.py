@@ -3,6 +3,9 @@
 A motion is linearised about its start if no load accelerates it there, otherwise about the equilibrium found from it; a
 `state` about itself only. In steady motions, where drives turn at constant rates, the modes are those in the rotating
 frame.
+
+Along an indifferent direction the equilibrium is known only as well as the path to it
+(loads/equilibrium/verification.py), and frequencies change along it.
 """
 
 from __future__ import annotations
@@ -12,9 +15,9 @@ from typing import Literal
 
 import numpy as np
 
-from heuncli.analyses.modes.equilibrium_errors import widen_errors
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.joint_kinds import RATES
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.equilibrium.steady_states import has_constant_rate
@@ -33,8 +36,45 @@ from heuncli.motion.linearisation.steady_motion import (
 from heuncli.multibody.mechanism.model import RopeLoad
 from heuncli.multibody.tree.layout import find_speed_rows
 from heuncli.results.results import Array
-from heuncli.scene.file_format.models import Spec
+from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.file_format.models import Drive, Spec
 from heuncli.study.model.setup import Setup, attach_locations, set_up
+
+DIFFERENCE_FACTOR = 2.0  # times the difference of two poses, as for errors of loads (study/solve/error_extents.py)
+
+
+def widen_errors(
+    modes: list[Mode], linearised_state: LinearisedState, neighbour_states: tuple[Array, ...]
+) -> list[Mode]:
+    """Return the modes with errors that cover those at neighbouring states (n_state,); growth within the error is
+    dropped.
+    """
+    neighbour_eigenvalues = [
+        values for state in neighbour_states if len(values := compute_eigenvalues(linearised_state, state))
+    ]
+    return [mode if mode.kind == "free" else widen_error(mode, neighbour_eigenvalues) for mode in modes]
+
+
+def compute_eigenvalues(linearised_state: LinearisedState, state: Array) -> Array:
+    """Return the eigenvalues of all motions about another state, (m,) [1/s]; empty if its laws have no slope there."""
+    try:
+        neighbour = linearise_scene(
+            linearised_state.scene, linearised_state.runner, linearised_state.t, state, linearised_state.holding
+        )
+    except SolveError:
+        return np.zeros(0, dtype=complex)
+    return np.array([mode.eigenvalue for mode in find_modes(neighbour.system, neighbour.indifferent)])
+
+
+def widen_error(mode: Mode, neighbour_eigenvalues: list[Array]) -> Mode:
+    """Return a mode whose error covers the nearest eigenvalue in each of the arrays (m,)."""
+    distance = max((float(np.abs(values - mode.eigenvalue).min()) for values in neighbour_eigenvalues), default=0.0)
+    error, value = mode.error + DIFFERENCE_FACTOR * distance, mode.eigenvalue
+    if abs(value.real) > error:
+        return replace(mode, error=error)
+    kind = "oscillation" if value.imag else "decay"
+    return replace(mode, kind=kind, eigenvalue=complex(0.0, value.imag), error=error)
+
 
 REST_HINT = "analysis: {type: rest} finds the rest position"
 CLOSER_START_HINT = "start the model closer to its rest position"
@@ -253,3 +293,23 @@ def require_differentiable(linearised_state: LinearisedState) -> None:
         consequence = "oscillations about it are not linear, however small"
         hint = "use a nearby position with type: state, or run a motion"
         raise SolveError(*(Problem("no-modes", f"{sentence}: {consequence}", hint=hint) for sentence in sentences))
+
+
+def exclude_entries(spec: Spec, entries: Sequence[str]) -> Spec:
+    """Return the spec without some forces, and with some drives held at their start."""
+    drives = dict(spec.drives)
+    joints = dict(spec.joints)
+    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+    for name, drive in spec.drives.items():
+        if f"drives.{name}" in entries:
+            drives[name] = hold_drive(drive, t)
+            if drive.quantity != "length":  # a rod has no start rate that must be removed
+                joints[drive.joint] = replace(joints[drive.joint], **{RATES[drive.quantity]: None})
+    forces = {name: force for name, force in spec.forces.items() if f"forces.{name}" not in entries}
+    return spec._replace(forces=forces, drives=drives, joints=joints)
+
+
+def hold_drive(drive: Drive, t: float) -> Drive:
+    """Return a drive that keeps its coordinate at the start value."""
+    value = 0.0 if drive.by_rate else drive.value.value(t)
+    return replace(drive, value=Expression.from_number(value, drive.value.location))

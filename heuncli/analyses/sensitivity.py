@@ -1,11 +1,4 @@
-"""The derivative of a measure that is known only within an error, by finite differences.
-    D(h) = (m(+h) - m(-h)) / 2h          off by m''' h^2/6, and by the noise e/h
-    R    = (4 D(h/2) - D(h)) / 3         off by less than |D(h/2) - D(h)|, and by 3 e/h
-    K(h) = (m(+h) - 2 m(0) + m(-h)) / h  halves with h where m is smooth, stays where it bends, doubles where it jumps
-    X    = K(h/2) - K(h)/2               of third order where m is smooth; known within 8 e/h
-If m has a kink J at c within the step, R is off by J (1/2 - 7c/6h) for c < h/2, else by J (1 - c/h)/6, which never
-exceeds |D(h/2) - D(h)| + |X|: the stated error contains both, and their noise. A third step, in no simple ratio to the
-first, shows whether D is quadratic in h between them; with waves shorter than the step it is not.
+"""Derivatives of measures by numbers of a spec, where a measure is known only within an error: by finite differences.
 
 The step is chosen so that the difference of two steps is about the noise: it begins at the cube root of the stated
 error and changes by factors of four. Where m has a kink or a jump, smaller steps show whether it is at the value or
@@ -15,11 +8,73 @@ near it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
-from heuncli.analyses.sensitivity.results import NoisyDerivative
 from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
+
+DerivativeKind = Literal["", "nothing", "one-sided", "kink", "refused"]
+
+
+class NoisyDerivative(NamedTuple):
+    """dm/dp within an error, in units of m and p.
+
+    kind: "nothing" if m does not depend on p; "one-sided"; "kink", with the derivatives `left` and `right` of it and
+    their errors; "refused", with the reason in `why`
+    step: half the distance of the variants used; at a kink, how far from the number it may be
+    """
+
+    value: float | None
+    error: float = 0.0
+    kind: DerivativeKind = ""
+    why: Reason = Reason()
+    left: tuple[float, float] | None = None
+    right: tuple[float, float] | None = None
+    step: float = 0.0
+
+
+class Contribution(NamedTuple):
+    """Effect of one number's tolerance on a measure: by the derivative, and by the variants within it.
+
+    size: largest known change, within an error; None if unknown
+    linear: change predicted by the derivative; below, above: changes at the ends, None if unsolved
+    bent: the variants do not lie on the derivative's line; the tolerance was then searched with `variants` variants,
+    `least` and `greatest` give distance and change of the extremes
+    why: the reason if a part of the tolerance range cannot be solved
+    """
+
+    name: str
+    spread: float
+    unit: str
+    size: float | None
+    error: float
+    linear: float | None
+    below: float | None
+    above: float | None
+    bent: bool = False
+    least: tuple[float, float] | None = None
+    greatest: tuple[float, float] | None = None
+    variants: int = 0
+    why: Reason = Reason()
+
+
+class SpreadSum(NamedTuple):
+    """Combined effect of all tolerances on a measure, each way: worst case and root sum of squares, with errors; None
+    if unknown.
+
+    corners: the measure with every number where it lowers it most, and where it raises it most
+    by_variant: the worst case comes from a variant, as that exceeds the sum
+    largest: the largest change of a variant of several numbers, with its error
+    """
+
+    contributions: tuple[Contribution, ...]
+    worst: tuple[float, float] | None
+    square: tuple[float, float] | None
+    corners: tuple[NoisyValue, NoisyValue]
+    by_variant: bool = False
+    largest: tuple[float, float] | None = None
+
 
 FIRST_STEP, MAX_STEP, MIN_STEP = 2.0**-8, 2.0**-4, 2.0**-24  # steps, of the number's size
 SUFFICIENT_ERROR = 1e-6  # of the derivative: an error small enough to keep the step

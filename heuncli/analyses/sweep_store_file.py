@@ -13,7 +13,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.rows import SweepHead
+from heuncli.analyses.sweep_rows import SweepHead
 from heuncli.analyses.variants.measures import MeasureLabel
 from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import Draws, Plan

@@ -1,6 +1,6 @@
-"""Make the columns of a sweep: each parameter as numbers of one unit, or as texts if it has none.
+"""The description of a sweep, its results, one row per variant, and the columns made of them.
 
-All formats use them: the headings and cells of CSV and Parquet, and the values under `set` in JSON.
+All formats use the columns: the headings and cells of CSV and Parquet, and the values under `set` in JSON.
 """
 
 from __future__ import annotations
@@ -8,11 +8,31 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.measures import MISSING_KINDS
+from heuncli.analyses.variants.evaluation import Values
+from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureLabel, VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.quantity import NumberWithUnit, ParameterValue
+
+
+class SweepHead(NamedTuple):
+    """The description of a sweep: the spec with its digest, what is varied, what is measured."""
+
+    title: str
+    path: str
+    sha256: str
+    version: str
+    plan: Plan
+    measures: tuple[MeasureLabel, ...]
+
+
+class SweptRow(NamedTuple):
+    """A variant: its number in the plan, its values, and its result."""
+
+    number: int
+    values: Values
+    answer: VariantResult
+
 
 NUMBER = "number"
 CODE, REASON = "code", "reason"

@@ -1,6 +1,6 @@
-"""Modes of a spec as motions of its bodies: rotation and displacement of the centre of mass of each. dx = shift + turn
-× (x − x_c)      of a point x of a body, to first order; complex if points do not pass the
-pose at rest together, as on rotating shafts
+"""Modes of a spec as motions of its bodies: rotation and displacement of the centre of mass of each.
+dx = shift + turn × (x − x_c)      of a point x of a body, to first order; complex if points do not pass the
+                                   pose at rest together, as on rotating shafts
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.modes.study import solve_modes, to_results
+from heuncli.analyses.modes import solve_modes, to_results
 from heuncli.base.records import record, replace
 from heuncli.motion.linearisation.oscillations import SceneModes
 from heuncli.multibody.tree.prepare import PreparedScene

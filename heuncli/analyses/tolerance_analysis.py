@@ -1,24 +1,20 @@
-"""Combined effect of the tolerances of several numbers on a measure.
-    worst case         sum over the numbers of the largest change within the tolerance of each
-    root sum square    the root of the sum of their squares, for independent tolerances
-Each number is set to both ends of its tolerance and to a place between on either side. If these and the derivative lie
-on one line, the largest change is at an end. Otherwise the tolerance range is searched: the measure is followed over it
-as in `heun find`. The sums hold if the numbers act independently. So all numbers are also set together to where each
-lowers and raises the measure most; then the nonlinear ones are varied one by one, the others fixed, until no variant
-shows more. The worst case is never less than what a variant showed.
-"""
+"""Combined effect on a measure of the tolerances of several numbers, as given by `--spread`."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
 from heuncli.analyses.variants.course import MeasureCourse, Sample, SampleLimitError, make_sample
 from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
 from heuncli.analyses.variants.measures import NoisyValue, Reason
-from heuncli.analyses.variants.spec_numbers import SpecNumber
+from heuncli.analyses.variants.parameters import AxisError, split_at_commas, split_name
+from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
+from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.units import describe, parse_unit
+from heuncli.scene.file_format.quantity import parse_number_with_unit
 
 LINEARITY_TOLERANCE = 0.05  # of the change predicted by the derivative
 INNER_FRACTION = 0.61  # of a tolerance: inner places between its ends and the value
@@ -174,3 +170,37 @@ def compute_change(variant: NoisyValue, base: NoisyValue) -> tuple[float, float]
 
 def _get_magnitude(change: tuple[float, float]) -> float:
     return abs(change[0])
+
+
+FORM = "expected NAME=VALUE,..., the tolerance of each parameter"
+HINT = "for example --spread L=0.1mm,e=0.02mm"
+
+
+def parse_spreads(text: str, spec_numbers: SpecNumbers) -> list[NumberSpread]:
+    """Return the tolerances of numbers, each in its number's unit. Raises AxisError."""
+    spreads: dict[str, NumberSpread] = {}
+    for word in split_at_commas(text):
+        name, value = split_name(word.strip(), FORM, HINT)
+        if name in spreads:
+            raise AxisError(name, "has two spreads", HINT)
+        number = spec_numbers.find_number(name)
+        spreads[name] = NumberSpread(number, _parse_size(word.strip(), value, number))
+    return [*spreads.values()]
+
+
+def _parse_size(word: str, value: str, number: SpecNumber) -> float:
+    """Return the tolerance of a number, in its unit. Raises AxisError."""
+    quantity = parse_number_with_unit(value)
+    if quantity is None or quantity.value <= 0.0:
+        raise AxisError(word, "a spread is a positive number, with its unit", HINT)
+    if not quantity.unit:
+        if number.size != 1.0:
+            raise AxisError(word, f"{number.name} is given in {number.unit}: its spread needs a unit", HINT)
+        return quantity.value
+    try:
+        size, dimension = parse_unit(quantity.unit)
+    except Finding as finding:
+        raise AxisError(word, finding.message, finding.hint) from None
+    if number.unit and dimension != parse_unit(number.unit)[1]:
+        raise AxisError(word, f"{describe(dimension)}, but {number.name} is given in {number.unit}", HINT)
+    return quantity.value * size / number.size

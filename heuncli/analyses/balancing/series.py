@@ -1,7 +1,12 @@
-"""Polynomials on [-1, 1] from their values at Gauss nodes: coefficients, integrals and Fourier integrals.
+"""Series of a quantity over a cycle: Legendre polynomials on pieces, and its orders (Fourier).
 
-    f = sum c_n P_n,   c_n = (2n + 1)/2 sum w_j P_n(u_j) f_j,   ∫ P_n e^{-iωu} du = 2 (-i)^n j_n(ω)
+f = sum c_n P_n,   c_n = (2n + 1)/2 sum w_j P_n(u_j) f_j,   ∫ P_n e^{-iωu} du = 2 (-i)^n j_n(ω)
 j_n: spherical Bessel functions, by upward recurrence where ω is larger than n, else by downward recurrence (Miller).
+
+Over one turn the orders are 1, 2, ...; over two also the half orders. In a plane every order is two rotating vectors:
+    Z = F_1 + i F_2 = sum (P_k e^{ikφ} + N_k e^{-ikφ}),     P_k = ½ (a_1 + i a_2),   N_k = ½ (a_1* + i a_2*)
+with F_j = Re sum a_j e^{ikφ}: |P_k| turns with the angle and can be cancelled by a weight on a shaft; |N_k| turns
+against it.
 """
 
 from __future__ import annotations
@@ -10,6 +15,7 @@ from functools import cache
 
 import numpy as np
 
+from heuncli.base import tolerances
 from heuncli.results.results import Array
 
 MAX_NODES = 16  # nodes; polynomials have as many coefficients
@@ -117,3 +123,37 @@ def bessel_downward(x: Array) -> Array:
     larger = np.abs(first) > np.abs(second)
     scale = np.where(larger, first, second) / np.where(larger, found[:, 0], found[:, 1])
     return np.asarray(found * scale[:, None])
+
+
+AXES = np.eye(3)
+
+
+def relative_tail(values: Array, quarter: int, terms: float) -> float:
+    """Return the size of the highest orders of values (n, ...) relative to the largest order except the mean; 0 if they
+    are rounding.
+
+    terms: size of the terms whose sums the values are
+    """
+    n = len(values)
+    sizes = np.abs(np.fft.rfft(values, axis=0)).reshape(n // 2 + 1, -1)[1:].max(axis=1) * 2.0 / n
+    highest = float(sizes[len(sizes) - len(sizes) // quarter :].max())
+    return highest / float(sizes.max()) if highest > tolerances.SUM_ROUNDING * terms else 0.0
+
+
+def make_plane_directions(axis: Array) -> tuple[Array, Array]:
+    """Return two directions (3,) that form a right-handed system with the axis: projections of the two world axes that
+    follow the one nearest to it.
+    """
+    k = int(np.argmax(np.round(np.abs(axis), 9)))
+    first = AXES[(k + 1) % 3] - (AXES[(k + 1) % 3] @ axis) * axis
+    first /= np.sqrt(first @ first)
+    return first, np.cross(axis, first)
+
+
+def compute_rotating_vectors(amplitudes: Array, axis: Array) -> tuple[Array, Array]:
+    """Return P and N, complex (m,), of vector amplitudes (m, 3) across an axis: the parts that turn with and against
+    the angle.
+    """
+    first_direction, second_direction = make_plane_directions(axis)
+    a, b = amplitudes @ first_direction, amplitudes @ second_direction
+    return 0.5 * (a + 1j * b), 0.5 * (a.conj() + 1j * b.conj())

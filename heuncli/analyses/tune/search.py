@@ -1,14 +1,17 @@
-"""Descend to the next minimum by two methods in turn, each restarted from the best variant.
+"""Search for the best variant: over the whole box, and down to the next minimum.
 
 COBYLA (Powell 1994) fits planes to its trials, for the goal and each constraint: it is quick where these are smooth,
 and ends early at a kink, such as that of a largest force. The simplex of Nelder and Mead (1965) only compares, creeps
 along kinks, and treats constraints as kinks of its merit: a weight times their violation. A point that neither improves
 is a minimum, as far as both can tell.
+
+The members of a generation are independent, so they are solved together, in as many processes as there are.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -144,3 +147,52 @@ def make_simplex(place: Array, step: float) -> Array:
     for i, x in enumerate(place):
         corners[i + 1, i] = x + step if 0.0 <= x + step <= 1.0 else x - step
     return corners
+
+
+OVERVIEW_PHASE = "overview"
+EVALUATION_SHARE = 0.4  # of all evaluations
+MEMBERS_PER_VARIABLE, MIN_MEMBERS = 4, 8  # members of a generation per variable plus one; at least
+MUTATION, RECOMBINATION = (0.4, 0.9), 0.8  # mutation: factors of the difference of others; share of changed variables
+CONVERGENCE = 1e-3  # spread of the ranks below which the descent takes over
+
+
+def search_globally(trials: Trials) -> None:
+    """Find the good regions of the box. Impure: tries variants."""
+    from scipy import optimize  # imported only for tuning
+
+    trials.phase = OVERVIEW_PHASE
+    task = trials.task
+    first = make_first_generation(trials)
+    trials.try_places(list(first))
+    trials.set_scales()
+    goals = [trials.scaled_goal(trial) for trial in trials.history if trial.is_solved]
+    median_goal = float(np.median(goals)) if goals else 0.0
+
+    def rank_members(places: Array) -> Array:
+        """Return the ranks of the members of a generation (n, m)."""
+        return np.array([trials.compute_rank(trial, median_goal) for trial in trials.try_places(list(places.T))])
+
+    generations = int(EVALUATION_SHARE * task.max_variants) // len(first) - 1
+    if generations > 0 and trials.remaining:
+        evolve: Any = optimize.differential_evolution  # the types do not know vectorized=True
+        evolve(
+            rank_members, [(0.0, 1.0)] * len(task.variables), init=first, maxiter=generations, mutation=MUTATION,
+            recombination=RECOMBINATION, tol=CONVERGENCE, polish=False, vectorized=True, updating="deferred",
+            seed=np.random.default_rng(task.seed),
+        )  # fmt: skip
+    trials.set_scales()
+
+
+def make_first_generation(trials: Trials) -> Array:
+    """Return the first members (m, n), including the spec's own values if these are within bounds."""
+    from scipy.stats import qmc
+
+    task = trials.task
+    n = len(task.variables)
+    members = max(MIN_MEMBERS, MEMBERS_PER_VARIABLE * (n + 1))
+    sobol_points = qmc.Sobol(n, seed=np.random.default_rng(task.seed)).random_base2(math.ceil(math.log2(members)))
+    places: Array = sobol_points[: max(min(members, task.max_variants), 5)]
+    spec_places = [variable.spec_place for variable in task.variables]
+    if all(place is not None for place in spec_places):
+        places[0] = np.array(spec_places, dtype=float)
+    return places

@@ -28,9 +28,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from heuncli.analyses.sweep_store.columns import make_parameter_columns
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.sweep_store.store_file import (
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow, make_parameter_columns
+from heuncli.analyses.sweep_store_file import (
     convert_errors,
     initialize_store,
     read_head,
