@@ -123,23 +123,23 @@ def warn_of_wheels(setup: Setup, history: History, blocks: Block, impulses: Impu
     if not setup.spec.rolling:
         return ()
     from heuncli.study.compose.scene_warnings import (  # few scenes have them
-        warn_of_belts_at_impulses,
-        warn_of_belts_at_instant,
+        warn_of_wheels_at_impulses,
+        warn_of_wheels_at_instant,
     )
 
     instant_warnings = (
-        warn_of_belts_at_instant(setup.spec, blocks.get("couplings", {})) if history.checked_run is None else ()
+        warn_of_wheels_at_instant(setup.spec, blocks.get("couplings", {})) if history.checked_run is None else ()
     )
-    return (*instant_warnings, *(warn_of_belts_at_impulses(setup.spec, impulses) if impulses is not None else ()))
+    return (*instant_warnings, *(warn_of_wheels_at_impulses(setup.spec, impulses) if impulses is not None else ()))
 
 
 def warn_of_threads(setup: Setup, impulses: Impulses | None) -> tuple[str, ...]:
     """Warn of threads that transmit impulses."""
     if impulses is None or not any(own.type == "screw" for own in setup.spec.couplings.values()):
         return ()
-    from heuncli.study.compose.scene_warnings import warn_of_belts_at_impulses  # few scenes have them
+    from heuncli.study.compose.scene_warnings import warn_of_threads_at_impulses  # few scenes have them
 
-    return tuple(warn_of_belts_at_impulses(setup.spec, impulses))
+    return tuple(warn_of_threads_at_impulses(setup.spec, impulses))
 
 
 def warn_of_belts(setup: Setup, recovery: Recovery, blocks: Block, impulses: Impulses | None) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ wheels and threads are watched by events of a motion, which cover neither the in
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,8 +19,10 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Belt, RollingWheel, Screw
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.resolve_couplings import SLACK_BELT_MESSAGE, format_rounded_up
-from heuncli.study.compose.impulses import Impulses
 from heuncli.study.compose.recovery import Recovery
+
+if TYPE_CHECKING:  # a state has no impulses
+    from heuncli.study.compose.impulses import Impulses
 
 MAX_NAMED = 3  # bodies that are named
 UNITS = {"angle": "rad/s\u00b2", "travel": "m/s\u00b2"}

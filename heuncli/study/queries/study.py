@@ -300,9 +300,6 @@ class Study:
         return bounds
 
 
-NO_REPORTS: frozenset[str] = frozenset()
-
-
 def find_partial_friction(study: Study, times: Iterable[float]) -> dict[float, list[PartialFriction]]:
     """Return the friction that is below its full value, by instant; instants without any are left out."""
     mechanism = study.setup.scene.mechanism
@@ -311,7 +308,7 @@ def find_partial_friction(study: Study, times: Iterable[float]) -> dict[float, l
         return {}
     if study.has_one_instant:
         instants = study.results.time
-    return list_partial_friction(mechanism, study.find_recovery(instants, NO_REPORTS).solutions)
+    return list_partial_friction(mechanism, study.find_recovery(instants, NONE).solutions)
 
 
 def make_friction_warning(study: Study, path: str, time: float | None) -> str | None:
