@@ -55,6 +55,7 @@ PHASES = (
     ("heuncli.study.compose.recovery", "while loads were computed"),
     ("heuncli.study.compose.blocks", "while loads were computed"),
     ("heuncli.loads.kinetostatics", "while loads were computed"),
+    ("heuncli.output.documents", "while the results were written"),
     ("heuncli.output.tables", "while the results were written"),
     ("heuncli.base.files", "while the results were written"),
 )  # fmt: skip

@@ -247,7 +247,7 @@ def missing_type_errors(
         yield unknown_type_error(data, block, list(models))
         return
     known_keys = list(dict.fromkeys(key for model in models.values() for key in keys_of(model)))
-    unknown_keys = [key for key in data if key not in known_keys and not _stands_for_type(str(key), data)]
+    unknown_keys = [key for key in data if key not in known_keys and not _replaces_type(str(key), data)]
     mended = {key: value for key, value in data.items() if key not in unknown_keys}
     mended |= match_misspelt_keys(data, known_keys)
     native = {find_native_key(str(key), known_keys): data[key] for key in unknown_keys}
@@ -260,7 +260,7 @@ def missing_type_errors(
         yield unknown_key_error((key,), known_keys)
 
 
-def _stands_for_type(key: str, data: Mapping[str, Any]) -> bool:
+def _replaces_type(key: str, data: Mapping[str, Any]) -> bool:
     """Whether an unknown key is another word for `type`, or one for it by mistake, which is told with the type."""
     return find_native_key(key, ["type"]) is not None or key == find_similar("type", [str(name) for name in data])
 

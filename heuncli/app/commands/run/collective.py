@@ -31,7 +31,7 @@ EXCLUDED_OPTIONS = ("measure", "only", "at", "all", "by_cause")  # options that 
 
 
 class CollectiveTask(NamedTuple):
-    """The paths to count, and how cycles are counted."""
+    """The paths to count, and how cycles are collectives."""
 
     paths: Sequence[str]
     counting: Counting
@@ -78,7 +78,7 @@ def parse_paths(words: str) -> list[str]:
 
 
 def parse_counting(request: RunRequest) -> Counting:
-    """Parse how cycles are counted. Raises UsageError with every invalid option."""
+    """Parse how cycles are collectives. Raises UsageError with every invalid option."""
     is_closed = request.repeat == CLOSED
     counting = Counting(
         slopes=() if request.slope is None else tuple(dict.fromkeys(map(parse_number, request.slope.split(",")))),
@@ -123,22 +123,22 @@ def make_collectives_document(task: CollectiveTask, study: Study, units: Units) 
     """Count the collectives of a study, and make their document. Raises UsageError."""
     try:
         collect_results([partial(find_values, study.results, path) for path in task.paths])
-        counted = count_collectives(study, task.paths, task.counting)
+        collectives = count_collectives(study, task.paths, task.counting)
     except NotOneNumber as error:
         raise UsageError(
             *(problem._replace(message=f"{OPTION}: {problem.message}") for problem in error.problems)
         ) from None
     has_impulses = bool(study.history.impulses)
-    tables = [table for one in counted for table in make_tables(one, units, has_impacts=has_impulses)]
+    tables = [table for one in collectives for table in make_tables(one, units, has_impacts=has_impulses)]
     return OutputDocument(
-        study.results.title, parts=tables, make_block=partial(make_block, study.results, counted),
-        make_records=partial(make_records, counted),
+        study.results.title, parts=tables, make_block=partial(make_block, study.results, collectives),
+        make_records=partial(make_records, collectives),
     )  # fmt: skip
 
 
-def make_block(results: Results, counted: Sequence[Collective]) -> dict[str, Any]:
+def make_block(results: Results, collectives: Sequence[Collective]) -> dict[str, Any]:
     """Make the JSON of collectives."""
     head = {"heun": FORMAT, "title": results.title, "spec": results.spec, "version": results.version}
     axes = {"axes": results.model["axes"]} if "axes" in results.model else {}
-    collectives = {one.history.path: to_json_block(one) for one in counted}
-    return head | axes | {"status": results.status, "collectives": collectives}
+    blocks = {one.history.path: to_json_block(one) for one in collectives}
+    return head | axes | {"status": results.status, "collectives": blocks}

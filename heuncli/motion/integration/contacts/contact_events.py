@@ -262,15 +262,9 @@ class Contacts:
         )
         struck_names += tuple(self.layout.contacts[catch.contact].name for catch in catches if catch.rate != 0.0)
         result = ImpulseResult(
-            time,
-            solution,
-            causes,
-            outcome.after_state,
-            outcome.work,
-            self.holding.copy(),
-            struck_names,
+            time, solution, causes, outcome.after_state, outcome.work, self.holding.copy(), struck_names,
             shared_impulses,
-        )
+        )  # fmt: skip
         event = make_impulse_event(self.evaluator, given_impulse, sides, result)
         energy_scale = 0.5 * float(outcome.impulses.impulses**2 @ np.diag(problem.A)) + free_impulse_energy(
             self.layout, sides.impulses
