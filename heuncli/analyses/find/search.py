@@ -27,7 +27,7 @@ from heuncli.analyses.variants.course import (
 )
 from heuncli.analyses.variants.course_extremes import clip_inside
 
-END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: closer to failing variants the search of edges (study.py) takes over
+END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: closer to failing variants study.py searches the edge
 NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: closer to a jump or an edge predictions are never certain
 MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
 MAX_STEEPNESS = 10.0  # times the change predicted by the slope outside: more across the narrowest bracket is a jump
