@@ -33,7 +33,7 @@ from heuncli.motion.linearisation.steady_motion import (
     find_fastest_rate,
     linearise_scene,
 )
-from heuncli.multibody.mechanism.model import RopeLoad
+from heuncli.multibody.mechanism.loads import RopeLoad
 from heuncli.multibody.tree.layout import find_speed_rows
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression

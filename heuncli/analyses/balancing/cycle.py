@@ -26,7 +26,8 @@ from heuncli.loads.kinetostatics.reactions import project_to_plane
 from heuncli.motion.integration.integrated_scene import find_determined_motion
 from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array
 from heuncli.scene.expressions.grammar import Scope, compile_expression

@@ -28,10 +28,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.multibody.mechanism.model import (
-    Load,
-    Mechanism,
-)
+from heuncli.multibody.mechanism.loads import Load
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec

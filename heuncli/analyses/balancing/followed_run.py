@@ -27,7 +27,7 @@ from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.multibody.mechanism.model import JointLoad, Load
+from heuncli.multibody.mechanism.loads import JointLoad, Load
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Block
 from heuncli.scene.expressions.programs import Expression

@@ -40,7 +40,8 @@ from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.redundancy.count import count_redundancy
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.runner import make_runner
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression

@@ -26,7 +26,7 @@ from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.kinetostatics.shares import GRAVITY, MOTION
 from heuncli.motion.integration.evaluator import CAUSES, Evaluation
 from heuncli.motion.linearisation.linearise import LinearisedEquations
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.results.results import Array
 

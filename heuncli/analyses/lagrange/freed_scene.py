@@ -17,7 +17,8 @@ from heuncli.base.records import record, replace
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner, make_runner
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
-from heuncli.multibody.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad, Load, PairLoad, PointLoad
+from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.layout import Layout, find_speed_rows
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array

@@ -25,7 +25,7 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import find_determined_motion
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.results.results import Array
 from heuncli.scene.expressions.grammar import Scope, compile_expression

@@ -29,7 +29,7 @@ from heuncli.loads.kinetostatics.actions import collect_applied_loads
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.motion.linearisation.smoothness import iter_without_derivative
-from heuncli.multibody.mechanism.model import JointLoad, Load, PointLoad
+from heuncli.multibody.mechanism.loads import JointLoad, Load, PointLoad
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 

@@ -10,7 +10,7 @@ from heuncli.base.records import record
 from heuncli.kernel.choose import scene as kernel
 from heuncli.loads.equilibrium.coordinates import Coordinates
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import vector_array
 from heuncli.results.results import Array

@@ -14,7 +14,7 @@ from heuncli.base.records import record
 from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import ThreadLoad
+from heuncli.multibody.mechanism.loads import ThreadLoad
 from heuncli.results.results import Array
 
 if TYPE_CHECKING:

@@ -27,7 +27,8 @@ from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.foundation import inertia_rows
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block, Magnitudes
 from heuncli.scene.shapes.rotations import cross_components, instants_first, quadratic_form, squared_lengths
 

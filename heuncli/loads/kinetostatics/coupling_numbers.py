@@ -37,7 +37,8 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.multibody.mechanism.couplings import CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.results.results import Array
 from heuncli.scene.file_format import couplings as c
 from heuncli.scene.file_format.couplings import RollingWheel, Screw

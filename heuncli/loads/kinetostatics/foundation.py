@@ -24,7 +24,8 @@ from heuncli.base.records import record
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.reactions import project_to_plane
-from heuncli.multibody.mechanism.model import GROUND, JointLoad, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.shapes.rotations import cross_components, cross_rows, instants_first, rotate_components
 

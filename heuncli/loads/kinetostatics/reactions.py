@@ -28,7 +28,8 @@ import numpy as np
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.multibody.mechanism.model import GROUND, Joint, Stop
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint, Stop
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.starts import joint_direction
 from heuncli.results.results import Array, Block

@@ -36,7 +36,7 @@ from heuncli.loads.kinetostatics.reactions import JointLoads, remove_free_compon
 from heuncli.loads.redundancy.self_stress import SelfStress, find_self_stress
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.model import JointLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import JointLoad, ThreadLoad
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block, Mask

@@ -23,7 +23,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.response import jacobian, multiplier_joint_loads
 from heuncli.multibody.tree.islands import is_couple, mean_lever
 from heuncli.multibody.tree.layout import Island, Layout

@@ -28,7 +28,8 @@ import numpy as np
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.response import compute_motions, make_workspace, settle_state
 from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.multibody.tree.tables import Table

@@ -32,7 +32,8 @@ from heuncli.multibody.assembly.start_choices import (
     format_choices,
 )
 from heuncli.multibody.assembly.walk import AssemblyPoses, PlacementTree
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Body, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Body, Mechanism
 from heuncli.multibody.mechanism.size import extent_points, scene_size
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.results.results import Array

@@ -21,7 +21,8 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Expression

@@ -17,7 +17,8 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.walk import PlacementTree
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 
 # Islands

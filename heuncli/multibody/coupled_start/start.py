@@ -28,7 +28,8 @@ from heuncli.base.records import replace
 from heuncli.multibody.assembly.start_choices import StartChoice, format_choices
 from heuncli.multibody.coupled_start.fit import CoupledFit, StartRows
 from heuncli.multibody.coupled_start.freedoms import Freedoms, find_coupled_bodies
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.tree.islands import loop_bodies
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene

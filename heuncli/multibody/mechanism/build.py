@@ -13,23 +13,16 @@ import numpy as np
 from heuncli.base.joint_kinds import TYPES, JointKind
 from heuncli.base.records import replace
 from heuncli.multibody.mechanism.couplings import Coupling, unit_vector
-from heuncli.multibody.mechanism.model import (
+from heuncli.multibody.mechanism.loads import (
     GROUND,
-    Blow,
-    Body,
     BushingLoad,
-    Directed,
-    Elastic,
-    Joint,
     JointLoad,
     Load,
-    Mechanism,
-    NamedPoint,
     PairLoad,
     PointLoad,
-    Stop,
     TriangularDistribution,
 )
+from heuncli.multibody.mechanism.model import Blow, Body, Directed, Elastic, Joint, Mechanism, NamedPoint, Stop
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression, is_point_name

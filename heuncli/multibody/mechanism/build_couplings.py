@@ -49,7 +49,8 @@ from heuncli.multibody.mechanism.couplings import (
     unit_vector,
 )
 from heuncli.multibody.mechanism.gearing import GearMember, find_gears, gear_row, joint_line, mesh_parts
-from heuncli.multibody.mechanism.model import GROUND, Body, Joint, Load, ThreadLoad
+from heuncli.multibody.mechanism.loads import GROUND, Load, ThreadLoad
+from heuncli.multibody.mechanism.model import Body, Joint
 from heuncli.multibody.mechanism.strands import belt_row, pretension_load
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import make_path

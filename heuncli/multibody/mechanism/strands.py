@@ -27,7 +27,8 @@ from heuncli.base.errors import Finding
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.couplings import Coordinate, CoupledRow
 from heuncli.multibody.mechanism.gearing import GearMember, find_gears, joint_line, mesh_parts
-from heuncli.multibody.mechanism.model import Body, Joint, PairLoad, RopeLoad
+from heuncli.multibody.mechanism.loads import PairLoad, RopeLoad
+from heuncli.multibody.mechanism.model import Body, Joint
 from heuncli.results.results import Array
 from heuncli.scene.expressions.composition import (
     add_expressions,

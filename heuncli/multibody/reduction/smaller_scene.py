@@ -21,19 +21,8 @@ import numpy as np
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import CamShape, CoupledRow, Coupling, CouplingPart, Place
-from heuncli.multibody.mechanism.model import (
-    GROUND,
-    Blow,
-    Body,
-    Joint,
-    JointLoad,
-    Load,
-    Mechanism,
-    NamedPoint,
-    Placement,
-    PointLoad,
-    TwoPointLoad,
-)
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad, Load, Placement, PointLoad, TwoPointLoad
+from heuncli.multibody.mechanism.model import Blow, Body, Joint, Mechanism, NamedPoint
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.pack import lay_out
 from heuncli.multibody.tree.prepare import PreparedScene

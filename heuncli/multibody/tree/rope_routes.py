@@ -19,7 +19,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import NO_VECTOR, Coordinate, CoupledRow, Coupling, CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism, RopeLoad
+from heuncli.multibody.mechanism.loads import GROUND, RopeLoad
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.mechanism.strands import rope_load
 from heuncli.multibody.tree.starts import compute_joint_start
 from heuncli.results.results import Array

@@ -13,7 +13,7 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import AppliedLoad
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.multibody.mechanism.model import PointLoad
+from heuncli.multibody.mechanism.loads import PointLoad
 from heuncli.output.drawing.figure import Arrow, Item, PlaceLabel, Strokes, Symbol
 from heuncli.output.drawing.ticks import format_short
 from heuncli.output.figures.machine_items import to_pair

@@ -25,7 +25,7 @@ from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_a
 from heuncli.loads.kinetostatics.energy import system_vector
 from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, foundation_block, make_element_keys
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_block
-from heuncli.multibody.mechanism.model import GROUND, BushingLoad, JointLoad, PairLoad
+from heuncli.multibody.mechanism.loads import GROUND, BushingLoad, JointLoad, PairLoad
 from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery

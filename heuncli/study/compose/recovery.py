@@ -32,7 +32,7 @@ from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, 
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import PairLoad
+from heuncli.multibody.mechanism.loads import PairLoad
 from heuncli.results.results import Array, Block, DeterminateSum, Magnitudes, Mask
 from heuncli.results.results_schema import IMPULSES, SHARED_BLOCKS
 from heuncli.study.model.setup import Setup

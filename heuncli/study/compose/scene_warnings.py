@@ -14,7 +14,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.balance import inertia_scale
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Belt, RollingWheel, Screw
 from heuncli.scene.file_format.models import Spec

@@ -17,7 +17,8 @@ from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.motion.integration.contacts.shared_impulses import format_sharing_warning
 from heuncli.motion.integration.diagnosis.guide_departures import format_slant_warnings
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import JointLoad, Mechanism, ThreadLoad
+from heuncli.multibody.mechanism.loads import JointLoad, ThreadLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup

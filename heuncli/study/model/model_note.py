@@ -21,7 +21,8 @@ from heuncli.motion.integration.integrated_scene import find_discontinuities
 from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method, load_method_by_name
 from heuncli.motion.integration.run.kernel_loop import depends_on_state
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.multibody.mechanism.model import BushingLoad, Mechanism, ThreadLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, ThreadLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.reduction.compose import ReducedScene
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene

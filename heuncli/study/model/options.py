@@ -20,7 +20,7 @@ from heuncli.base.method_rows import canonical_name, find_method
 from heuncli.base.records import record
 from heuncli.base.spelling import suggest
 from heuncli.motion.integration.run.progress import MAX_RECORD_NUMBERS
-from heuncli.multibody.mechanism.model import BushingLoad
+from heuncli.multibody.mechanism.loads import BushingLoad
 from heuncli.multibody.response import solution_parts
 from heuncli.results.results import Array
 from heuncli.results.results_schema import CUT, REPORT_OF, REPORTS, ROWS, SHARES, Quantity, add_shared_reports, is_share

@@ -18,7 +18,8 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.energy import system_vector
 from heuncli.loads.kinetostatics.foundation import find_momenta, inertia_rows
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import Mechanism, RopeLoad
+from heuncli.multibody.mechanism.loads import RopeLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Mask
 from heuncli.scene.shapes.rotations import instants_first, instants_last, largest_magnitude, squared_lengths
 from heuncli.study.model.setup import Setup

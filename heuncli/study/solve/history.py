@@ -29,7 +29,7 @@ from heuncli.motion.integration.run.interruptions import solve_single_instant
 from heuncli.motion.integration.run.request import EventfulRun, StiffRun
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, PairLoad
 from heuncli.results.results import Array, ErrorEstimate
 from heuncli.scene.expressions.discontinuities import pair_adjacent_instants
 from heuncli.study.model.options import MemoryBudget, require_memory_for_steps

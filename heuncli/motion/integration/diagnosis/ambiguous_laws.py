@@ -31,7 +31,8 @@ from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import IntegratedScene
 from heuncli.multibody.mechanism.couplings import Coordinate, Coupling
-from heuncli.multibody.mechanism.model import BushingLoad, JointLoad, Mechanism, PairLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, JointLoad, PairLoad, ThreadLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import Workspace
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array

@@ -26,7 +26,8 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record
 from heuncli.motion.integration.diagnosis.domains import evaluate_coordinates, find_grown
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import compute_motions, make_workspace, settle_state, tangent
 from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.tables import Table

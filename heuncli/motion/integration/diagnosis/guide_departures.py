@@ -20,7 +20,8 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 from heuncli.scene.expressions.paths import Path

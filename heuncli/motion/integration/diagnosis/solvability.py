@@ -9,7 +9,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.base.units import range_error
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, PairLoad
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 

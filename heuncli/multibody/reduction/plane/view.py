@@ -23,7 +23,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import ABOUT_AXIS, ABOUT_TWO, ABOUT_Z, FLAT, JOINTS, LINE, NO_ROTATION, POINT, JointKind
 from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.starts import body_state
 from heuncli.results.results import Array
