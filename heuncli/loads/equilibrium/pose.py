@@ -1,7 +1,4 @@
-"""A pose at which all coordinates rest, with its remaining accelerations and the contacts that bear.
-
-Explain in the words of an error why a scene has no rest pose.
-"""
+"""A pose at which all coordinates rest, with its remaining accelerations and contacts; or why a scene has none."""
 
 from __future__ import annotations
 

@@ -7,8 +7,7 @@ layout's results: a ball joint's three rotations (and its angular velocity) abou
 other freedom. The kernel differentiates its own equations (kernel/tangent.py); closure rows are chosen at the state and
 then held.
 
-Express displacements by joint coordinates: angles and travels, and rotations and shifts where joints leave more
-free.
+As joint coordinates, displacements are angles and travels, and rotations and shifts where joints leave more free:
 
     pin, slide, cylinder     J.angle, J.travel
     line                     J.travel, and the rotations J.x, J.y, J.z

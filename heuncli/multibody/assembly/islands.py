@@ -3,7 +3,7 @@
 A loop runs from the two bodies of a closure to where their paths meet, or to a root; the body where they meet stays,
 and so do the ground and bodies that are held entirely.
 
-Errors of the assembly: they name the joint, the gap and the two bodies.
+An error of the assembly names the joint, the gap and the two bodies.
 """
 
 from __future__ import annotations

@@ -4,16 +4,10 @@ A coupling of coordinates starts as it is assembled and constrains rates only; w
 length, a sum of coordinates) it moves bodies that nothing holds. The bodies that carry the coupled ones move only where
 these cannot satisfy their couplings by themselves.
 
-Choose the bodies that a start releases to satisfy its couplings: those around the coupled loops first, their parents
-later.
-
-A placed body is not moved to spare the ones that it carries (manual/format.md, "Where bodies start"): of two geared
-shafts the one without a given rate turns, and not the frame that carries both. Only where the loop by itself cannot
-satisfy its rows is its parent released, too, one body further in at a time.
-
-Errors where couplings contradict what is held at the start.
-
-Sentences on what the couplings change in a start that heun has chosen.
+Bodies around the coupled loops are released first, their parents later. A placed body is not moved to spare the ones
+that it carries (manual/format.md, "Where bodies start"): of two geared shafts the one without a given rate turns, and
+not the frame that carries both. Only where the loop by itself cannot satisfy its rows is its parent released, too, one
+body further in at a time.
 """
 
 from __future__ import annotations

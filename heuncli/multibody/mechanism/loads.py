@@ -1,6 +1,6 @@
 """The loads of a mechanism, by where they act: on points, between two points, in joints, along ropes and threads.
 
-Vectors are (3,) float64, in body axes unless a name says otherwise; bodies and joints are numbers, in the order of the spec.
+Vectors are (3,) float64, in body axes unless a name says otherwise; bodies and joints are numbers, in the spec's order.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import CouplingPart
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.file_format import models
+from heuncli.scene.file_format import loads, models
 
 if TYPE_CHECKING:
     Directed = models.FramedVector[Array]
     Body = models.Body[Array, Array]
-    Elastic = models.Elastic[Array]
+    Elastic = loads.Elastic[Array]
     Joint = models.Joint[int, Array]
     Blow = models.AppliedImpulse[int, Array]
     Stop = models.Stop[int]
 else:  # such an alias would slow each of its records down by 3 us
     Directed, Body, Joint, Stop = models.FramedVector, models.Body, models.Joint, models.Stop
     Blow = models.AppliedImpulse
-    Elastic = models.Elastic
+    Elastic = loads.Elastic
 
 
 GROUND = -1

@@ -2,7 +2,8 @@
 
 Vectors are (3,) float64. Bodies and joints are identified by number, in the order of the spec; body -1 is the ground.
 Values in time stay expressions (scene/expressions/programs.py). Bodies, joints, drives, impulses, stops and conditions
-use the classes of the spec (scene/file_format/models.py); its kinds of loads become five, by where they act.
+use the classes of the spec (scene/file_format/models.py); its kinds of loads become five, by where they act
+(multibody/mechanism/loads.py).
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.loads import JointLoad, Load, PairLoad, RopeLoad, ThreadLoad
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.file_format import models
+from heuncli.scene.file_format import loads, models
 from heuncli.scene.file_format.models import SIMULTANEOUS, Condition, ImpactModel
 
 if TYPE_CHECKING:
     Directed = models.FramedVector[Array]
     Body = models.Body[Array, Array]
-    Elastic = models.Elastic[Array]
+    Elastic = loads.Elastic[Array]
     Joint = models.Joint[int, Array]
     Blow = models.AppliedImpulse[int, Array]
     Stop = models.Stop[int]
 else:  # such an alias would slow each of its records down by 3 us
     Directed, Body, Joint, Stop = models.FramedVector, models.Body, models.Joint, models.Stop
     Blow = models.AppliedImpulse
-    Elastic = models.Elastic
+    Elastic = loads.Elastic
 
 
 class Law(NamedTuple):

@@ -3,8 +3,6 @@
 Between two places where a rope is held, its ends and the sheaves on which it does not slip, one tension acts in all
 strands: one condition, whose parts are the strands, the arcs on the sheaves where it slides, and the wound lengths on
 those where it does not (kernel/sheaves.py). Which way round a sheave is meant can only be found from the poses.
-
-Couplings whose conditions depend on the poses at the start: ropes.
 """
 
 from __future__ import annotations

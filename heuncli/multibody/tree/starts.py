@@ -1,7 +1,4 @@
-"""The joints in the assembled mechanism: coordinates, rates, reference attitudes, directions.
-
-Drives by a rate, or counted from the assembled start: after assembly their coordinates are known in time.
-"""
+"""The joints in the assembled mechanism: coordinates, rates, reference attitudes, directions."""
 
 from __future__ import annotations
 

@@ -21,8 +21,8 @@ from heuncli.output.machine_geometry.coupling_forces import iter_coupling_forces
 from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.views import SceneView
+from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block
-from heuncli.results.results_schema import IMPULSE_UNITS
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study

@@ -28,8 +28,9 @@ from heuncli.loads.kinetostatics.stretch import (
 )
 from heuncli.output.figures.courses import choose_instants
 from heuncli.output.figures.summits import find_bounds, halve_steps
+from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, Mask, Results
-from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
+from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.channels import Channel, make_section_channels
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors

@@ -1,8 +1,7 @@
 """What named files hold: measured curves of expectations, and surfaces of shapes.
 
-Curves of expectations: two columns of a CSV file, in SI (manual/format.md, "Expect"). Impure: reads files.
-
-Read the mesh files that shapes name into closed surfaces, and check them. Impure: reads files.
+A curve is two columns of a CSV file, in SI (manual/format.md, "Expect"); a mesh is checked to be a closed surface.
+Impure: reads files.
 """
 
 from __future__ import annotations

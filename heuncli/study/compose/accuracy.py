@@ -17,8 +17,9 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.loads.kinetostatics.balance import balance_residual
 from heuncli.loads.kinetostatics.energy import energy_drift, power_imbalance, work_scale
 from heuncli.motion.integration.contacts.impulses import free_impulse_energy
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Accuracy, Array, Mask, Results
-from heuncli.results.results_schema import IMPULSES, REPORT_OF, SPACE, Quantity, find_quantity
+from heuncli.results.results_schema import IMPULSES, REPORT_OF, SPACE, Quantity
 from heuncli.study.compose.recovery import ENERGY_REPORTS, Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History

@@ -28,8 +28,9 @@ from heuncli.motion.integration.check.estimate import evaluate_run
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.results.results_schema import SPACE, find_quantity
+from heuncli.results.results_schema import SPACE
 from heuncli.study.compose.blocks import make_requested_blocks
 from heuncli.study.compose.recovery import RANK_REPORTS, Recovery
 

@@ -19,8 +19,9 @@ from typing import Literal
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.path_words import BY_CAUSE
 from heuncli.results.results import Array, Magnitudes, Results
-from heuncli.results.results_schema import BY_CAUSE, ESTIMATE_OF_ERROR_KIND
+from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
 from heuncli.study.quantities.labels import DEFAULT_UNITS, Labels
 from heuncli.study.quantities.table_units import Units

@@ -20,15 +20,10 @@ from heuncli.base.errors import SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.motion.integration.check.changes import ConditionChanges, impulse_time_differences
+from heuncli.results.path_words import error_kind_of_path, find_quantity
 from heuncli.results.results import Array, Block, Results, Status
 from heuncli.results.results_paths import find_values
-from heuncli.results.results_schema import (
-    ESTIMATE_OF_ERROR_KIND,
-    EVENTS,
-    SHARES,
-    error_kind_of_path,
-    find_quantity,
-)
+from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND, EVENTS, SHARES
 from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
 from heuncli.scene.file_format.resolve_couplings import format_rounded_up
 from heuncli.study.compose.recovery import recover

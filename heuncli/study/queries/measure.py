@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.results import results_schema
+from heuncli.results import path_words, results_schema
 from heuncli.results.results import Array, CutPosition, Results
 from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import (
@@ -61,7 +61,7 @@ def find_reports(path: str) -> frozenset[str] | None:
     """Return the reports that a path needs; None if its first word does not say."""
     words = path.split(".")
     report = results_schema.find_report(words[0])
-    return frozenset({report, SHARES} if results_schema.names_shares(words) else {report}) if report else None
+    return frozenset({report, SHARES} if path_words.names_shares(words) else {report}) if report else None
 
 
 def measure_value(request: MeasureRequest, study: Study) -> Peak:

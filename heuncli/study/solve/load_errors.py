@@ -35,8 +35,9 @@ from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, 
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.size import extent_points
+from heuncli.results.path_words import BY_CAUSE, TRAVELS
 from heuncli.results.results import Array, ErrorEstimate, Mask
-from heuncli.results.results_schema import BY_CAUSE, IMPULSES, TRAVELS
+from heuncli.results.results_schema import IMPULSES
 from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.error_extents import (
