@@ -22,10 +22,9 @@ from heuncli.analyses.variants.course import (
     NOISE,
     CoursePrediction,
     MeasureCourse,
-    Sample,
-    interpolate,
+    clip_inside,
 )
-from heuncli.analyses.variants.course_extremes import clip_inside
+from heuncli.analyses.variants.samples import Sample, interpolate
 
 END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: closer to failing variants study.py searches the edge
 NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: closer to a jump or an edge predictions are never certain

@@ -29,9 +29,9 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.search import END_OF_SOLVED, check_scan, iter_possible_meetings, narrow_all, search
 from heuncli.analyses.find.touches import compute_distance, find_touches
-from heuncli.analyses.variants.course import MeasureCourse, Sample, SampleLimitError, withhold
-from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
+from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError, find_extreme, refine_extreme
 from heuncli.analyses.variants.measures import SIDES, Relation
+from heuncli.analyses.variants.samples import Sample, withhold
 
 FIRST_FRACTION = 0.05  # of the bracket: first distance to both sides of the predicted edge
 MIN_FRACTION = 1e-6

@@ -18,7 +18,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.analyses.variants.course import NOISE, MeasureCourse, Sample
+from heuncli.analyses.variants.course import NOISE, MeasureCourse
+from heuncli.analyses.variants.samples import Sample
 
 POWERS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
 MAX_MISFIT = 3.0  # largest ratio between the middle sample and its prediction by the power

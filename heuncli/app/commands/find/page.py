@@ -15,9 +15,9 @@ from heuncli.analyses.find.results import (
     UnresolvedBracket,
     UnsolvedStretch,
 )
-from heuncli.analyses.variants.course import Sample
 from heuncli.analyses.variants.measures import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.analyses.variants.samples import Sample
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.output.documents.as_csv import make_columns
