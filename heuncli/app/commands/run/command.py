@@ -20,7 +20,7 @@ from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.snapshots.selection import find_default_reports, parse_choice, select_reports
 from heuncli.output.tables.page import EXPORT_DEFAULT
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.study.model.memory_estimate import MemoryBudget
+from heuncli.study.model.options import MemoryBudget
 from heuncli.study.model.selection import Selection, select_paths
 
 if TYPE_CHECKING:
