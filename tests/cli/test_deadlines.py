@@ -103,7 +103,7 @@ def foreign(*_: Any, **__: Any) -> Any:
             "run swinging.yaml",
             "while extremes between the samples were searched",
         ),
-        ("heuncli.app.commands.run.scene._report", "run swinging.yaml", "before the work was finished"),
+        ("heuncli.app.commands.run.scene.render_parts", "run swinging.yaml", "before the work was finished"),
         (
             "heuncli.analyses.motion_diagnostics.study.growing",
             "probe swinging.yaml",

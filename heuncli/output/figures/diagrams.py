@@ -176,7 +176,7 @@ def _make_panels(
     places = sorted({style.size * attachment.s for bar in sketched.values() for attachment in bar.attachments})
     for k, quantity in enumerate(quantities):
         panel = make_panel(quantity, bars, units, style, is_inverted=tension_side and quantity in INVERTED)
-        words = WORDS[quantity].removesuffix(f" {quantity}")
+        words = str(WORDS[quantity]).removesuffix(f" {quantity}")
         title = f"{words[:1].upper()}{words[1:]} {quantity}"
         if tension_side and quantity in TENSION_SIDES:
             title += f", {TENSION_SIDES[quantity]} up"
