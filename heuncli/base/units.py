@@ -1,4 +1,4 @@
-"""Units: the size in SI and the dimension of "12 mm" and "7850 kg/m^3".
+"""Units, the size in SI and the dimension of "12 mm" and "7850 kg/m^3", and the range of magnitudes that heun accepts.
 
 A dimension is the exponents of (kg, m, s). Angles are numbers: rad = 1, so that N m/rad is N m and rpm an angular
 velocity. Hz is left out on purpose: as a rate half of the readers would take it for rad/s.
@@ -10,9 +10,18 @@ import re
 from collections.abc import Iterator
 from functools import lru_cache
 from math import pi
+from typing import TYPE_CHECKING
 
+from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.base.spelling import find_similar
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
 
 Dimension = tuple[int, int, int]
 
@@ -286,3 +295,30 @@ def suggest_unit(symbol: str) -> str:
     return (
         "known units: kg, g, m, mm, s, ms, rad, deg, rpm, N, kN, Pa, bar, ... and products such as N*m, kg/m^3, m/s^2"
     )
+
+
+ACCEPTED = f"0, or {tolerances.LEAST_MAGNITUDE:.0e} to {tolerances.MOST_MAGNITUDE:.0e} in SI units".replace("+", "")
+TOO_SMALL = "check its unit; for zero write 0"
+TOO_LARGE = "check its unit; for no limit leave the entry out"
+
+
+def is_in_range(value: float) -> bool:
+    """Whether a number is 0, or of a magnitude that is computed with; nan and inf are not."""
+    return value == 0.0 or tolerances.LEAST_MAGNITUDE <= abs(value) <= tolerances.MOST_MAGNITUDE
+
+
+def are_in_range(values: Array) -> Mask:
+    """Return where `is_in_range` holds, as an array of the same shape."""
+    sizes = abs(values)
+    fits: Mask = (values == 0.0) | ((sizes >= tolerances.LEAST_MAGNITUDE) & (sizes <= tolerances.MOST_MAGNITUDE))
+    return fits
+
+
+def range_error(value: float, what: str = "") -> Finding:
+    """Return the error for a number out of range; what: the name of a computed number that is not written in the
+    spec.
+    """
+    is_small = abs(value) < 1.0
+    subject = f"{what} is {value:g}, " if what else f"{value:g} is "
+    message = f"{subject}too {'small' if is_small else 'large'} for the computation; accepted: {ACCEPTED}"
+    return Finding("magnitude", message, TOO_SMALL if is_small else TOO_LARGE)

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice, product
 
 from heuncli.base.spelling import find_similar, spend_effort
-from heuncli.results.path_words import join_path, split_path
-from heuncli.results.results_schema import BLOCKS_KNOWN_AFTER_RUN, IMPULSES, NAMES, ROWS, XYZ
+from heuncli.results.path_words import NAMES, join_path, split_path
+from heuncli.results.results_schema import BLOCKS_KNOWN_AFTER_RUN, IMPULSES, ROWS, XYZ
 
 COMMON = ("joints", "coordinates", "sections", "bodies", "points", "forces")  # tried first
 ALIASES = {  # what other programs and textbooks call quantities, by what they are here, the likeliest first

@@ -1,11 +1,13 @@
-"""Words of paths, with positions along a series of cuts among them: `M2@0.28`, `M2@end`, `M2.7`, `M2@0.28:before`."""
+"""Words of paths: the positions along a series of cuts in them, and what the schema of the results knows under them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
+from functools import lru_cache
+from typing import TypeAlias
 
-from heuncli.results.results_schema import parse_index
+from heuncli.results.results_schema import IMPULSES, ROWS, SHARED_BLOCKS, SHARES, Quantity, parse_index
 
 NO_RUN = "@ gives a position along a series of cuts (section with from, to and count): leave it out"
 NUMBER = r"(?:\d+(?:\.\d+)?|\.\d+)(?:e[+-]?\d+)?"
@@ -39,3 +41,160 @@ def find_position_word(words: Sequence[str]) -> str | None:
 def is_cut_word(word: str) -> bool:
     """Whether a word means a position or a cut, and not a component."""
     return word.startswith("@") or INDEX_WORD.match(word) is not None or parse_index(word) is not None
+
+
+ESTIMATE_OF_BLOCK = {
+    "foundation": "foundation", "joints": "reactions", "stops": "reactions",
+    "couplings": "reactions", "sections": "sections", "energy": "energy",
+}  # fmt: skip
+
+
+ATTITUDES = {"rotation": "attitudes", "quaternion": "attitudes", "rodrigues": "rodrigues"}
+
+
+TRAVELS = ("travel", "speed", "acceleration")  # along a path by whatever its tables are over, elsewhere as places
+
+
+LOAD_ERROR_KINDS = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.fromkeys(("shift", "turn"), "strains")
+
+
+NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
+
+
+BY_CAUSE = "by cause"  # of kinds of errors
+
+
+IMPULSE_UNITS = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
+
+
+# what a blow has besides its own quantities, as at one instant; of impulses no stresses, pressures, energies are told
+IMPULSE_BLOCKS = ("foundation", "joints", "stops", "couplings", "sections", "certain_sums")
+
+
+NOT_IN_IMPULSES = ("joints.JOINT.pressure", "sections.SECTION.stress.", "sections.SECTION.energy")
+
+
+Node: TypeAlias = "dict[str, Node | Quantity]"
+
+
+def _make_tree() -> Node:
+    """Arrange the rows by the words of their paths."""
+    tree: Node = {}
+    for row in ROWS:
+        _insert_row(tree, row.path.split("."), row)
+    for row in ROWS:
+        first, *_ = row.path.split(".")
+        if first in IMPULSE_BLOCKS and not row.path.startswith(NOT_IN_IMPULSES):
+            units = tuple(IMPULSE_UNITS.get(unit, unit) for unit in row.units)
+            path = f"impulses.NUMBER.{row.path}"
+            _insert_row(tree, path.split("."), row._replace(path=path, units=units))
+    return tree
+
+
+def _insert_row(tree: Node, path: Sequence[str], row: Quantity) -> None:
+    for word in path[:-1]:
+        child = tree.setdefault(word, {})
+        assert isinstance(child, dict), row.path
+        tree = child
+    tree[path[-1]] = row
+
+
+TREE = _make_tree()
+
+
+def find_child(node: Node, key: str) -> Node | Quantity | None:
+    """Return the node under a key: a word of the schema, or a name of the scene."""
+    if key in node:
+        return node[key]
+    return next((node[name] for name in NAMES if name in node), None)
+
+
+def find_node(keys: Iterable[str]) -> Node | Quantity | None:
+    """Return the row, or the block of rows, under these keys; None if there is none."""
+    node: Node | Quantity | None = TREE
+    for key in keys:
+        if not isinstance(node, dict):
+            return None
+        node = find_child(node, key)
+    return node
+
+
+def find_quantity(keys: Iterable[str]) -> Quantity | None:
+    """Return the row of the quantity under these keys; None if there is none."""
+    return _find_quantity(tuple(keys))
+
+
+@lru_cache(maxsize=10_000)  # the paths of a scene, which every look at some of its instants goes through
+def _find_quantity(keys: tuple[str, ...]) -> Quantity | None:
+    node = find_node(keys)
+    return node if isinstance(node, Quantity) else None
+
+
+def is_block_or_words(keys: Sequence[str]) -> bool:
+    """Whether these keys lead to a block or to words, not to numbers; also if the block is empty."""
+    return _is_no_number(tuple(keys))
+
+
+@lru_cache(maxsize=10_000)
+def _is_no_number(keys: tuple[str, ...]) -> bool:
+    rows = (find_quantity(keys[:n]) for n in range(1, len(keys) + 1))
+    return isinstance(find_node(keys), dict) or any(row is not None and row.is_words for row in rows)
+
+
+def names_shares(words: list[str]) -> bool:
+    """Whether a path leads to shares by cause: not every `shares` in it does, for a joint or body may have that
+    name.
+    """
+    if words[:1] == [IMPULSES]:
+        return names_shares(words[2:])
+    if words[:1] == ["foundation"]:
+        inner = words[1:2] in (["supports"], ["elements"])  # a name behind them may have its block before it
+        return (
+            SHARES in words[3 : 5 if words[2:3] in (["drives"], ["couplings"]) else 4]
+            if inner
+            else words[1:2] == [SHARES]
+        )
+    return words[2:3] == [SHARES]
+
+
+def error_kind_of_path(kind: str, name: str, number: str) -> str:
+    """Return the kind of estimate (in `accuracy.estimate`) for the error of a quantity, by the words of its path.
+
+    Shares by cause have their own: they may be larger than their sum, and have larger errors. Numbers of an impulse
+    have the kinds that they have at an instant.
+    """
+    if kind == IMPULSES:
+        kind, _, name = name.partition(".")[2].partition(".")
+    words = name.split(".")  # `shares.CAUSE` of the foundation, else `NAME.shares.CAUSE`: a NAME may be `shares`, too
+    by_cause = words[-2:-1] == [SHARES] and (kind == "foundation" or len(words) > 2)
+    if by_cause and kind in SHARED_BLOCKS | {"couplings"}:
+        return f"{error_kind_of_path(kind, '.'.join(words[:-2]), number.removeprefix('direct_'))} {BY_CAUSE}"
+    if kind == "joints" and number == "drive":
+        return "drives"
+    if kind == "foundation" and name.startswith("supports."):
+        return "reactions"
+    if kind == "foundation" and name == "axis":
+        return "axis"
+    if kind == "forces":
+        return LOAD_ERROR_KINDS.get(number, "forces")
+    if number.startswith("energy_"):
+        return "energy"
+    if kind == "bodies" and number in ATTITUDES:
+        return ATTITUDES[number]
+    if kind == "coordinates" and number in TRAVELS:
+        return "travels"
+    return ESTIMATE_OF_BLOCK.get(kind, "motion")
+
+
+def split_leading_key(known_keys: Collection[str], path: Sequence[str]) -> tuple[str | None, list[str]]:
+    """Return the longest key that the leading words of a path spell, and the words behind it; None if there is none."""
+    for used in range(min(len(path), 8), 0, -1):
+        if (key := ".".join(path[:used])) in known_keys:
+            return key, list(path[used:])
+    return None, list(path)
+
+
+def find_unknown_key(known_keys: Collection[str], path: Sequence[str]) -> str:
+    """Return the leading words of a path that spell no key: two of them where there are keys of two words."""
+    dotted = any(key.startswith(f"{path[0]}.") for key in known_keys)
+    return ".".join(path[: 2 if dotted else 1])

@@ -15,22 +15,19 @@ from heuncli.base.errors import Finding, Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar, reset_effort
 from heuncli.results.cut_rows import find_cut_row
-from heuncli.results.path_words import NO_RUN, find_position_word, is_cut_word, join_path, split_path
-from heuncli.results.results import Array, Block, Results
-from heuncli.results.results_schema import (
-    CUT,
-    IMPULSES,
-    INDEX,
-    INSTANT,
-    SPACE,
-    Axis,
-    Quantity,
-    Shape,
+from heuncli.results.path_words import (  # fmt: skip
+    NO_RUN,
+    find_position_word,
     find_quantity,
     find_unknown_key,
     is_block_or_words,
+    is_cut_word,
+    join_path,
     split_leading_key,
-)  # fmt: skip
+    split_path,
+)
+from heuncli.results.results import Array, Block, Results
+from heuncli.results.results_schema import CUT, IMPULSES, INDEX, INSTANT, SPACE, Axis, Quantity, Shape
 
 MAX_NAMES = 12  # of the known names an error lists
 

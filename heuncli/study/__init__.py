@@ -2,5 +2,5 @@
 
 Neighbours use: `workflow.solve` (a Spec to a Study), `model.options.Options` (what and how), `queries` (measures,
 expectations, instants of a solved scene), `search` (extremes and crossings), `quantities` (labels, units, digits),
-`load_cycles` (rainflow counts).
+`rainflow` and `load_collectives` (counts of load cycles).
 """

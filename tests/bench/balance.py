@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.analyses.balancing.options import BalanceOptions, WeightRequest
+from heuncli.analyses.balancing.results import BalanceOptions, WeightRequest
 from heuncli.analyses.balancing.study import balance
 from heuncli.scene.file_format.load import load
 

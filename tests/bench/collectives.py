@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.output.snapshots.collectives import count_collectives
 from heuncli.scene.file_format.load import load
-from heuncli.study.load_cycles.collective import Counting, LoadHistory, make_collective
+from heuncli.study.load_collectives import Counting, LoadHistory, make_collective
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS

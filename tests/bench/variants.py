@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from heuncli.analyses.variants.variant_solver import VariantSolver
+from heuncli.analyses.variants.evaluation import VariantSolver
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options

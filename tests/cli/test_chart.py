@@ -14,7 +14,7 @@ from typing import Any, cast
 import pytest
 
 from heuncli.analyses.work_precision.results import COMPLETED, ChartRow, ChartRun
-from heuncli.analyses.work_precision.runs import ChartRunner, TimedRun
+from heuncli.analyses.work_precision.study import ChartRunner, TimedRun
 from heuncli.output.drawing import matplotlib_file, svg_converters
 from tests.shared.command import HANGING, SPEC_TEXTS, TURNED, Heun
 
@@ -139,7 +139,7 @@ def test_a_run_that_fails_is_that_error(heun: Heun, folder: Path) -> None:
 
 
 def test_beyond_the_time_limit_rows_are_told_not_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    from heuncli.analyses.work_precision.motion import MotionProblem
+    from heuncli.analyses.work_precision.plan import MotionProblem
 
     monkeypatch.setattr(MotionProblem, "late", True)
     found = json.loads(heun("chart", "swinging.yaml", *FEW, "--time-limit", "60", "--format", "json").stdout)

@@ -14,7 +14,8 @@ import pytest
 from heuncli.app.commands.explain.codes import parse_codes
 from heuncli.app.commands.explain.pages import PAGES, find_section, read_sections
 from heuncli.app.commands.explain.paths import MEANINGS
-from heuncli.results.results_schema import NAMES, ROWS, Quantity
+from heuncli.results.path_words import NAMES
+from heuncli.results.results_schema import ROWS, Quantity
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.manual import TEXTS

@@ -12,8 +12,8 @@ import pytest
 
 from heuncli.app.cli.entry import enter
 from heuncli.app.cli.output import encode_text
+from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape, escape_all
-from heuncli.base.wrapping import wrap_text
 from tests.shared.command import HANGING, Heun
 
 EVIL = "a\nheun: fine \x1b[31m\x07\x08\r\x9b31m\x7f\u202e\u2066\u200b\u2028\U000e0041b"

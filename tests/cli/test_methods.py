@@ -81,7 +81,7 @@ def test_a_method_asked_for_stands_for_the_specs(heun: Heun) -> None:
 
 
 def test_the_heading_tells_the_step(heun: Heun) -> None:
-    text = heun("run", "swinging.yaml", "--method", "RK4", "--step", "0.01").stdout
+    text = heun("run", "swinging.yaml", "--method", "RK4", "--step", "0.01", "--full").stdout
     assert "RK4 in steps of 0.01 s, 100 steps" in text
 
 

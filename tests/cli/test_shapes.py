@@ -19,8 +19,9 @@ import numpy as np
 import pytest
 
 from heuncli.output.tables.export import to_csv
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results_paths import find_values
-from heuncli.results.results_schema import CUT, IMPULSES, REPORTS, SHARES, find_quantity, independent_axes
+from heuncli.results.results_schema import CUT, IMPULSES, REPORTS, SHARES, independent_axes
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels

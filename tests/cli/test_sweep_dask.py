@@ -15,9 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.axes import parse_axis_values
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import VariantResult
+from heuncli.analyses.variants.parameters import parse_axis_values
 from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.sweep.cluster import batches as cluster_lots

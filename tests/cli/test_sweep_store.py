@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.sweep_store.store import Store
+from heuncli.analyses.sweep_store import Store
 from heuncli.analyses.variants.evaluation import VariantEvaluator
 from heuncli.analyses.variants.measures import MeasureValue, VariantResult
 from heuncli.base.errors import OutputError

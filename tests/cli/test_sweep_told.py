@@ -17,13 +17,10 @@ from typing import Any, get_args
 import pyarrow.parquet as pq
 import pytest
 
-from heuncli.analyses.sweep_store.columns import explain_missing, find_missing_words
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.axes import parse_axis_values
-from heuncli.analyses.variants.draws import make_draws
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow, explain_missing, find_missing_words
 from heuncli.analyses.variants.measures import MeasureLabel, MeasureValue, MissingWord, VariantResult
-from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
-from heuncli.analyses.variants.plans import Plan, make_axes_plan
+from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable, parse_axis_values
+from heuncli.analyses.variants.plans import Plan, make_axes_plan, make_draws
 from heuncli.app.commands.sweep.output import as_parquet, writer
 from heuncli.app.commands.sweep.output.page import make_tables
 from heuncli.app.commands.sweep.output.writer import SweepOutput

@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.analyses.balancing.options import BalanceOptions, FlywheelRequest, WeightRequest
-from heuncli.analyses.balancing.results import Flywheel
+from heuncli.analyses.balancing.results import BalanceOptions, Flywheel, FlywheelRequest, WeightRequest
 from heuncli.analyses.balancing.study import balance
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load

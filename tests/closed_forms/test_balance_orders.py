@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.analyses.balancing.options import BalanceOptions
+from heuncli.analyses.balancing.results import BalanceOptions
 from heuncli.analyses.balancing.study import balance
 from heuncli.scene.file_format.load import load
 from tests.shared.cycling import RPM, Cylinder, amplitude, balance_of, engine, row_of

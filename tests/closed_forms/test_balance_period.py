@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.analyses.balancing.options import BalanceOptions
-from heuncli.analyses.balancing.results import BalanceResults
+from heuncli.analyses.balancing.results import BalanceOptions, BalanceResults
 from heuncli.analyses.balancing.study import balance
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.balancing.options import BalanceOptions, WeightRequest
-from heuncli.analyses.balancing.results import BalanceResults, Counterbalance
+from heuncli.analyses.balancing.results import BalanceOptions, BalanceResults, Counterbalance, WeightRequest
 from heuncli.analyses.balancing.study import balance
 from heuncli.scene.file_format.load import load
 from tests.shared.cycling import RPM, Cylinder, balance_of, engine, four_bar

@@ -12,13 +12,11 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from heuncli.analyses.work_precision import runs as chart_runs
-from heuncli.analyses.work_precision.motion import make_motion
-from heuncli.analyses.work_precision.plan import ChartOptions
+from heuncli.analyses.work_precision import study as chart_runs
+from heuncli.analyses.work_precision.plan import ChartOptions, make_motion
 from heuncli.analyses.work_precision.reference import find_reference
 from heuncli.analyses.work_precision.results import ChartResults, ChartRow, ChartRun
-from heuncli.analyses.work_precision.runs import ChartRunner
-from heuncli.analyses.work_precision.study import chart
+from heuncli.analyses.work_precision.study import ChartRunner, chart
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.run.request import MotionTask

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.analyses.motion_diagnostics.numerics.stiffness import find_stable_distance, stability_polynomial
 from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
+from heuncli.analyses.motion_diagnostics.stiffness import find_stable_distance, stability_polynomial
 from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.motion.integration.methods.dop853 import DOP853
 from heuncli.motion.integration.methods.method import Method, load_method_by_name

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.instant import make_instant
+from heuncli.analyses.lagrange.freed_scene import make_instant
 from heuncli.base.errors import SolveError
 from heuncli.results.results import Results
 from heuncli.scene.file_format.load import load

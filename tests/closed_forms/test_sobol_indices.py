@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.stats import sobol_indices as scipy_indices
 
-from heuncli.analyses.variants.draws import make_draws
-from heuncli.analyses.variants.indices import compute_sobol_indices
 from heuncli.analyses.variants.parameters import RandomVariable
+from heuncli.analyses.variants.plans import make_draws
+from heuncli.analyses.variants.sample_statistics import compute_sobol_indices
 from heuncli.results.results import Array
 from tests.shared.command import Heun
 

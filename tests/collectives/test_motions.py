@@ -15,9 +15,9 @@ from heuncli.base.errors import HeunError
 from heuncli.output.snapshots.collectives import count_collective
 from heuncli.output.tables.results_json_schema import make_results_schema
 from heuncli.results.results import Array
-from heuncli.study.load_cycles.collective import Collective, Counting, LoadHistory, make_collective
-from heuncli.study.load_cycles.rainflow import count_once
+from heuncli.study.load_collectives import Collective, Counting, LoadHistory, make_collective
 from heuncli.study.queries.study import Study
+from heuncli.study.rainflow import count_once
 from tests.shared.command import HANGING, TURNED, Heun
 from tests.shared.folders import SPECS
 from tests.shared.scenes import study

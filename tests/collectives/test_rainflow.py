@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.study.load_cycles import classes
-from heuncli.study.load_cycles.equivalent import damage_shares, equivalent_range
-from heuncli.study.load_cycles.rainflow import Cycles, count_endless, count_once, count_repeated, find_turning_points
+from heuncli.study import rainflow
+from heuncli.study.load_collectives import damage_shares, equivalent_range
+from heuncli.study.rainflow import Cycles, count_endless, count_once, count_repeated, find_turning_points
 
 pytestmark = pytest.mark.heavy  # no kernel in it
 
@@ -126,9 +126,9 @@ def test_classes_as_the_package_rainflow() -> None:
     for n in (1, 2, 5, 9, 10):
         for history in (FIGURE_6, rng.normal(size=60)):
             cycles = count_once(history)
-            limits = classes.make_class_limits(0.0, float(cycles.ranges.max()), n)
+            limits = rainflow.make_class_limits(0.0, float(cycles.ranges.max()), n)
             wanted = [count for _, count in package.count_cycles(history.tolist(), nbins=n)]
-            assert classes.count_by_range(cycles, limits, 1e-12).tolist() == wanted
+            assert rainflow.count_by_range(cycles, limits, 1e-12).tolist() == wanted
 
 
 def test_a_repeated_history_counts_as_one_told_so_many_times() -> None:
@@ -176,7 +176,7 @@ def test_crossings_are_those_of_the_history() -> None:
         points = find_turning_points(history)
         a, b = points[:-1], points[1:]
         levels = np.linspace(history.min(), history.max(), 9)
-        found = classes.count_crossings(count_once(history), levels)
+        found = rainflow.count_crossings(count_once(history), levels)
         assert found.upward.tolist() == [float(np.sum((a <= L) & (b > L))) for L in levels]
         assert found.downward.tolist() == [float(np.sum((a >= L) & (b < L))) for L in levels]
         assert found.count_by_reference(0.0).tolist() == np.where(levels >= 0.0, found.upward, found.downward).tolist()
@@ -185,15 +185,15 @@ def test_crossings_are_those_of_the_history() -> None:
 def test_the_matrix_adds_up_to_the_classes() -> None:
     for history in histories():
         cycles = count_once(history)
-        limits = classes.make_class_limits(0.0, float(cycles.ranges.max(initial=0.0)), 7)
-        cells = classes.count_matrix(cycles, limits, 1e-12)
-        assert cells.counts.sum(axis=1).tolist() == classes.count_by_range(cycles, limits, 1e-12).tolist()
+        limits = rainflow.make_class_limits(0.0, float(cycles.ranges.max(initial=0.0)), 7)
+        cells = rainflow.count_matrix(cycles, limits, 1e-12)
+        assert cells.counts.sum(axis=1).tolist() == rainflow.count_by_range(cycles, limits, 1e-12).tolist()
 
 
 def test_rounding_decides_no_class() -> None:
     """Ranges at a limit, off by their error upwards, belong below it as those off downwards do."""
     cycles = Cycles(np.zeros(3), np.array([0.5 - 1e-13, 0.5 + 1e-13, 1.0]), np.ones(3))
-    assert classes.count_by_range(cycles, classes.make_class_limits(0.0, 1.0, 2), 1e-12).tolist() == [2.0, 1.0]
+    assert rainflow.count_by_range(cycles, rainflow.make_class_limits(0.0, 1.0, 2), 1e-12).tolist() == [2.0, 1.0]
 
 
 def test_equivalent_range() -> None:

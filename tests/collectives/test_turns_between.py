@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.study.load_cycles.rainflow import find_turning_points
+from heuncli.study.rainflow import find_turning_points
 from heuncli.study.search.turnings import add_turning_points
 
 COARSE, ERROR = 257, 1e-12

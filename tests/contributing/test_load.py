@@ -19,8 +19,7 @@ from heuncli.output.drawing.symbols import LINKS
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import LOADS
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import models as m
-from heuncli.scene.file_format import resolve_loads
+from heuncli.scene.file_format import loads, resolve_loads
 from heuncli.scene.file_format.entries import keys_of
 from heuncli.scene.file_format.fields import Moment, SiNumber
 from heuncli.scene.file_format.format_joints import JointLoadEntry, PairEntry
@@ -46,12 +45,12 @@ class MagnetEntry(PairEntry):
     strength: Annotated[float, SiNumber((1, 3, -2))]
 
 
-def resolve_magnet(resolver: ReferenceResolver, name: str, load: MagnetEntry) -> m.Actuator:
+def resolve_magnet(resolver: ReferenceResolver, name: str, load: MagnetEntry) -> loads.Actuator:
     """Resolve a magnet: the force -c/d^2 along its line."""
     law = compile_expression(f"-{load.strength!r}/length**2", Scope(own={"length": "length"}, in_time=True))
     bound = resolve_loads.bind_law(resolver, law, f"forces.{name}.strength", f"{LOADS}.{name}")
     assert bound is not None
-    return m.Actuator(resolver.end(load.from_), resolver.end(load.to), bound, load.type)
+    return loads.Actuator(resolver.end(load.from_), resolver.end(load.to), bound, load.type)
 
 
 SCENE = """\
@@ -127,11 +126,11 @@ def test_one_in_a_joint(monkeypatch: pytest.MonkeyPatch) -> None:
         type: Literal["detent"]
         hold: Moment
 
-    def resolve_detent(resolver: ReferenceResolver, name: str, load: DetentEntry) -> m.Torque:
+    def resolve_detent(resolver: ReferenceResolver, name: str, load: DetentEntry) -> loads.Torque:
         law = compile_expression(f"-{load.hold!r}*sin(4*angle)", Scope(own={"angle": "angle"}, in_time=True))
         bound = resolve_loads.bind_law(resolver, law, f"forces.{name}.hold", load.joint)
         assert bound is not None
-        return m.Torque(load.joint, bound, load.type)
+        return loads.Torque(load.joint, bound, load.type)
 
     row = LOAD_KINDS["motor"]._replace(name="detent", does="holds in four places", not_negative=("hold",))
     monkeypatch.setitem(LOAD_KINDS, "detent", row)

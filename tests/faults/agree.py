@@ -9,16 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from heuncli.results.path_words import ESTIMATE_OF_BLOCK, TREE, Node, find_child
 from heuncli.results.results import Array, Block
-from heuncli.results.results_schema import (
-    ESTIMATE_OF_BLOCK,
-    ESTIMATE_OF_ERROR_KIND,
-    SPACE,
-    TREE,
-    Node,
-    Quantity,
-    find_child,
-)
+from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND, SPACE, Quantity
 from heuncli.study.queries.measure import find_peak
 from heuncli.study.queries.study import Study
 

@@ -19,8 +19,7 @@ from typing import Any, NamedTuple
 
 import mpmath as mp
 
-from heuncli.analyses.balancing.options import BalanceOptions, FlywheelRequest
-from heuncli.analyses.balancing.results import BalanceResults
+from heuncli.analyses.balancing.results import BalanceOptions, BalanceResults, FlywheelRequest
 from heuncli.analyses.balancing.study import balance
 from heuncli.scene.file_format.load import load
 

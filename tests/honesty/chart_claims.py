@@ -15,8 +15,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.linalg import expm
 
-from heuncli.analyses.work_precision.motion import make_motion
-from heuncli.analyses.work_precision.plan import ChartOptions
+from heuncli.analyses.work_precision.plan import ChartOptions, make_motion
 from heuncli.analyses.work_precision.results import ChartRun
 from heuncli.analyses.work_precision.study import chart
 from heuncli.motion.integration.methods.method import load_method_by_name

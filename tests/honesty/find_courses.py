@@ -24,9 +24,9 @@ import mpmath as mp
 import numpy as np
 
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.conditions import Comparison
-from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.measures import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.analyses.variants.samples import Sample
 from heuncli.app.cli.entry import enter
 from heuncli.app.commands.find.page import FindPage, to_block
 from heuncli.output.documents.as_json import dump_json

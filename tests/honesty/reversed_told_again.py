@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import HeunError
+from heuncli.results.path_words import TREE
 from heuncli.results.results import Array
-from heuncli.results.results_schema import REPORTS, SPACE, TREE, Quantity
+from heuncli.results.results_schema import REPORTS, SPACE, Quantity
 from heuncli.study.queries.study import Study
 from tests.faults.sources import parsed
 from tests.honesty.rest_poses import spread

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.lagrange.instant import make_instant
+from heuncli.analyses.lagrange.freed_scene import make_instant
 from heuncli.analyses.lagrange.results import StateSpace
 from heuncli.analyses.lagrange.study import LagrangeOptions, to_results
 from heuncli.base.errors import SolveError, SpecError

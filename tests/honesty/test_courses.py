@@ -17,8 +17,9 @@ from scipy.optimize import brentq
 from heuncli.analyses.find.results import IntervalFindings
 from heuncli.analyses.find.search import is_steep
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.conditions import Relation
-from heuncli.analyses.variants.course import MeasureCourse, Sample
+from heuncli.analyses.variants.course import MeasureCourse
+from heuncli.analyses.variants.measures import Relation
+from heuncli.analyses.variants.samples import Sample
 
 Function = Callable[[float], float]
 FINE = np.linspace(0.0, 1.0, 20_001)

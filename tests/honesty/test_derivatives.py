@@ -11,8 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli.analyses.sensitivity.derivative import compute_derivative
-from heuncli.analyses.sensitivity.results import NoisyDerivative
+from heuncli.analyses.sensitivity import NoisyDerivative, compute_derivative
 from heuncli.analyses.variants.measures import NoisyValue
 
 Function = Callable[[float], float]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.samples import Sample
 from tests.honesty.find_courses import KINDS, judged
 
 

@@ -10,10 +10,16 @@ import pytest
 from numpy.random import Generator
 from scipy.stats import binom, norm
 
-from heuncli.analyses.variants.draws import make_draws
-from heuncli.analyses.variants.indices import MIN_BOUNDED, compute_sobol_indices
 from heuncli.analyses.variants.parameters import RandomVariable
-from heuncli.analyses.variants.sampling import CONFIDENCE, PERCENTS, BoundedEstimate, compute_statistics
+from heuncli.analyses.variants.plans import make_draws
+from heuncli.analyses.variants.sample_statistics import (
+    CONFIDENCE,
+    MIN_INDEX_BOUNDED,
+    PERCENTS,
+    BoundedEstimate,
+    compute_sobol_indices,
+    compute_statistics,
+)
 from heuncli.results.results import Array
 
 SEEDS = 2000
@@ -100,7 +106,7 @@ def test_intervals_of_indices_hold_the_truth_as_often_as_they_say(
 
 
 def test_few_samples_have_indices_without_intervals() -> None:
-    rows = np.random.default_rng(5).random((MIN_BOUNDED, 4))
+    rows = np.random.default_rng(5).random((MIN_INDEX_BOUNDED, 4))
     few, enough = compute_sobol_indices(rows[:-1]), compute_sobol_indices(rows)
     assert few is not None and few[0].first.low is None and few[0].total.high is None
     assert enough is not None and enough[0].first.low is not None

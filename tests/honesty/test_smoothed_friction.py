@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.study.compose.smoothed_friction import full_friction_rate
+from heuncli.study.compose.warnings import full_friction_rate
 from tests.shared.command import Heun
 
 SLEDGE = """

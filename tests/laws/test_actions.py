@@ -10,7 +10,7 @@ import pytest
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.loads.kinetostatics.actions import list_joint_actions
 from heuncli.loads.kinetostatics.foundation import inertia_loads
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.solve.history import resample
 from tests.oracle.turns import Array, cross

@@ -10,7 +10,8 @@ import pytest
 
 from heuncli.base.records import replace
 from heuncli.multibody.assembly.assemble import assemble
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.scene.shapes.rotations import rotation_from_vector, vector_from_rotation
 from tests.shared.assemblies import calls, same_motion
 from tests.shared.drafted_loops import four_bar, random_loop, slider_crank

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.balancing.options import WeightRequest
-from heuncli.analyses.balancing.results import BalanceResults, CounterweightResult
+from heuncli.analyses.balancing.results import BalanceResults, CounterweightResult, WeightRequest
 from heuncli.base.errors import SolveError
 from heuncli.base.records import replace
 from tests.shared.cycling import balance_of, four_bar

@@ -9,10 +9,8 @@ import pytest
 from scipy import stats
 from scipy.stats import qmc
 
-from heuncli.analyses.variants.axes import AxisError
-from heuncli.analyses.variants.draws import make_draws, make_imbalance_warning
-from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable
-from heuncli.analyses.variants.plans import make_axes_plan
+from heuncli.analyses.variants.parameters import AxisError, ParameterAxis, RandomVariable
+from heuncli.analyses.variants.plans import make_axes_plan, make_draws, make_imbalance_warning
 
 SEEDS = [0, 1, 2024]
 

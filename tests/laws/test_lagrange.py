@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.analyses.lagrange.coordinates import choose_coordinates, make_candidate_rows, select_independent
 from heuncli.analyses.lagrange.equations import VelocityTerms, make_partials
-from heuncli.analyses.lagrange.instant import Instant, make_instant
+from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
 from heuncli.analyses.lagrange.results import LagrangeResults
 from heuncli.analyses.lagrange.study import LagrangeOptions
 from heuncli.analyses.lagrange.study import to_results as told_at

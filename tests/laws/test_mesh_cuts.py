@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from heuncli.results.results import Array
-from heuncli.scene.file_format.models import Matrix, Shape, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import Shape, Vec
 from heuncli.scene.meshes.reading import read_closed_mesh
 from heuncli.scene.shapes.composite_solid import CompositeSolid, make_composite_solid
 from tests.shared import polyhedra

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.response import Columns, solve_columns, solve_impulses
 from heuncli.results.results import Array
 from heuncli.study.queries.study import Study

@@ -11,11 +11,11 @@ from heuncli.output.tables.page import make_page
 from heuncli.results.results import Array
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
+from heuncli.study.compose.unknown_numbers import VerdictsBetween, find_verdicts
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch, StudyColumns
-from heuncli.study.search.open_between import VerdictsBetween, find_verdicts
 from heuncli.study.workflow import solve
 from tests.oracle.published import windows
 from tests.shared.scenes import moving, study

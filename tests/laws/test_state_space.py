@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.lagrange.coordinates import choose_coordinates, compute_accelerations
-from heuncli.analyses.lagrange.instant import Instant, make_instant
+from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
 from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange, to_results
 from heuncli.base.errors import SolveError
 from heuncli.loads.kinetostatics.bodies import make_body_states

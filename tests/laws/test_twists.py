@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.motion_diagnostics.motion_events import MotionSearch
-from heuncli.analyses.motion_diagnostics.numerics.twists import closure_rows, compute_twists, mass_matrix
+from heuncli.analyses.motion_diagnostics.twists import closure_rows, compute_twists, mass_matrix
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.linearisation.linearise import linearise

@@ -10,8 +10,8 @@ from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS
 from heuncli.app.commands.explain.lookup import Row, find_places, find_terms, read_rows
 from heuncli.app.commands.explain.pages import find_section
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results_schema import ROWS as QUANTITIES
-from heuncli.results.results_schema import find_quantity
 from tests.manual.keys import PLACES
 from tests.shared.manual import TEXTS, headings
 

@@ -13,7 +13,7 @@ import pytest
 
 from heuncli.app.cli.registry import find_command
 from heuncli.app.commands.lagrange.forms import ALWAYS, KEYS
-from heuncli.results.results_schema import find_quantity
+from heuncli.results.path_words import find_quantity
 from tests.shared.cited_texts import PACKAGE, TESTS, equations, scopes, texts, tree
 from tests.shared.folders import ROOT
 

@@ -37,14 +37,14 @@ PRIVATE_WORDS = {
 ENDS_IN_ED = {"speed", "seed", "need", "embed", "exceed", "feed", "proceed"}  # and is no participle
 # Fields of these files are names that users write or read: keys of specs, options, JSON; or of the kernel's structs.
 FILES_OF_KEYS = re.compile(
-    r"scene/file_format/(format\w*|entries|fields|models|couplings)\.py|app/commands/\w+/request\.py|app/python/\w+\.py"
-    r"|kernel/(scene|stepping|values|programs)\.py|multibody/tree/rows\.py|analyses/(balancing/options|lagrange/study)\.py"
+    r"scene/file_format/(format\w*|entries|fields|models|loads|couplings)\.py|app/commands/\w+/request\.py|app/python/\w+\.py"
+    r"|kernel/(scene|stepping|values|programs)\.py|multibody/tree/rows\.py|analyses/(balancing/results|lagrange/study)\.py"
 )
 DECKS = ("abaqus", "ansys", "as_csv", "as_json", "calculix", "nastran")
 # Others that strings refer to, or whose name a protocol of Python's prescribes.
 KEPT = {
     "analyses/load_cases/model.py": {"PointAction.at"},
-    "analyses/sensitivity/results.py": {"Contribution.below", "Contribution.above"},
+    "analyses/sensitivity.py": {"Contribution.below", "Contribution.above"},
     "app/api.py": {"solve(at)", "solve_cases(at)"},
     "app/commands/sweep/cluster/worker.py": {"described"},
     "app/commands/sweep/output/as_parquet.py": {"ByteSink.tell"},
@@ -53,7 +53,7 @@ KEPT = {
     "base/named_tuples.py": {"named"},
     "loads/kinetostatics/bodies.py": {"KernelBodyStates._beside"},
     "output/snapshots/golden_file.py": {"EventSnapshot.to"},
-    "analyses/find/edges.py": {"close_edge(solved)", "evaluate_between(solved)", "predict_edge(solved)"},
+    "analyses/find/study.py": {"close_edge(solved)", "evaluate_between(solved)", "predict_edge(solved)"},
     "analyses/lagrange/coordinates.py": {"choose_coordinates(driven)", "group_coordinates(driven)"},
     "results/results.py": {"JointBlock.chosen"},
     "scene/expressions/grammar.py": {"Scope.given"},

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.results.results_schema import find_quantity
+from heuncli.results.path_words import find_quantity
 from tests.shared.broken import FILES, head
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS

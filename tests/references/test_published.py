@@ -14,10 +14,8 @@ from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipj, ellipk
 
 import heuncli.analyses.published.cases as cases
-from heuncli.analyses.published.cases import parse_case, read_case
-from heuncli.analyses.published.comparison import AGREES, COARSE, DIFFERS, OPEN, compare_case
-from heuncli.analyses.published.files import list_names, numbers_of, spec_of
-from heuncli.analyses.published.printed_number import parse_decimal
+from heuncli.analyses.published.cases import list_names, numbers_of, parse_case, read_case, spec_of
+from heuncli.analyses.published.comparison import AGREES, COARSE, DIFFERS, OPEN, compare_case, parse_decimal
 from heuncli.scene.file_format.load import load
 from tests.manual import proof
 from tests.shared.command import Heun

@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.analyses.published.cases import read_case
-from heuncli.analyses.published.files import spec_of
+from heuncli.analyses.published.cases import read_case, spec_of
 from heuncli.output.figures.bars import WholeBar
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams

@@ -19,7 +19,7 @@ from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.measure import find_peak
 from heuncli.study.queries.study import Study
-from heuncli.study.search import stretches
+from heuncli.study.search import cuts
 from heuncli.study.workflow import solve
 
 SPEC = """
@@ -136,13 +136,13 @@ sections:
 def test_the_place_of_a_stress_is_not_sought_in_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond the cuts of a box pieces are sums: a stress that is 0 all along is noise, of finer cuts ever more."""
     asked: list[int] = []
-    cut_at = stretches.cut_at
+    cut_at = cuts.cut_at
 
     def counted(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setup:
         asked.append(len(s))
         return cut_at(setup, name, s, ends)
 
-    monkeypatch.setattr(stretches, "cut_at", counted)
+    monkeypatch.setattr(cuts, "cut_at", counted)
     found = solve(load("box.yaml", LOADED_BOX), Options())
     run = next(iter(collect_runs(found.results, make_labels(found.spec))))
     certain = make_page(found.results, make_labels(found.spec), found.magnitudes).certain

@@ -12,11 +12,12 @@ import pytest
 
 from heuncli.base.errors import SolveError
 from heuncli.output.tables.export import to_json
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Results
-from heuncli.results.results_schema import REPORTS, ROWS, SHARES, find_quantity
+from heuncli.results.results_schema import REPORTS, ROWS, SHARES
 from heuncli.scene.file_format.load import load
 from heuncli.study.compose import recovery
-from heuncli.study.compose.finiteness import iter_numbers, require_finite
+from heuncli.study.compose.accuracy import iter_numbers, require_finite
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun

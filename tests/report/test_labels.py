@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.results.results_schema import find_quantity
+from heuncli.results.path_words import find_quantity
 from heuncli.scene.file_format.models import End, Section
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, _make_section_info
 

@@ -12,9 +12,10 @@ from heuncli.base.units import parse_unit
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.export import to_csv
 from heuncli.output.tables.page import select_instants
+from heuncli.results.path_words import TREE, Node, find_quantity
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
-from heuncli.results.results_schema import REPORTS, ROWS, TREE, Node, Quantity, find_quantity
+from heuncli.results.results_schema import REPORTS, ROWS, Quantity
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.format import HeadEntry
 from heuncli.scene.file_format.load import load

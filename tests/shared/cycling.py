@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.balancing.options import BalanceOptions
-from heuncli.analyses.balancing.results import BalanceResults, OrderRow
+from heuncli.analyses.balancing.results import BalanceOptions, BalanceResults, OrderRow
 from heuncli.analyses.balancing.study import balance
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Body, Joint, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Body, Joint, Mechanism
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format.models import Drive, FramedVector

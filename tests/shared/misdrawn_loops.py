@@ -14,7 +14,8 @@ import numpy as np
 
 from heuncli.base.records import record, replace
 from heuncli.multibody.assembly.conditions import mean_arm
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import rotation_from_vector, vector_from_rotation
 from tests.shared.drafted_mechanisms import body, joint, scene

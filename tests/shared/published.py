@@ -6,10 +6,8 @@ import re
 from collections.abc import Sequence
 from functools import cache
 
-from heuncli.analyses.published.cases import read_case
-from heuncli.analyses.published.comparison import TableComparison, compare_case
-from heuncli.analyses.published.files import spec_of
-from heuncli.analyses.published.printed_number import parse_decimal
+from heuncli.analyses.published.cases import read_case, spec_of
+from heuncli.analyses.published.comparison import TableComparison, compare_case, parse_decimal
 
 
 def spec_at(name: str, times: Sequence[float], tolerance: float) -> str:

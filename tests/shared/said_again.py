@@ -10,16 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from heuncli.motion.integration.check.changes import impulse_time_differences
+from heuncli.results.path_words import TREE, Node, error_kind_of_path, find_child
 from heuncli.results.results import Array
-from heuncli.results.results_schema import (
-    ESTIMATE_OF_ERROR_KIND,
-    SPACE,
-    TREE,
-    Node,
-    Quantity,
-    error_kind_of_path,
-    find_child,
-)
+from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND, SPACE, Quantity
 from heuncli.study.queries.study import Study
 
 Powers = tuple[int, int, int]

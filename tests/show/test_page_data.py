@@ -18,8 +18,8 @@ from heuncli.output.web_page.geometry import make_page_machine
 from heuncli.output.web_page.moving_page import render_moving_page
 from heuncli.output.web_page.number_rows import ZERO_ROWS_PREFIX
 from heuncli.output.web_page.packing import NUMBER_STEPS
+from heuncli.results.path_words import split_leading_key
 from heuncli.results.results import Array
-from heuncli.results.results_schema import split_leading_key
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units

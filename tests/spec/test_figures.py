@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.analyses.variants.axes import parse_axis_values
-from heuncli.analyses.variants.parameters import ParameterAxis
+from heuncli.analyses.variants.parameters import ParameterAxis, parse_axis_values
 from heuncli.scene.file_format.quantity import parse_number_with_unit
 from heuncli.scene.file_format.source import parse_source
 

@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from heuncli.base.errors import SpecError
 from heuncli.base.records import fields
+from heuncli.scene.file_format import loads
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.rules import references
@@ -32,7 +33,7 @@ def scene(text: str, **overrides: str) -> m.Spec:
     return load("x.yaml", text=f"heun: 1\n{text}", overrides=overrides)
 
 
-def body(text: str, space: str = "auto") -> m.Body[m.Vec, m.Matrix]:
+def body(text: str, space: str = "auto") -> m.Body[m.Vec, loads.Matrix]:
     return scene(f"space: {space}\nbodies: {{b: {text}}}\n").bodies["b"]
 
 
@@ -242,8 +243,8 @@ def test_forces() -> None:
     spring = force("{type: spring, from: b.p, to: a.q, stiffness: 2 N/mm, length: 10 cm, damping: 3 N*s/m}")
     assert (spring.type, spring.stiffness, spring.length, spring.damping) == ("spring", 2000.0, 0.1, 3.0)
     assert force("{type: spring, from: b.p, to: a.q, stiffness: 2, length: 0}").damping == 0.0
-    assert force("{type: damper, joint: shaft, coefficient: 2 N*m*s}") == m.Damper("shaft", 2.0, None)
-    assert force("{type: damper, joint: guide, coefficient: 2 N*s/m}") == m.Damper("guide", 2.0, None)
+    assert force("{type: damper, joint: shaft, coefficient: 2 N*m*s}") == loads.Damper("shaft", 2.0, None)
+    assert force("{type: damper, joint: guide, coefficient: 2 N*s/m}") == loads.Damper("guide", 2.0, None)
     rubbing = force("{type: friction, joint: shaft, torque: 2, speed: 1 rpm}")
     assert (rubbing.joint, rubbing.torque.constant, rubbing.force, rubbing.speed) == ("shaft", 2.0, None, math.pi / 30)
     rubbing = force("{type: friction, joint: guide, force: 2, speed: 1 mm/s}")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.base.number_range import are_in_range, is_in_range
+from heuncli.base.units import are_in_range, is_in_range
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.load import load

@@ -16,7 +16,7 @@ from typing import Protocol
 
 import numpy as np
 
-from heuncli.analyses.balancing.legendre import (
+from heuncli.analyses.balancing.series import (
     MAX_NODES,
     coefficient_matrix,
     fourier_integrals,

@@ -14,7 +14,8 @@ from heuncli.base.records import record
 from heuncli.base.spelling import suggest
 from heuncli.loads.equilibrium.steady_states import has_constant_rate
 from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.starts import compute_joint_start
 from heuncli.scene.expressions.programs import Expression

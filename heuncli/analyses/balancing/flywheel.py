@@ -13,21 +13,26 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from heuncli.analyses.balancing.cycle import Cycle
-from heuncli.analyses.balancing.effects import compute_mass_effects
-from heuncli.analyses.balancing.legendre import legendre_polynomials
-from heuncli.analyses.balancing.load_torque import estimate_power_rounding, sum_load_powers
-from heuncli.analyses.balancing.loaded_scene import CycleNumbers, LoadedScene
-from heuncli.analyses.balancing.results import Flywheel
+from heuncli.analyses.balancing.cycle import Cycle, compute_mass_effects
+from heuncli.analyses.balancing.cycle_plan import CyclePlan
+from heuncli.analyses.balancing.loaded_scene import (
+    CycleNumbers,
+    LoadedScene,
+    estimate_power_rounding,
+    make_loaded_scene,
+    sum_load_powers,
+)
+from heuncli.analyses.balancing.results import BalanceResults, Flywheel, FlywheelRequest
+from heuncli.analyses.balancing.series import legendre_polynomials
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import (
-    Load,
-    Mechanism,
-)
+from heuncli.base.records import record, replace
+from heuncli.multibody.mechanism.loads import Load
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.recovery import Recovery
 
 MIN_INTERVALS_PER_TURN = 1080  # intervals per turn, at least; on each, extremes are those of a cubic
@@ -320,3 +325,43 @@ def iter_dependence_reasons(load: Load) -> Iterator[str]:
         yield "depends on t"
     if any(quantity in RATES for value in load.values for _, quantity in value.uses):
         yield "depends on a rate"
+
+
+def add_flywheel(
+    results: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, request: FlywheelRequest
+) -> BalanceResults:
+    """Return the results with the requested flywheel. Raises SolveError [no-flywheel]."""
+    wheel = find_requested_flywheel(spec, scene, plan, request)
+    notes = (*results.notes, *describe_flywheel(wheel), *wheel.notes)
+    return replace(results, flywheel=wheel, notes=tuple(dict.fromkeys(notes)))
+
+
+def find_requested_flywheel(spec: Spec, scene: PreparedScene, plan: CyclePlan, request: FlywheelRequest) -> Flywheel:
+    """Find the flywheel on the cycle's shaft. Raises SolveError [no-flywheel]."""
+    if request.joint not in ("", plan.joint):
+        message = f"--flywheel {request.joint}: a flywheel is sized only for the shaft of the cycle, {plan.joint}"
+        raise SolveError(
+            Problem("no-flywheel", message, hint=f"--cycle {request.joint}, or --flywheel {plan.joint}=1%")
+        )
+    if plan.in_time:
+        message = "no flywheel for a model with several drives: they prescribe every speed"
+        raise SolveError(Problem("no-flywheel", message, hint="leave out the drives that the flywheel is to replace"))
+    if plan.rate is None:
+        message = "the mean speed of the machine is not known"
+        raise SolveError(Problem("no-flywheel", message, hint="for example --rate 1500rpm"))
+    require_position_loads(scene.mechanism)
+    loaded_scene = make_loaded_scene(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0)
+    return find_flywheel(loaded_scene, plan.joint, abs(plan.rate), request.delta)
+
+
+def describe_flywheel(wheel: Flywheel) -> tuple[str, ...]:
+    """Return the notes on a flywheel."""
+    notes = []
+    if wheel.even:
+        notes.append(
+            f"the loads do net work over the cycle: the flywheel is sized with a constant torque of "
+            f"{wheel.even:.6g} N·m on {wheel.joint} that balances it"
+        )
+    if wheel.added == 0.0:
+        notes.append(f"no flywheel needed: the speed fluctuation is {wheel.present:.4g} without one")
+    return tuple(notes)

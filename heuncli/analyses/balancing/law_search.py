@@ -1,8 +1,8 @@
 """Search laws in the cycle's own angle for events between the nodes that no node has sampled.
 
 Such a law is a function of the angle alone, so bounds over stretches of the angle also cover what was not sampled (as
-for functions of time, study/search/in_time.py). Stretches where bounds allow more than the polynomial through the nodes
-shows are halved; in the middle of each the law is compared with the polynomial.
+for functions of time, study/search/law_instants.py). Stretches where bounds allow more than the polynomial through the
+nodes shows are halved; in the middle of each the law is compared with the polynomial.
 """
 
 from __future__ import annotations

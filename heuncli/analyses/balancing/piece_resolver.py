@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from heuncli.analyses.balancing.cycle_nodes import PieceNodes
-from heuncli.analyses.balancing.legendre import MAX_NODES
+from heuncli.analyses.balancing.series import MAX_NODES
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace

@@ -1,13 +1,14 @@
-"""Results of a balance: orders of force, moment and torque with verdicts, residuals, counterweights and a flywheel."""
+"""Options, results and labels of a balance: orders with verdicts, residuals, counterweights, a flywheel."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.balancing.effects import MassEffects
+from heuncli.analyses.balancing.cycle import MassEffects
 from heuncli.base.records import fields, record
 from heuncli.results.results import Array, Block
 
@@ -207,3 +208,81 @@ class BalanceResults:
     counterbalance: Counterbalance | None = None
     flywheel: Flywheel | None = None
     period: Period | None = None
+
+
+UNITS = {"force": "N", "moment": "N·m", "torque": "N·m", "load": "N·m"}
+UNITS_PER_RATE = {
+    "force": "kg·m",
+    "moment": "kg·m²",
+    "torque": "kg·m²",
+    "load": "N·m",
+}  # at 1 rad/s, if no rate is known
+UNIT_RATE_TEXT = "at 1 rad/s (loads grow with its square; in kg·m)"
+RPM = 30.0 / math.pi
+
+
+def format_cycle(results: BalanceResults) -> str:
+    """Describe the cycle in words."""
+    if results.period is not None:
+        period = results.period
+        difference = f"the previous period differs by {period.relative_difference:.1g} of the mean"
+        return f"the last {period.seconds:.6g} s of the motion, {results.samples} samples; order k is k/T; {difference}"
+    turns = "one revolution" if results.turns == 1 else "two revolutions"
+    rate = f"at {results.rate:.6g} rad/s ({results.rate * RPM:.6g} rpm)" if results.rate is not None else UNIT_RATE_TEXT
+    return f"{turns} of {results.coordinate} {rate}, {results.samples} angles"
+
+
+def get_unit(results: BalanceResults, quantity: str) -> str:
+    """Return the unit of a quantity's amplitudes."""
+    return (UNITS if results.rate is not None else UNITS_PER_RATE)[quantity]
+
+
+def format_reference_point(results: BalanceResults) -> str:
+    """Describe the point about which moments are taken."""
+    x, y, z = (f"{value:.6g}" for value in results.reference_point + 0.0)
+    return (
+        f"{results.place or 'O' if results.place or not results.reference_point.any() else 'the point'} = "
+        f"({x}, {y}, {z}) m"
+    )
+
+
+@record
+class WeightRequest:
+    """A requested counterweight: a point of a body, and the distance of the weight from it or from its axis [m].
+
+    radius: None means the distance of the body's farthest joint
+    """
+
+    body: str
+    point: str
+    radius: float | None
+
+
+@record
+class FlywheelRequest:
+    """A requested flywheel: its joint (empty: the joint of the cycle) and the permitted degree of unevenness
+    `delta`.
+    """
+
+    joint: str
+    delta: float
+
+
+@record
+class BalanceOptions:
+    """Options of a balance; None means that the scene decides."""
+
+    cycle: str | None = None
+    turns: int | None = None
+    rate: float | None = None
+    orders: tuple[float, ...] | None = None
+    about: Array | None = None
+    place: str = ""
+    weights: tuple[WeightRequest, ...] = ()
+    minimise: str | None = None
+    lever: float | None = None
+    flywheel: FlywheelRequest | None = None
+    period: float | None = None
+
+
+DEFAULT_OPTIONS = BalanceOptions()

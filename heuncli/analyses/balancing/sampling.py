@@ -1,22 +1,32 @@
-"""Sample the mass effects of a cycle at nodes that resolve it: equally spaced ones if it is smooth, else nodes on
-pieces.
-"""
+"""Sample the mass effects of a cycle at nodes that resolve it, and summarise them: means, magnitudes, residuals."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
-from heuncli.analyses.balancing.cycle import MAX_SAMPLES, Cycle, FollowedScene
-from heuncli.analyses.balancing.cycle_nodes import TAIL_FRACTION
-from heuncli.analyses.balancing.effects import MassEffects, compute_mass_effects
+from heuncli.analyses.balancing.cycle import MAX_SAMPLES, Cycle, FollowedScene, MassEffects, compute_mass_effects
+from heuncli.analyses.balancing.cycle_nodes import TAIL_FRACTION, CycleNodes, Interpolant
 from heuncli.analyses.balancing.followed_run import SAMPLES_PER_TURN
-from heuncli.analyses.balancing.harmonics import relative_tail
+from heuncli.analyses.balancing.orders import (
+    CycleRotation,
+    OrderSelection,
+    compute_rounding,
+    format_remaining_orders,
+    magnitudes,
+    make_all_rows,
+)
 from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_scales
+from heuncli.analyses.balancing.results import BalanceOptions, BalanceResults, OrderRow, Residual
+from heuncli.analyses.balancing.series import relative_tail
 from heuncli.base import tolerances
 from heuncli.base.records import replace
 from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.search.extremes import search_extremes
 
 SHORT_STEP_FRACTION = 0.25  # of the distance of nodes: shorter steps of the run indicate a kink
 FIRST_SAMPLES = 8  # angles for the size of the terms
@@ -113,3 +123,169 @@ def count_columns(columns: Array) -> list[int]:
 def estimate_rounding(effects: MassEffects) -> list[float]:
     """Return the rounding level of force, moment and torque at unit rate."""
     return [tolerances.SUM_ROUNDING * effects.terms[name] for name in ("force", "moment", "torque")]
+
+
+MAXIMUM_ONLY = (1.0,)
+
+
+def compute_residuals(
+    kinds: Mapping[str, Array], nodes: CycleNodes, thresholds: Mapping[str, float], noise: Mapping[str, float]
+) -> dict[str, Residual]:
+    """Return rms and peak of each kind's sum over the bodies, for values (n, bodies, c).
+
+    thresholds: sums below are rounding, or within the error
+    noise: errors of the values in addition to those at the nodes
+    """
+    sums = {name: values.sum(axis=1) for name, values in kinds.items()}
+    magnitudes = compute_vector_magnitudes(sums, nodes)
+    for name, values in kinds.items():
+        largest = float(np.sqrt(np.sum(sums[name] ** 2, axis=1)).max())
+        terms = float(np.sqrt(np.sum(values**2, axis=2)).sum(axis=1).max())
+        if largest <= max(tolerances.CANCELS * terms, thresholds[name]):
+            magnitudes[name] = Residual(0.0, 0.0, float(nodes.begin), max(largest, thresholds[name]))
+        else:
+            magnitudes[name] = replace(magnitudes[name], error=magnitudes[name].error + noise[name])
+    return magnitudes
+
+
+def compute_vector_magnitudes(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Residual]:
+    """Return rms and peak of the magnitudes of vectors (n, c) of several kinds."""
+    values = np.concatenate([*kinds.values()], axis=1)
+    interpolant, ends = nodes.interpolate(values), np.cumsum([own.shape[1] for own in kinds.values()])
+    value_errors = nodes.estimate_errors(values).value
+    slices = [slice(end - own.shape[1], end) for own, end in zip(kinds.values(), ends, strict=True)]
+    errors = np.array([math.sqrt(float(np.sum(value_errors[part] ** 2))) for part in slices])
+
+    def compute_squares(x: Array) -> Array:
+        own = interpolant(x) ** 2
+        return np.stack([own[:, part].sum(axis=1) for part in slices], axis=1)
+
+    means = [float(nodes.weights @ np.sum(own**2, axis=1)) for own in kinds.values()]
+    peaks = find_peaks(compute_squares, nodes, errors)
+    return {
+        name: Residual(math.sqrt(mean), peak, at, error)
+        for name, mean, (peak, at), error in zip(kinds, means, peaks, errors.tolist(), strict=True)
+    }
+
+
+def compute_square_root_magnitudes(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Residual]:
+    """Return rms and peak of magnitudes whose squares are the values (n,); errors refer to the magnitudes."""
+    values = np.stack([*kinds.values()], axis=1)
+    value_errors, largest = nodes.estimate_errors(values).value, values.max(axis=0, initial=0.0)
+    roots = np.sqrt(np.maximum(largest, value_errors))
+    # error of the root from the error of the square
+    errors = np.divide(value_errors, roots, out=np.zeros_like(value_errors), where=roots > 0.0)
+    means = np.maximum(nodes.weights @ values, 0.0).tolist()
+    peaks = find_peaks(nodes.interpolate(values), nodes, errors)
+    return {
+        name: Residual(math.sqrt(mean), peak, at, error)
+        for name, mean, (peak, at), error in zip(kinds, means, peaks, errors.tolist(), strict=True)
+    }
+
+
+def find_peaks(squares: Interpolant, nodes: CycleNodes, errors: Array) -> list[tuple[float, float]]:
+    """Return the peak of each magnitude from its squares, (n, m), and the angle of the peak; the first such angle for a
+    constant one.
+    """
+    grid = nodes.grid
+    grid_squares = squares(grid)
+
+    def sample(x: Array) -> Array:
+        return grid_squares if x is grid else squares(x)  # the search begins with the grid
+
+    extremes = search_extremes(
+        sample, grid, errors=errors, is_squared=np.ones(len(errors), dtype=bool), sides=MAXIMUM_ONLY
+    )
+    peaks = []
+    for k, error in enumerate(errors.tolist()):
+        peak = math.sqrt(max(float(extremes.high[k]), 0.0))
+        equal_places = np.flatnonzero(np.sqrt(np.maximum(grid_squares[:, k], 0.0)) >= peak - error)
+        peaks.append(
+            (peak, nodes.compute_angle(float(grid[equal_places[0]] if len(equal_places) else extremes.high_at[k])))
+        )
+    return peaks
+
+
+NO_NOISE: Mapping[str, float] = MappingProxyType({})
+MOST_ROWS = 12
+
+
+def to_results(
+    spec: Spec,
+    coordinate: str,
+    rotation: CycleRotation,
+    effects: MassEffects,
+    reference_point: Array,
+    options: BalanceOptions,
+    noise: Mapping[str, float] = NO_NOISE,
+) -> BalanceResults:
+    """Return the results by orders of a coordinate at the cycle's rate.
+
+    noise: errors of the quantities in addition to those at the nodes
+    """
+    scale, nodes = rotation.scale, effects.nodes
+    thresholds = {name: max(x, noise.get(name, 0.0)) for name, x in compute_rounding(effects, scale).items()}
+    selections = {name: OrderSelection(options.orders, noise.get(name, 0.0)) for name in thresholds}
+    orders = make_all_rows(effects, rotation, thresholds, selections)
+    summaries = {name: format_remaining_orders(rows, endless=nodes.last_order is None) for name, rows in orders.items()}
+    if options.orders is not None:
+        orders = {
+            name: tuple(row for row in rows if is_requested(row.order, options.orders)) for name, rows in orders.items()
+        }
+    values = {
+        "force": -scale * effects.force, "moment": -scale * effects.moment,
+        "moment_orbital": -scale * effects.orbital, "moment_spin": -scale * effects.spin,
+        "torque": scale * effects.half_slope[:, :, None],
+    }  # fmt: skip
+    sums = {name: total.sum(axis=1) for name, total in values.items()}
+    kinds = {name: name.partition("_")[0] for name in values}
+    errors = {name: nodes.estimate_errors(total) for name, total in sums.items()}
+    extra_errors = {name: noise.get(kind, 0.0) for name, kind in kinds.items()}
+    return BalanceResults(
+        title=spec.title,
+        spec={"path": spec.path, "sha256": spec.sha256},
+        coordinate=coordinate,
+        turns=rotation.turns,
+        rate=rotation.rate,
+        samples=len(effects.angles),
+        is_resolved=True,
+        reference_point=reference_point,
+        place=options.place,
+        axis=rotation.axis,
+        effects=effects,
+        orders=orders,
+        summaries=summaries,
+        mean={name: np.einsum("n,nc->c", nodes.weights, total) for name, total in sums.items()},
+        mean_error={name: float(magnitudes(total.order)) + extra_errors[name] for name, total in errors.items()},
+        residual=compute_residuals(
+            values, nodes, {name: thresholds[kind] for name, kind in kinds.items()}, extra_errors
+        ),
+        shown_orders=select_shown_orders(orders) if options.orders is None else options.orders,
+        are_orders_requested=options.orders is not None,
+    )
+
+
+def is_requested(order: float, orders: Sequence[float]) -> bool:
+    """Return whether an order is among the requested ones."""
+    return any(abs(order - one) < tolerances.SAME_VALUE for one in orders)
+
+
+def select_shown_orders(orders: dict[str, tuple[OrderRow, ...]]) -> tuple[float, ...]:
+    """Return the orders that a table shows: up to the last that is not small relative to the largest of its
+    quantity.
+    """
+    last, shares = 0.0, dict[float, float]()
+    for rows in orders.values():
+        largest = max((row.size for row in rows), default=0.0)
+        last = max([last, *(row.order for row in rows if row.size > tolerances.LISTED_ORDER * largest)])
+        for row in rows:
+            shares[row.order] = max(shares.get(row.order, 0.0), row.size / largest if largest > 0.0 else 0.0)
+    nonzero = {row.order for rows in orders.values() for row in rows if row.size > 0.0}
+    candidates = [order for order in sorted(shares) if order <= last and (order == round(order) or order in nonzero)]
+    return select_largest([(order, shares[order]) for order in candidates], MOST_ROWS)
+
+
+def select_largest(sizes: Sequence[tuple[float, float]], count: int) -> tuple[float, ...]:
+    """Return the `count` largest orders, ascending; of equal ones the first."""
+    chosen = sorted(sizes, key=lambda own: (-own[1], own[0]))[:count] if len(sizes) > count else sizes
+    return tuple(sorted(order for order, _ in chosen))

@@ -23,7 +23,8 @@ from heuncli.analyses.find.results import (
     UnsolvedStretch,
 )
 from heuncli.analyses.find.touches import find_touch_range, iter_minima
-from heuncli.analyses.variants.course import MIN_DISTANCE, MeasureCourse, Sample, interpolate_slope
+from heuncli.analyses.variants.course import MIN_DISTANCE, MeasureCourse
+from heuncli.analyses.variants.samples import Sample, interpolate_slope
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 

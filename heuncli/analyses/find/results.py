@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.samples import Sample
 from heuncli.base.named_tuples import NamedTuple
 
 EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved", "bracket"]

@@ -15,8 +15,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.analyses.find.poles import find_hidden_pole, has_pole, is_far_from_value
-from heuncli.analyses.find.touches import find_touch_range, follow_minimum, is_deep, iter_minima
+from heuncli.analyses.find.touches import (
+    find_hidden_pole,
+    find_touch_range,
+    follow_minimum,
+    has_pole,
+    is_deep,
+    is_far_from_value,
+    iter_minima,
+)
 from heuncli.analyses.variants.course import (
     FIRST_DISTRUST,
     GOLDEN,
@@ -24,10 +31,9 @@ from heuncli.analyses.variants.course import (
     NOISE,
     CoursePrediction,
     MeasureCourse,
-    Sample,
-    interpolate,
+    clip_inside,
 )
-from heuncli.analyses.variants.course_extremes import clip_inside
+from heuncli.analyses.variants.samples import Sample, interpolate
 from heuncli.base import tolerances
 
 FINE_GAP = (

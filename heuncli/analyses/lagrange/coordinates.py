@@ -21,7 +21,8 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.linearisation.linearise import LinearisedEquations, point_twist
 from heuncli.motion.linearisation.linearise import coordinate_rows as rows_of_scene
 from heuncli.motion.linearisation.reduced_equations import find_massless_spins, orthogonal_complement
-from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array

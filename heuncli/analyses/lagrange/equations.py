@@ -9,13 +9,16 @@ e_k) - C_i(e_l) - C_i(e_k)) / 2, from the kernel's solutions at other rates.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import CoordinateChoice, compute_accelerations
-from heuncli.analyses.lagrange.freed_scene import FreedScene
+from heuncli.analyses.lagrange.coordinates import CoordinateChoice, compute_accelerations, make_candidate_rows
+from heuncli.analyses.lagrange.freed_scene import FreedScene, Instant
+from heuncli.analyses.lagrange.results import SectionForces
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
@@ -23,7 +26,7 @@ from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.kinetostatics.shares import GRAVITY, MOTION
 from heuncli.motion.integration.evaluator import CAUSES, Evaluation
 from heuncli.motion.linearisation.linearise import LinearisedEquations
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.results.results import Array
 
@@ -168,3 +171,74 @@ def estimate_term_sizes(layout: Layout, partials: Partials, actions: Sequence[Ac
 def compute_norms(vectors: Array, axis: int) -> Array:
     """Return the magnitudes of vectors along an axis."""
     return np.asarray(np.sqrt(np.sum(vectors**2, axis=axis)))
+
+
+@record
+class DriveRows:
+    """The driven coordinates: names, the joint of each, their rows (d, f) on the rates of the chosen coordinates."""
+
+    names: tuple[str, ...]
+    joints: tuple[str, ...]
+    rows: Array
+
+    def project_on_drives(self, remainder: Array) -> Array:
+        """Return Q (f,): the part of the equations' remainder that drives can exert."""
+        return np.asarray(self.rows.T @ solve_least_squares(self.rows.T, remainder))
+
+
+def make_drive_rows(instant: Instant, choice: CoordinateChoice) -> DriveRows:
+    """Return the driven coordinates at an instant."""
+    driven = instant.freed_scene.driven_coordinates
+    rows = make_candidate_rows(instant.freed_scene.layout, instant.linear_equations)
+    unit = dict(zip(choice.names, np.eye(len(choice.names)), strict=True))
+    driven_rows = [unit[name] if name in unit else rows[name] @ choice.S for name in driven]
+    return DriveRows(
+        tuple(driven), tuple(driven.values()), np.array(driven_rows).reshape(len(driven_rows), len(choice.names))
+    )
+
+
+def subtract_drive_efforts(instant: Instant, drives: DriveRows, remainder: Array) -> tuple[Array, Array]:
+    """Subtract the drives' efforts, as the joint reactions have them, from e q'' + C - k, (f,); also return where the
+    result is known.
+
+    If supports are redundant, the effort of a drive may be indeterminate: the coordinates along which it acts are then
+    unknown.
+    """
+    loads = {load.joint.name: load for load in instant.recovery.joints} if not instant.setup.model["redundant"] else {}
+    is_known = np.ones(len(remainder), dtype=bool)
+    for joint, row in zip(drives.joints, drives.rows, strict=True):
+        load = loads.get(joint)
+        if load is not None and load.drive is not None:
+            remainder = remainder - float(load.drive[0]) * row
+        else:
+            is_known &= row == 0.0
+    return remainder, is_known
+
+
+def compute_section_forces(block: Mapping[str, Array], k: int, partials: Partials, body: int) -> SectionForces:
+    """Return the generalised forces of a section of a body at instant k.
+
+    block: its `point`, `force` and `moment`, (n_t, 3), for several cuts (n_t, cuts, 3); nan where indeterminate
+    """
+    points, force, moment = (np.atleast_2d(block[name][k]) for name in ("point", "force", "moment"))
+    s = [
+        F @ partials.point_partials(body, P) + M @ partials.turn_partials(body)
+        for P, F, M in zip(points, force, moment, strict=True)
+    ]
+    shift, turn = (np.sqrt(np.sum(of**2, axis=1)).max(axis=0) for of in (partials.shift, partials.turn))
+    largest = [np.nanmax(np.sqrt(np.sum(load**2, axis=1)), initial=0.0) for load in (force, moment)]
+    scale = largest[0] * shift + largest[1] * turn
+    return SectionForces(np.array(s), scale, block["force"][k].ndim > 1)
+
+
+def to_lists(section: SectionForces) -> Any:
+    """Return the forces as JSON lists: one per cut, or that of the only cut; None where indeterminate."""
+    values = [None if np.isnan(s).any() else s.tolist() for s in section.s]
+    return values if section.is_run else values[0]
+
+
+def list_cuts(name: str, section: SectionForces) -> list[tuple[str, Array | None]]:
+    """Return the cuts by name with their forces; None where indeterminate."""
+    return [
+        (f"{name}.{k}" if section.is_run else name, None if np.isnan(s).any() else s) for k, s in enumerate(section.s)
+    ]

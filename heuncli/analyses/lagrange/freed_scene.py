@@ -1,4 +1,4 @@
-"""The scene without its drives: a driven coordinate becomes one of Lagrange's coordinates like any other.
+"""The scene without its drives, each driven coordinate as free as the others, and its state at an instant.
 
 It keeps the tree, the reference attitudes and the inertias of the original scene, so that states can be converted: a
 driven coordinate of the original is a state variable here.
@@ -11,15 +11,23 @@ from types import MappingProxyType
 
 import numpy as np
 
+from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner, make_runner
-from heuncli.multibody.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad
-from heuncli.multibody.tree.layout import Layout
+from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad, Load, PairLoad, PointLoad
+from heuncli.multibody.mechanism.model import Joint, Mechanism
+from heuncli.multibody.tree.layout import Layout, find_speed_rows
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.compose.recovery import Recovery, recover
+from heuncli.study.model.options import Options
+from heuncli.study.model.setup import Setup, set_up
+from heuncli.study.workflow import solve
 
 NO_EFFORTS: Mapping[str, float] = MappingProxyType({})
 
@@ -125,3 +133,84 @@ def list_contact_keys(layout: Layout) -> list[tuple[str, bool, int | None]]:
     """Return keys that identify the contacts, then those of the latches."""
     contacts = [(contact.name, contact.is_rope, contact.sense) for contact in layout.contacts]
     return [*contacts, *((layout.contacts[i].name, False, None) for i in layout.latches)]
+
+
+@record
+class Instant:
+    """A scene at an instant.
+
+    heading: when it is
+    setup, driven_recovered: the scene as it is, with its solution
+    freed_scene: the scene without drives
+    state, holding, freed_recovered, linear_equations: its state, closed contacts, solution and linearised equations
+    """
+
+    heading: str
+    t: float
+    setup: Setup
+    driven_recovered: Evaluation
+    freed_scene: FreedScene
+    state: Array
+    holding: Array
+    freed_recovered: Evaluation
+    linear_equations: LinearisedEquations
+
+    @property
+    def recovery(self) -> Recovery:
+        """Results of the scene as it is."""
+        return recover(self.setup, self.driven_recovered, False)
+
+
+def make_instant(spec: Spec, time: float | None, time_limit: float | None) -> Instant:
+    """Return the start of a state or motion, an equilibrium, or an instant of a motion."""
+    kind = spec.analysis.type
+    if time is not None and kind == "motion" and time > 0.0:
+        setup, recovered = solve_until(spec, time, time_limit)
+        heading, t = f"at t = {time:.6g} s", time
+    else:
+        if kind != "rest":
+            t = float(spec.analysis.times[0]) if kind == "state" else 0.0
+            spec = spec._replace(
+                analysis=spec.analysis._replace(type="state", times=(t,), duration=None, conditions=())
+            )
+        setup = set_up(spec, reduce=False)
+        t = float(spec.analysis.times[0]) if kind == "state" else 0.0
+        runner, layout = setup.runner, setup.scene.layout
+        recovered = runner.evaluate(np.array([t]), layout.y0[None, :])
+        heading = "at the rest position" if kind == "rest" else f"at t = {t:.6g} s"
+    require_holonomic(setup)
+    scene = free_drives(setup.scene)
+    state, holding = scene.convert_states(recovered)[0], scene.convert_holding(recovered.holding[0])
+    freed_recovered = scene.runner.evaluate(np.array([t]), state[None, :], holding=holding)
+    return Instant(
+        heading,
+        t,
+        setup,
+        recovered,
+        scene,
+        freed_recovered.states[0],
+        holding,
+        freed_recovered,
+        linearise(scene.layout, t, freed_recovered.states[0], holding),
+    )
+
+
+def require_holonomic(setup: Setup) -> None:
+    """Raise SolveError [no-coordinate] if wheels roll in space: their speeds are not rates of any coordinates."""
+    layout = setup.scene.layout
+    if layout.mechanism.planar or not find_speed_rows(layout).any():
+        return
+    message = "rolling contact is nonholonomic: no coordinates have its speeds as their rates"
+    hint = "heun run gives motion and loads, heun modes small motions; in a planar model wheels roll along lines"
+    raise SolveError(Problem("no-coordinate", message, hint=hint))
+
+
+def solve_until(spec: Spec, time: float, time_limit: float | None) -> tuple[Setup, Evaluation]:
+    """Solve a motion up to a time and return its results there. Raises SolveError [bad-option] if it ends before."""
+    analysis = spec.analysis._replace(times=(0.0, time), duration=time)
+    study = solve(spec._replace(analysis=analysis), Options(time_limit=time_limit, reduce=False))
+    recovered = study.history.solutions
+    if float(recovered.times[-1]) < time:
+        message = f"--at {time:g}: the motion ends at t = {recovered.times[-1]:.6g} s"
+        raise SolveError(Problem("bad-option", message, hint="use an earlier instant"))
+    return study.setup, recovered.select(np.array([len(recovered.times) - 1]))

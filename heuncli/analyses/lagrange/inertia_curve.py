@@ -25,13 +25,12 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import find_determined_motion
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.request import MotionTask
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.results.results import Array
 from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.file_format.models import Analysis, Drive, Spec
-from heuncli.study.model.error_places import attach_locations
-from heuncli.study.model.setup import set_up
+from heuncli.study.model.setup import attach_locations, set_up
 
 MEAN_TOLERANCE = 1e-7  # of the mean of e: permitted change with half as many values, below the six digits shown
 MIN_VALUES, MAX_VALUES = 17, 4097  # least and largest number of values for the mean

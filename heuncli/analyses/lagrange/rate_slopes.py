@@ -10,7 +10,8 @@ import numpy as np
 
 from heuncli.base.records import record
 from heuncli.motion.linearisation.linearise import LinearisedEquations, velocity_derivatives
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 

@@ -1,4 +1,4 @@
-"""Results of `heun lagrange` at an instant."""
+"""Results of `heun lagrange` at an instant, with the SI units along an angle and along a length."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.base.joint_kinds import is_length
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.results.results import Array
 
@@ -150,3 +152,34 @@ class InertiaCurve:
         forces = {name: k[::-1] for name, k in self.forces.items()}
         reversed_values = {name: getattr(self, name)[::-1] for name in ("values", "epsilon", "half")}
         return replace(self, forces=forces, **reversed_values)
+
+
+class CoordinateUnits(NamedTuple):
+    """The units of a coordinate q, its rate and acceleration, and of quantities along it.
+
+    force: of k, C and drives
+    momentum: of p and h
+    inertia: of its diagonal entry in the mass matrix
+    """
+
+    value: str
+    rate: str
+    acceleration: str
+    force: str
+    momentum: str
+    inertia: str
+
+    @property
+    def slope(self) -> str:
+        """Unit of the derivative of the inertia by the coordinate."""
+        return f"{self.inertia}/{self.value}"
+
+
+ANGLE = CoordinateUnits("rad", "rad/s", "rad/s²", "N·m", "N·m·s", "kg·m²")
+LENGTH = CoordinateUnits("m", "m/s", "m/s²", "N", "N·s", "kg")
+MIXED_INERTIA_UNIT = "kg·m"  # of an angle and a length
+
+
+def get_units(coordinate: str) -> CoordinateUnits:
+    """Return the units along a coordinate owner.quantity."""
+    return LENGTH if is_length(coordinate) else ANGLE

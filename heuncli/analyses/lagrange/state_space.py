@@ -14,13 +14,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinate_units import get_units
 from heuncli.analyses.lagrange.coordinates import CoordinateChoice, choose_coordinates, make_candidate_rows
 from heuncli.analyses.lagrange.equations import compute_forces_by_cause, invert_inertia, make_partials
-from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives
-from heuncli.analyses.lagrange.instant import Instant
+from heuncli.analyses.lagrange.freed_scene import FreedScene, Instant, free_drives
 from heuncli.analyses.lagrange.rate_slopes import RateSlopes, compute_rate_slopes
-from heuncli.analyses.lagrange.results import StateSpace
+from heuncli.analyses.lagrange.results import StateSpace, get_units
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, RATES
@@ -31,7 +29,7 @@ from heuncli.loads.kinetostatics.actions import collect_applied_loads
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.motion.linearisation.smoothness import iter_without_derivative
-from heuncli.multibody.mechanism.model import JointLoad, Load, PointLoad
+from heuncli.multibody.mechanism.loads import JointLoad, Load, PointLoad
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 

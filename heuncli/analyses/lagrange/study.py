@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from heuncli.analyses.lagrange import rodrigues
-from heuncli.analyses.lagrange.apparent_inertia import compute_apparent_inertias
 from heuncli.analyses.lagrange.coordinates import (
     CoordinateChoice,
     choose_coordinates,
@@ -15,19 +14,20 @@ from heuncli.analyses.lagrange.coordinates import (
     compute_length,
     compute_rates,
 )
-from heuncli.analyses.lagrange.drives import make_drive_rows, subtract_drive_efforts
 from heuncli.analyses.lagrange.equations import (
     Partials,
     VelocityTerms,
     compute_forces_by_cause,
+    compute_section_forces,
     estimate_term_sizes,
     invert_inertia,
+    make_drive_rows,
     make_partials,
+    subtract_drive_efforts,
 )
-from heuncli.analyses.lagrange.impulses import compute_impulses
-from heuncli.analyses.lagrange.instant import Instant, make_instant
+from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
+from heuncli.analyses.lagrange.impulses import compute_apparent_inertias, compute_impulses
 from heuncli.analyses.lagrange.results import LagrangeResults, SectionForces
-from heuncli.analyses.lagrange.section_forces import compute_section_forces
 from heuncli.analyses.lagrange.state_space import compute_state_space
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.records import record
@@ -39,7 +39,7 @@ from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.blocks import make_blocks as blocks_of
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 
 QUASI_VELOCITY_NOTE = (
     "{names}: rates are quasi-velocities (components of angular velocity and velocity along the world axes), "

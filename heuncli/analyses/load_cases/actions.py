@@ -16,7 +16,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.sections import AttachedLoad, find_attachments, to_body_axes
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.shapes.inertia import pseudo_inertia

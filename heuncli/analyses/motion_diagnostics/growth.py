@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from heuncli.analyses.motion_diagnostics.lyapunov import DisturbanceGrowth, DisturbedRuns
 from heuncli.analyses.motion_diagnostics.motion_events import MotionSearch
-from heuncli.analyses.motion_diagnostics.numerics.lyapunov import DisturbanceGrowth, DisturbedRuns
-from heuncli.analyses.motion_diagnostics.numerics.twists import compute_twists
 from heuncli.analyses.motion_diagnostics.results import GrowthResults
+from heuncli.analyses.motion_diagnostics.twists import compute_twists
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import null_space
 from heuncli.motion.integration.methods.dop853 import DOP853

@@ -11,13 +11,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from heuncli.analyses.motion_diagnostics.numerics.attitudes import (
+from heuncli.analyses.motion_diagnostics.chain_shares import (
     SEQUENCES,
+    Loop,
     compute_condition,
+    compute_loop_motions,
+    continue_signs,
+    find_loops,
     project_axis,
     to_quaternions,
 )
-from heuncli.analyses.motion_diagnostics.numerics.shares import Loop, compute_loop_motions, continue_signs, find_loops
 from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
@@ -25,8 +28,8 @@ from heuncli.loads.redundancy.self_stress import find_neighbour_poses
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.queries.study import Study
+from heuncli.study.search.columns import choose_search_times
 from heuncli.study.search.crossings import Bracket, find_roots
-from heuncli.study.search.instants import choose_search_times
 from heuncli.study.solve.history import resample
 
 MAX_BODY_INSTANTS = 200_000  # bodies times instants whose results are in memory at a time

@@ -1,4 +1,4 @@
-"""The published cases that come with heun: a spec each, and the numbers that others published for it.
+"""The published cases that come with heun: a spec each, and the numbers that others published.
 
 The numbers of a case are in numbers/CASE.yaml, as text, so that the printed digits are known:
     about, source      what the case is, who published it
@@ -12,12 +12,30 @@ The numbers of a case are in numbers/CASE.yaml, as text, so that the printed dig
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import yaml
 
-from heuncli.analyses.published.files import numbers_of, spec_of
 from heuncli.base.named_tuples import NamedTuple
+
+FOLDER = Path(__file__).parent
+
+
+def list_names() -> tuple[str, ...]:
+    """Return the names of all cases, sorted."""
+    return tuple(sorted(path.stem for path in (FOLDER / "numbers").glob("*.yaml")))
+
+
+def spec_of(name: str) -> str:
+    """Return the spec of a case, as text."""
+    return (FOLDER / "specs" / f"{name}.yaml").read_text(encoding="utf-8")
+
+
+def numbers_of(name: str) -> str:
+    """Return the file of the numbers of a case, as text."""
+    return (FOLDER / "numbers" / f"{name}.yaml").read_text(encoding="utf-8")
+
 
 KINDS = {
     "printed": "printed in the source",

@@ -7,22 +7,54 @@ cannot agree with everything.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 from heuncli.analyses.published.cases import PublishedCase, PublishedNumber, PublishedTable
-from heuncli.analyses.published.printed_number import PrintedNumber, evaluate_exact, parse_decimal
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.results.results import Array
 from heuncli.results.results_paths import find_values
+from heuncli.scene.expressions.grammar import Scope
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.quantity import read_number
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import select_paths
 from heuncli.study.queries.expectations import find_instant_index
 from heuncli.study.queries.measure_uncertainty import measure_uncertainty
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
+
+DECIMAL = re.compile(r"[+-]?(?=\.?\d)(\d*)(?:\.(\d*))?(?:[eE]([+-]?\d+))?\Z")
+
+
+class PrintedNumber(NamedTuple):
+    """A number as printed in its source; last_digit: one unit of its last digit, 0 if it is exact."""
+
+    text: str
+    value: float
+    last_digit: float
+
+    @property
+    def digit_count(self) -> int:
+        """Number of significant digits printed; 0 if the number is exact."""
+        decimal = DECIMAL.match(self.text) if self.last_digit else None
+        return len(f"{decimal[1]}{decimal[2] or ''}".lstrip("0")) if decimal is not None else 0
+
+
+def parse_decimal(text: str) -> PrintedNumber:
+    """Parse a decimal number: 0.3284 means 0.32835 to 0.32845. Raises ValueError."""
+    decimal = DECIMAL.match(text)
+    if decimal is None:
+        raise ValueError(f"{text} is not a decimal number")
+    return PrintedNumber(text, float(text), 10.0 ** (int(decimal[3] or 0) - len(decimal[2] or "")))
+
+
+def evaluate_exact(text: str, names: dict[str, float]) -> PrintedNumber:
+    """Evaluate an expression such as 7*l*q/24, exact in the names that it contains. Raises Finding."""
+    return PrintedNumber(text, read_number(text, None, Scope(parameters=names)), 0.0)
+
 
 AGREES, DIFFERS, OPEN, COARSE = "agrees", "differs", "open", "too coarse"
 ROUNDING_FACTOR = 1.0 + 1e-6  # a number that ended in 5 may have been rounded either way

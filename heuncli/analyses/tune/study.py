@@ -1,22 +1,187 @@
-"""Find the best of a scene's variants: an overview, a descent, and a last search around it.
-    overview   differential evolution over the whole box
-    descent    COBYLA and a simplex in turn, until neither improves the goal by more than its floor
-    freedom    how far each variable may move
-    elsewhere  a descent from the best separate variant of the overview, if evaluations are left
-A better variant found by the last two starts a new descent. The floor is the goal's own stated error, or a small share
-of its range if that is larger. Impure: tries variants.
+"""Find the best of a scene's variants, and how far each variable may move from there.
+
+Near a minimum the goal rises as s^p with the distance s, p = 2 where it is smooth, 1 at a kink: the logarithms are
+followed along a straight line until the amount is reached. This is also a last search around the best: a better variant
+found here starts a new descent.
 """
 
 from __future__ import annotations
 
 import math
 
-from heuncli.analyses.tune.descent import descend, descend_from
-from heuncli.analyses.tune.global_search import OVERVIEW_PHASE, search_globally
-from heuncli.analyses.tune.results import Ending, ToleranceRange, Trial, TuneResults
-from heuncli.analyses.tune.tolerance_ranges import find_tolerance_ranges
+import numpy as np
+
+from heuncli.analyses.tune.results import Ending, ToleranceMove, ToleranceRange, Trial, TuneResults
+from heuncli.analyses.tune.search import OVERVIEW_PHASE, descend, descend_from, search_globally
 from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.measures import VariantResult
+
+HUNDREDTH = 0.01
+FIRST_DISTANCE = 0.01  # of the width of the box
+MIN_DISTANCE = 1e-8  # of the width, as a distance: ten of the digits in which values are shown
+MIN_SHARE = 0.8  # of the amount: a distance that reaches this is accepted
+POWER_RANGE = (1.0, 2.0)  # least and largest power of the distance with which the goal rises
+MAX_TRIALS = 7  # evaluations for one amount to one side
+MAX_RATIO, MIN_POWER = 1e20, 0.1  # limits of the extrapolation
+# powers of the distance: a steeper rise is a jump within it, a flatter one a jump before it
+JUMP_POWER, STEEP_POWER = (6.0, 0.5)
+NOISE = 4.0  # times the errors of two values: their difference that is no jump
+
+
+def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, ...]:
+    """Find the tolerance range of each variable. Impure: tries variants."""
+    trials.phase = "freedom"
+    floor, hundredth = trials.floor * trials.scale, HUNDREDTH * abs(best.goal)
+    hundredth *= hundredth > floor  # 0 if it does not exceed the floor
+    ranges = []
+    for index in range(len(best.place)):
+        down, up = (_SideSearch(trials, best, index, sign) for sign in (-1.0, 1.0))
+        hundredth_moves = down.find_move(hundredth), up.find_move(hundredth)
+        ranges.append(ToleranceRange((down.find_move(floor), up.find_move(floor)), hundredth_moves))
+    return tuple(ranges)
+
+
+class _SideSearch:
+    """Search along one variable to one side of the best: the distances tried, and by how much the goal was worse
+    there.
+    """
+
+    def __init__(self, trials: Trials, best: Trial, index: int, sign: float) -> None:
+        self.trials, self.best, self.index, self.sign = trials, best, index, sign
+        place = best.place[index]
+        self.max_distance = place if sign < 0.0 else 1.0 - place
+        self.worsening: dict[float, float] = {}  # by distance [of the box]; infinite if infeasible or unsolved
+        self.reasons: dict[float, str] = {}
+        self.tried: dict[float, Trial] = {0.0: best}  # solved ones
+
+    def find_move(self, amount: float) -> ToleranceMove | None:
+        """Return the distance at which the goal is worse by an amount; None if no evaluation is left, or the amount is
+        0.
+        """
+        if self.max_distance <= 0.0:
+            return ToleranceMove(0.0, "bound")
+        if not amount > 0.0:
+            return None
+        for _ in range(MAX_TRIALS):
+            low, high = self._bracket(amount)
+            if low == self.max_distance or (low > 0.0 and self.worsening.get(low, 0.0) >= MIN_SHARE * amount):
+                break
+            if high <= MIN_DISTANCE or (low > 0.0 and high <= low * (2.0 - MIN_SHARE)):
+                break
+            if not self._try_distance(self._choose_distance(low, high, amount)):
+                return None
+        low, high = self._bracket(amount)
+        if low == self.max_distance:
+            return ToleranceMove(self._to_unit(low), "bound")
+        if high == math.inf:
+            return ToleranceMove(self._to_unit(low), "worse" if self.worsening[low] >= MIN_SHARE * amount else "more")
+        if high in self.reasons:
+            return ToleranceMove(self._to_unit(low), self.reasons[high], self._find_jumping_constraint(low, high))
+        if self._has_jump(low, high, amount):
+            return ToleranceMove(self._to_unit(low), "jump", self.trials.task.goal.measure)
+        return ToleranceMove(self._to_unit(low), "worse") if low else ToleranceMove(self._to_unit(high), "less")
+
+    def _bracket(self, amount: float) -> tuple[float, float]:
+        """Return the longest distance at which the goal is not worse by the amount, and the shortest at which it is
+        (infinite: none).
+        """
+        high = min((s for s, increase in self.worsening.items() if increase > amount), default=math.inf)
+        return max((s for s, increase in self.worsening.items() if increase <= amount and s < high), default=0.0), high
+
+    def _choose_distance(self, low: float, high: float, amount: float) -> float:
+        """Return the next distance to try."""
+        if not self.worsening:
+            return min(FIRST_DISTANCE, self.max_distance)
+        rises: dict[float, float] = {s: increase for s, increase in self.worsening.items() if 0.0 < increase < math.inf}
+        if high == math.inf:
+            ratio = min(max(amount / rises[low], 1.5), 100.0) if low in rises else 4.0
+            return min(low * ratio, self.max_distance)
+        if low in rises and high in rises:
+            power = math.log(rises[high] / rises[low]) / math.log(high / low)
+            guess = scale_step(low, 0.9 * amount / rises[low], power)
+            return guess if 1.02 * low < guess < high / 1.02 else math.sqrt(low * high)
+        if low > 0.0:
+            return math.sqrt(low * high)
+        if high in rises:
+            return max(scale_step(high, 0.9 * amount / rises[high], self._estimate_power()), MIN_DISTANCE)
+        return max(0.1 * high, MIN_DISTANCE)
+
+    def _estimate_power(self) -> float:
+        """Return the power of the distance with which the goal rises, from the two shortest distances."""
+        distances = sorted(s for s, increase in self.worsening.items() if 0.0 < increase < math.inf)[:2]
+        if len(distances) < 2:
+            return POWER_RANGE[0]
+        power = math.log(self.worsening[distances[1]] / self.worsening[distances[0]]) / math.log(
+            distances[1] / distances[0]
+        )
+        return min(max(power, POWER_RANGE[0]), POWER_RANGE[1])
+
+    def _try_distance(self, s: float) -> bool:
+        """Try the variant at a distance; return False if no more may be tried."""
+        place = np.array(self.best.place)
+        place[self.index] += self.sign * s
+        trial = self.trials.try_place(place)
+        if trial is None:
+            return False
+        if not trial.is_solved:
+            self.worsening[s], self.reasons[s] = math.inf, trial.failure.code
+            return True
+        self.tried[s] = trial
+        violated = [
+            constraint.measure
+            for constraint, value in zip(self.trials.task.constraints, trial.constraint_values, strict=True)
+            if not constraint.is_met(value)
+        ]
+        if violated:
+            self.worsening[s], self.reasons[s] = math.inf, violated[0]
+        else:
+            self.worsening[s] = self.trials.task.goal.sign * (trial.goal - self.best.goal)
+        return True
+
+    def _has_jump(self, low: float, high: float, amount: float) -> bool:
+        """Return whether the goal jumps between a distance at which it is not worse by an amount, and the next one."""
+        if low > 0.0:
+            lower = self.worsening[low] if self.worsening[low] > 0.0 else amount
+            return math.log(self.worsening[high] / lower) > JUMP_POWER * math.log(high / low)
+        longer = min(
+            (s for s, increase in self.worsening.items() if s > high and 0.0 < increase < math.inf), default=None
+        )
+        return longer is not None and self.worsening[high] > self.worsening[longer] * math.pow(
+            high / longer, STEEP_POWER
+        )
+
+    def _find_jumping_constraint(self, low: float, high: float) -> str:
+        """Return the constraint that is violated by a jump between two distances; empty if it rises to its limit.
+
+        Without a jump it changes between them by no more than up to the shorter one, as a power of the distance; if
+        the shorter one is 0, by less than up to the next longer one.
+        """
+        longer = min((s for s in self.tried if s > high), default=None)
+        if high not in self.tried or (low == 0.0 and longer is None):
+            return ""
+        for k, constraint in enumerate(self.trials.task.constraints):
+            if constraint.measure != self.reasons[high]:
+                continue
+            first, before, after = (self.tried[s].constraint_values[k] for s in (0.0, low, high))
+            error = sum(self.tried[s].outcome.measures[k + 1].error or 0.0 for s in (low, high))
+            if low > 0.0:
+                change = ((high / low) ** JUMP_POWER - 1.0) * abs(before - first)
+            else:
+                assert longer is not None
+                change = abs(self.tried[longer].constraint_values[k] - first) * (high / longer) ** STEEP_POWER
+            return constraint.measure if abs(after - before) > change + NOISE * error else ""
+        return ""
+
+    def _to_unit(self, s: float) -> float:
+        """Convert a distance to the unit of the variable."""
+        variable = self.trials.task.variables[self.index]
+        return float(s * (variable.high - variable.low))
+
+
+def scale_step(step: float, ratio: float, power: float) -> float:
+    """Scale a step so that a quantity growing like step**power changes by `ratio`."""
+    return step * math.pow(min(ratio, MAX_RATIO), 1.0 / max(power, MIN_POWER))
+
 
 MIN_SEPARATION = 0.2  # of the box: distance at which another minimum may lie
 MAX_DESCENTS = 4  # descents at most

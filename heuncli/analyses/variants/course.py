@@ -1,6 +1,6 @@
 """The course of a measure over an interval: its samples at some places, and predictions between them.
 
-    g(x) = measure(x) - value       known at x within an error e, which its run states
+g(x) = measure(x) - value       known at x within an error e, which its run states
 
 Between two neighbours g is predicted by the cubic through them and one more on either side. Its uncertainty follows
 from the parabolas that leave one of the four out, from the corner at which the lines through either two would meet (a
@@ -19,7 +19,16 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from heuncli.analyses.variants.measures import NoisyValue, Reason
+from heuncli.analyses.variants.samples import (
+    Sample,
+    _gap,
+    _size,
+    find_intersection,
+    interpolate,
+    interpolate_corner,
+    restore,
+    withhold,
+)
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
@@ -35,35 +44,7 @@ FIRST_DISTRUST = 1.25
 MAX_DISTRUST = 16.0
 LOG_RATIO = 4.0  # ratio of neighbouring magnitudes from which on their logarithms are interpolated
 LARGEST_LOG = 690.0  # of a magnitude that does not overflow
-SINGULAR = Reason(
-    "singular-pose", "the run passes a singular position only there: its value does not follow its neighbours"
-)
 POLE_MARGIN = 0.5  # of an interval: distance outside of it that a predicted pole may have
-
-
-class Sample(NamedTuple):
-    """What is known at a place.
-
-    gap: how far the measure lies above the value, None where there is none
-    error: of the gap
-    why: the reason why there is none
-    singular: whether its run passes a singular pose
-    withheld_gap: the gap of a sample that is not used as a neighbour of the others because of that
-    """
-
-    x: float
-    gap: float | None
-    error: float = 0.0
-    why: Reason = Reason()
-    singular: bool = False
-    withheld_gap: float | None = None
-
-    @property
-    def side(self) -> int | None:
-        """1 above the value, -1 below it, 0 not distinguishable from it; None where there is no measure."""
-        if self.gap is None:
-            return None
-        return 0 if abs(self.gap) <= self.error else 1 if self.gap > 0.0 else -1
 
 
 class CoursePrediction(NamedTuple):
@@ -326,27 +307,10 @@ class MeasureCourse:
         return found
 
 
-def make_sample(x: float, measure: NoisyValue, value: float, singular: bool = False) -> Sample:
-    """Make the sample at a place from the measure there; value: what its gap is taken from."""
-    if measure.value is None:
-        return Sample(x, None, why=measure.why)
-    return Sample(x, measure.value - value, measure.error, singular=singular)
-
-
-def withhold(sample: Sample) -> Sample:
-    """Return a sample without its gap, because that belongs only to a singular pose."""
-    if sample.gap is None:
-        return sample
-    return sample._replace(gap=None, withheld_gap=sample.gap, why=SINGULAR)
-
-
-def restore(sample: Sample) -> Sample:
-    """Return a sample with its gap again, if it was withheld."""
-    return (
-        sample
-        if sample.withheld_gap is None
-        else sample._replace(gap=sample.withheld_gap, withheld_gap=None, why=Reason())
-    )
+def _rises_convexly(samples: list[Sample]) -> bool:
+    """Return whether the slopes of the logarithm of |g| rise from sample to sample."""
+    slopes = [(math.log(_size(b)) - math.log(_size(a))) / (b.x - a.x) for a, b in pairwise(samples)]
+    return all(before <= after for before, after in pairwise(slopes))
 
 
 def make_uneven_places(low: float, high: float, count: int) -> list[float]:
@@ -357,65 +321,66 @@ def make_uneven_places(low: float, high: float, count: int) -> list[float]:
     return [low, *places[1:-1], high]
 
 
-def find_intersection(first: Sample, one: Sample, other: Sample, last: Sample) -> float:
-    """Return where the line through two samples meets that through two others, clipped to the middle interval."""
-    before, after = ((_gap(b) - _gap(a)) / (b.x - a.x) for a, b in ((first, one), (other, last)))
-    if before == after:
-        return 0.5 * (one.x + other.x)
-    x = (_gap(other) - _gap(one) + before * one.x - after * other.x) / (before - after)
-    return min(max(x, one.x), other.x)
+EXTREME_TOLERANCE = 1e-5  # of the range: accuracy of an extreme
+NEAR_ENDS = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 1003)[1:-1])  # places in an interval, close by its ends
+MAX_STEPS = 12  # towards one extreme
+INWARD = 0.1  # of an interval: a sample nearer to its end would add little
 
 
-def interpolate_corner(left_samples: list[Sample], right_samples: list[Sample], x: Array, smooth: Array) -> Array:
-    """Interpolate by the lines through two samples on the left and two on the right, where both bend in the same
-    direction.
+def refine_extreme(
+    course: MeasureCourse, direction: int, *, share: float = EXTREME_TOLERANCE, max_steps: int = MAX_STEPS
+) -> float:
+    """Sample where the least (direction -1) or the greatest (1) value of the course may be exceeded, until little can
+    be gained.
+
+    share: of the range of the course; a smaller gain is not worth a variant
+    max_steps: limit of the samples
+
+    Returns the gain that remains possible. Raises SampleLimitError.
     """
-    before, after = interpolate(left_samples, x), interpolate(right_samples, x)
-    line = interpolate([left_samples[-1], right_samples[0]], x)
-    if (np.minimum(before, after) >= line).all():
-        return np.minimum(before, after)
-    return np.maximum(before, after) if (np.maximum(before, after) <= line).all() else smooth
+    gain = 0.0
+    for step in range(max_steps + 1):
+        best = find_extreme(course, direction)
+        if best is None:
+            return 0.0
+        gain, place = max(
+            (estimate_gain(course, i, best, direction) for i in iter_divisible(course)), default=(0.0, 0.0)
+        )
+        if gain <= max(best.error, share * course.gap_range):
+            break
+        if step < max_steps:
+            course.sample_and_learn(place)
+    return gain
 
 
-def interpolate(samples: list[Sample], x: Array) -> Array:
-    """Evaluate the polynomial through some samples at some places, by Newton's divided differences."""
-    nodes, heads = _divided_differences(samples)
-    value = np.full_like(x, heads[-1])
-    for node, head in zip(reversed(nodes[:-1]), reversed(heads[:-1]), strict=True):
-        value = value * (x - node) + head
-    return value
+def find_extreme(course: MeasureCourse, direction: int) -> Sample | None:
+    """Return the least or the greatest known sample."""
+    known = [sample for sample in course.samples if sample.gap is not None]
+    return max(known, key=lambda sample: direction * (sample.gap or 0.0), default=None)
 
 
-def interpolate_slope(samples: list[Sample], x: float) -> float:
-    """Evaluate the derivative of the polynomial through some samples at a place."""
-    nodes, heads = _divided_differences(samples)
-    value, derivative = heads[-1], 0.0
-    for node, head in zip(reversed(nodes[:-1]), reversed(heads[:-1]), strict=True):
-        derivative = derivative * (x - node) + value
-        value = value * (x - node) + head
-    return derivative
+def iter_divisible(course: MeasureCourse) -> Iterator[int]:
+    """Yield the neighbours between which the course continues and can be sampled more finely."""
+    for i, one, other in course.iter_pairs():
+        if not course.is_interrupted(i) and other.x - one.x > 2.0 * course.finest:
+            yield i
 
 
-def _rises_convexly(samples: list[Sample]) -> bool:
-    """Return whether the slopes of the logarithm of |g| rise from sample to sample."""
-    slopes = [(math.log(_size(b)) - math.log(_size(a))) / (b.x - a.x) for a, b in pairwise(samples)]
-    return all(before <= after for before, after in pairwise(slopes))
+def estimate_gain(course: MeasureCourse, i: int, best: Sample, direction: int) -> tuple[float, float]:
+    """Return by how much g may exceed its best between two neighbours at most, and where."""
+    one, other = course.samples[i], course.samples[i + 1]
+    peak = course.find_peak(i)
+    if peak is not None and (peak.size == math.inf or direction * ((one.gap or 0.0) + course.value) > 0.0):
+        gain = peak.size - direction * ((best.gap or 0.0) + course.value)
+        if gain > 0.0:
+            return gain, clip_inside(one, other, peak.place)
+    expected = course.predict(i, one.x + NEAR_ENDS * (other.x - one.x))
+    bound = direction * expected.gaps + expected.uncertainty
+    k = int(np.argmax(bound))
+    return float(bound[k] - direction * (best.gap or 0.0)), float(expected.places[k])
 
 
-def _gap(sample: Sample) -> float:
-    return sample.gap or 0.0
-
-
-def _size(sample: Sample) -> float:
-    return abs(_gap(sample))
-
-
-def _divided_differences(samples: list[Sample]) -> tuple[list[float], list[float]]:
-    """Return nodes and divided differences."""
-    nodes = [sample.x for sample in samples]
-    row = [_gap(sample) for sample in samples]
-    heads = [row[0]]
-    for order in range(1, len(nodes)):
-        row = [(b - a) / (nodes[k + order] - nodes[k]) for k, (a, b) in enumerate(pairwise(row))]
-        heads.append(row[0])
-    return nodes, heads
+def clip_inside(one: Sample, other: Sample, x: float) -> float:
+    """Return a place between two neighbours, not so near to one of them that its sample would add little."""
+    inward = INWARD * (other.x - one.x)
+    return min(max(x, one.x + inward), other.x - inward)

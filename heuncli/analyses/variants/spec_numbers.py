@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from heuncli.analyses.variants.axes import AxisError
 from heuncli.analyses.variants.evaluation import Recipe
+from heuncli.analyses.variants.parameters import AxisError
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest

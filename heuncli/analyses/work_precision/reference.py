@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.analyses.work_precision.comparison import ReferenceComparison, make_comparison
-from heuncli.analyses.work_precision.motion import TIME_LIMIT_TEXT, MotionProblem
+from heuncli.analyses.work_precision.plan import TIME_LIMIT_TEXT, MotionProblem
 from heuncli.analyses.work_precision.results import KINDS, Errors, Reference
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError

@@ -114,7 +114,8 @@ def complete_collectives(data: dict[str, Any], incomplete: str) -> Iterator[str]
 
 def iter_paths(data: dict[str, Any]) -> Iterator[str]:
     """Yield the paths of the numbers that a scene may have."""
-    from heuncli.results.results_schema import NAMES, ROWS, XYZ
+    from heuncli.results.path_words import NAMES
+    from heuncli.results.results_schema import ROWS, XYZ
     from heuncli.scene.file_format.names import SceneNames
 
     names = SceneNames.from_data(data)

@@ -12,10 +12,10 @@ from heuncli.output.snapshots.run_warnings import collect_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
-from heuncli.study.queries.option_values import collect_results as collect_results  # re-exported for the commands
-from heuncli.study.queries.option_values import require_choice as require_choice
-from heuncli.study.queries.option_values import require_positive as require_positive
-from heuncli.study.queries.option_values import require_tolerance as require_tolerance
+from heuncli.study.model.options import collect_results as collect_results  # re-exported for the commands
+from heuncli.study.model.options import require_choice as require_choice
+from heuncli.study.model.options import require_positive as require_positive
+from heuncli.study.model.options import require_tolerance as require_tolerance
 
 if TYPE_CHECKING:
     from heuncli.study.queries.study import Study

@@ -39,7 +39,7 @@ HINT = "use a longer --time-limit, fewer samples, --only for the results needed,
 PHASES = (
     ("heuncli.scene.file_format", "while the spec was read"),
     ("heuncli.study.search.extremes", "while extremes between the samples were searched"),
-    ("heuncli.study.search.passages", "while extremes between the samples were searched"),
+    ("heuncli.study.search.cuts", "while extremes between the samples were searched"),
     ("heuncli.loads.equilibrium", "while the rest position was searched"),
     ("heuncli.loads.redundancy.advice", "while redundant constraints were analysed"),
     ("heuncli.motion.integration.check.singular_poses", "while singular positions were searched"),

@@ -17,9 +17,10 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.document import format_head
 from heuncli.output.snapshots.measure_units import SUMS, find_sum_unit
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values
-from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF, find_quantity
+from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.quantities.channels import make_component_names
 from heuncli.study.queries.measure import MeasureRequest, find_exceeded_horizon
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from heuncli.app.python.diagrams import Diagram
     from heuncli.app.python.number import Number
     from heuncli.app.python.signals import Signal
-    from heuncli.study.load_cycles.collective import Collective
+    from heuncli.study.load_collectives import Collective
 
 
 class Solved(Mapping[str, "Signal"]):
@@ -203,8 +203,8 @@ class Solved(Mapping[str, "Signal"]):
         Raises HeunError for invalid instants, and for indeterminate loads.
         """
         from heuncli.analyses.load_cases.assembly import assemble_load_cases
+        from heuncli.study.model.options import require_choice
         from heuncli.study.queries.at_option import parse
-        from heuncli.study.queries.option_values import require_choice
 
         check_arguments(("body", body, TEXT), ("at", at, NUMBER_OR_TEXT), optional=False)
         require_choice("load_cases", body, list(self.spec.bodies))

@@ -1,11 +1,10 @@
-"""The undriven coordinates of a scene: displacements of states along them, accelerations along them, their names.
+"""The undriven coordinates of a scene: displacements and accelerations along them, their names, which are coupled.
 
 They have the order of the layout's results: three small rotations of a ball joint about the world's axes, one number
 for any other freedom.
 
-Find coordinates that a gear, a thread or a belt couples, so that none of them counts as farther than the others.
-
-A spindle turns many times before its nut reaches its spring, and a pinion before its wheel does.
+Coordinates that a gear, a thread or a belt couples are found, so that none of them counts as farther than the others: a
+spindle turns many times before its nut reaches its spring, and a pinion before its wheel does.
 """
 
 from __future__ import annotations

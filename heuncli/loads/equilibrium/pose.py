@@ -1,7 +1,4 @@
-"""A pose at which all coordinates rest, with its remaining accelerations and the contacts that bear.
-
-Explain in the words of an error why a scene has no rest pose.
-"""
+"""A pose at which all coordinates rest, with its remaining accelerations and contacts; or why a scene has none."""
 
 from __future__ import annotations
 
@@ -14,7 +11,7 @@ from heuncli.base.records import record
 from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import ThreadLoad
+from heuncli.multibody.mechanism.loads import ThreadLoad
 from heuncli.results.results import Array
 
 if TYPE_CHECKING:

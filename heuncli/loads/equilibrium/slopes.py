@@ -1,4 +1,4 @@
-"""Linearise the accelerations at rest about a pose, and decompose the linear law.
+"""Linearise the accelerations at rest about a pose, decompose the linear law, and take a step by it.
 
     a(q + T z) = a + T A z,     A = V diag(lambda) V^-1,     c = V^-1 T+ a
 
@@ -7,7 +7,7 @@ T are displacements that the closures admit, orthonormal by the coordinates' wei
 anything below counts as zero. Nearly parallel directions share a block instead of eigenvalues of their own
 (directions.py).
 
-One step along dq/ds = a(q, rates 0): an exponential Rosenbrock step of third order.
+A step along dq/ds = a(q, rates 0) is an exponential Rosenbrock step of third order:
 
     z(s) = s phi_1(s A) c + 2 s phi_3(s A) (s/h)^2 d,     d = rates at z(h) - c - A z(h)
 

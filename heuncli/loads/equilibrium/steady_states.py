@@ -1,15 +1,15 @@
-"""Decide whether a scene can rest at all; what turns or shifts at constant rates rests in its own frame (steady state).
+"""Decide whether a scene can rest at all, where what turns or shifts steadily rests in its own frame; whether stably.
 
 What is attached to a driven body turns with it. Loads that do not turn with it, such as weight across the axis, or
 parts that closed chains move against the frame, keep it from resting. So the pose is checked again after the drives
 have moved on.
 
-Decide whether a rest pose is stable: its smallest eigenvalue, and the slowest or growing small motions.
+Stability follows from the slowest or growing small motions:
 
     x'' + C x' + K x = 0,     x ~ e^(s t)
 
-It is stable if no s has a growing part. The motions are those of `heun modes` (linearisation), and the same decision
-tells which are indifferent (motion/linearisation/indifference.py).
+A pose is stable if no s has a growing part. The motions are those of `heun modes` (linearisation), and the same
+decision tells which are indifferent (motion/linearisation/indifference.py).
 """
 
 from __future__ import annotations

@@ -8,14 +8,13 @@ search is made there, and a tenth of the distance of the first two counts, too. 
 equilibria pass a ridge between them. If the finest two still do, the path depends on less than they resolve, and both
 are reported.
 
-Estimate the error of a rest pose: find neighbouring poses that rounding cannot distinguish from it.
-
-Each is found like the pose itself, by Newton's step from a pose moved by rounding. Others are as far off as rounding of
+The error of a rest pose is the distance of neighbouring poses that rounding cannot distinguish from it. Each is found
+like the pose itself, by Newton's step from a pose moved by rounding. Others are as far off as rounding of
 the sums pushes a soft direction; or as far across the closures as these are left open, which is far near a dead centre;
 and, where only bending (a quartic potential) and no stiffness holds a direction, as far along it as the accelerations
 are still rounding.
 
-Check independently of its search that a reported rest pose is at rest: accelerations are no more than rounding.
+A reported pose is checked independently of its search: accelerations are no more than rounding.
 """
 
 from __future__ import annotations

@@ -16,19 +16,18 @@ from heuncli.base.records import record
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import (
+from heuncli.multibody.mechanism.loads import (
     GROUND,
     BushingLoad,
-    Joint,
     JointLoad,
     Load,
-    Mechanism,
     PairLoad,
     PointLoad,
     RopeLoad,
     ThreadLoad,
     TriangularDistribution,
 )
+from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_rows
 

@@ -7,10 +7,9 @@ inertia loads of its pieces: a rotor that spins about its centre has no others. 
 reaches by rounding alone has no load of its own: there the residual is relative to the smallest load that rounding of
 the instant's largest one leaves certain.
 
-Magnitudes of the terms that the numbers of a run are sums of: their rounding is relative to these.
-
-The inertia loads of a body's pieces may be large where their resultant vanishes, as in a rotor that spins about its
-centre. Over the mass points m at r from the centre of mass, by Cauchy and Schwarz,
+Rounding of a number is relative to the magnitudes of the terms that it is a sum of. The inertia loads of a body's
+pieces may be large where their resultant vanishes, as in a rotor that spins about its centre. Over the mass points m at
+r from the centre of mass, by Cauchy and Schwarz,
 
     Σ m |σ × (σ × r)| ≤ |σ| √(m σ·I σ),   Σ m |σ̇ × r| ≤ √(m σ̇·I σ̇)
 
@@ -27,7 +26,8 @@ from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.foundation import inertia_rows
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block, Magnitudes
 from heuncli.scene.shapes.rotations import cross_components, instants_first, quadratic_form, squared_lengths
 

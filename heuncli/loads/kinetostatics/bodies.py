@@ -13,7 +13,8 @@ import numpy as np
 
 from heuncli.base.records import record
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array

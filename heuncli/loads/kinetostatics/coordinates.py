@@ -1,9 +1,8 @@
-"""Compute the coordinates of the joints, and the motion of named points.
+"""Compute the coordinates of the joints, the motion of named points, and attitudes that are continuous over turns.
 
-Attitudes as unit quaternions (w, x, y, z), which are continuous while bodies turn.
-
-q and -q are one attitude. A rotation matrix shows neither the sign nor how often a body has turned; the state does,
-with the angles of its joints and the quaternions of its ball joints. So the quaternions are products along the tree,
+Of unit quaternions (w, x, y, z) q and -q are one attitude. A rotation matrix shows neither the sign nor how often a
+body has turned; the state does, with the angles of its joints and the quaternions of its ball joints. So the
+quaternions are products along the tree,
 
     q = q_parent * (cos phi/2, n sin phi/2) * frame * ...
 

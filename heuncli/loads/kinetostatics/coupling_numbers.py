@@ -2,19 +2,18 @@
 
 Each depends on the multipliers of some of its conditions: where one of these is indeterminate, so is the number.
 
-Compute the pressure angle of a cam.
+Cams:
+    cos a = 1 / |f| |w|        f . w = 1, w the velocity of the follower at the contact, or at its roller's centre,
+                               per unit of its rate; a is the pressure angle
 
-cos a = 1 / |f| |w|        f . w = 1, w the velocity of the follower at the contact, or at its roller's centre,
-                           per unit of its rate; a is the pressure angle
-
-Report further numbers of gears, belts and screws, besides the load that they carry and their loads on each body.
+Gears, belts and screws:
 
     radial = |F| tan(alpha_n) / cos(beta)    axial = |F| tan(beta)    normal = along the line of action
     torque = F lead / (2 pi)                 tight, slack = T_0 +- |F| / 2
 
 F: the load carried. In an impulse it is an impulse, and the strands have no pretension.
 
-Compute the total load of a screw with friction, and its efficiency.
+Screws with friction:
 
     force = N - friction along the axis        torque = N lead / (2 pi) + friction about it
 
@@ -37,7 +36,8 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.multibody.mechanism.couplings import CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.results.results import Array
 from heuncli.scene.file_format import couplings as c
 from heuncli.scene.file_format.couplings import RollingWheel, Screw

@@ -3,7 +3,7 @@
 The loads are those of the kernel's parts for the multipliers of their rows. World axes; shapes (..., n_t, 3), with an
 axis of causes before the instants where they are given by cause.
 
-Separating forces of tooth flanks: the radial part of tooth forces, whichever of the two flanks carries.
+Tooth flanks separate: the radial part of tooth forces is the same whichever of the two flanks carries.
 
     F = |lambda| h    ON b at the pitch point, the opposite ON a        h per unit of tangential force (gearing.py)
 

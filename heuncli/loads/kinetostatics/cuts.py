@@ -19,7 +19,8 @@ from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.section_axes import make_first_axis
-from heuncli.multibody.mechanism.model import GROUND, Mechanism, PointLoad
+from heuncli.multibody.mechanism.loads import GROUND, PointLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Properties, Section, Spec
 from heuncli.scene.shapes.composite_solid import CompositeSolid

@@ -13,7 +13,8 @@ from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Block
 from heuncli.scene.shapes.rotations import cross_rows

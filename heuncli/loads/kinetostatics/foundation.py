@@ -1,14 +1,12 @@
-"""The foundation (55), its central axis, and the mass effects (56).
+"""The foundation (55), its central axis, the mass effects (56), and the momenta (16), (17) of the bodies.
 
     s = sum k - sum m x..,   M_s = sum (x - O) x k + couples - sum [(x_s - O) x m x_s.. + I sigma. + sigma x I sigma]
 
 s and M_s act ON the foundation; k is what is applied from outside: weight, force, couple. Heun (1901), no. 25-26.
 
-Momentum and moment of momentum of the bodies: Heun (1901), (16) and (17).
-
     sum m x_s.        sum m_s x x_s. + sum I sigma       about a fixed point
 
-Their rates are the mass effects.
+The rates of these momenta (Heun (1901), (16) and (17)) are the mass effects.
 """
 
 from __future__ import annotations
@@ -24,7 +22,8 @@ from heuncli.base.records import record
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.reactions import project_to_plane
-from heuncli.multibody.mechanism.model import GROUND, JointLoad, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.shapes.rotations import cross_components, cross_rows, instants_first, rotate_components
 

@@ -9,7 +9,7 @@ hidden: it enters the balance residual of the bodies.
 Loads by cause use the same sums: their arrays have an axis of causes before that of the instants, (n_c, n_t, 3), while
 places and directions are those of the instants, (n_t, 3).
 
-Express joint loads in the axes of one of the joint's bodies, as a bearing that turns with it carries them.
+In the axes of one of the joint's bodies, as a bearing that turns with it carries them:
 
     F_i = e_i . F,   e_i (t) the axes of the body: F' = R^T F
 
@@ -28,7 +28,8 @@ import numpy as np
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.multibody.mechanism.model import GROUND, Joint, Stop
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint, Stop
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.starts import joint_direction
 from heuncli.results.results import Array, Block

@@ -5,7 +5,7 @@
 linear over the section, principal axes e1, e2; k by the section's own shape: tau_Q is the largest of Jourawski's Q S/(I
 b), for a ring across its middle. How they combine, and the maxima: at the functions below.
 
-Compute the largest shear and the largest von Mises stress in a section from the distribution of both over its shape.
+The largest shear and von Mises stress over a shape follow from the distribution of both:
 
     sigma = axial + bend . u,   mises^2 = sigma^2 + 3 |tau|^2,   u the place, in half extents of the section
 

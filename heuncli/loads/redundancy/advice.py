@@ -19,7 +19,8 @@ from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.loads.redundancy.count import count_redundancy
 from heuncli.loads.redundancy.self_stress import find_neighbour_poses, find_self_stress
 from heuncli.motion.integration.run.runner import Runner, make_runner
-from heuncli.multibody.mechanism.model import GROUND, Joint, JointLoad
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array, Block
 

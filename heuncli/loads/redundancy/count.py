@@ -1,6 +1,6 @@
 """Count the redundant conditions of the joints, and the remaining freedoms.
 
-Count the freedoms of poses where wheels roll: these constrain speeds, but not poses.
+Where wheels roll, poses have more freedoms than speeds: wheels constrain only these.
 """
 
 from __future__ import annotations

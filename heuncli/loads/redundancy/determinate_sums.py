@@ -3,9 +3,7 @@
 A sum is determinate if the shares of every self-stress in it cancel. Forces and moments are treated separately
 (together only where nothing else is determinate). First pairs, components whose shares are proportional; then each
 further one in terms of those named before it. What constant factors leave is expressed by factors that turn with the
-pose (the second part of this file).
-
-Find determinate sums of indeterminate components with factors that turn with the pose.
+pose.
 
 Two ball joints on one body leave the load along the line between them indeterminate. Perpendicular to it each load is
 determinate, in directions that turn with the body: sum of c_i(t) F_i. At every instant c is such that all self-stresses

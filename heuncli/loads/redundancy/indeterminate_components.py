@@ -4,12 +4,11 @@ instant.
 A component in any direction c of a wrench is indeterminate where c . share is; so `axial` may be determinate where x,
 y, z are not.
 
-Handle separating forces of tooth flanks where it is indeterminate which of several meshes carries how much.
-
-The force depends on the magnitude of a multiplier, not on its sign, and is not linear in self-stresses. To be on the
+Where it is indeterminate which of several meshes carries how much, so are the separating forces of their flanks. Such a
+force depends on the magnitude of a multiplier, not on its sign, and is not linear in self-stresses. To be on the
 safe side, the separating force of every mesh that some self-stress reaches counts as one more free load.
 
-Refuse load-dependent joint friction where redundant joints leave the load indeterminate.
+Joint friction that depends on an indeterminate load is refused.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ from heuncli.loads.kinetostatics.reactions import JointLoads, remove_free_compon
 from heuncli.loads.redundancy.self_stress import SelfStress, find_self_stress
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.model import JointLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import JointLoad, ThreadLoad
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block, Mask

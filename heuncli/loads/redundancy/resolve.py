@@ -30,7 +30,7 @@ from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress, find_
 from heuncli.loads.redundancy.split import SelfStressChoice, apply_choices, split_self_stress
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.results.results import Array, Block, DeterminateSum, Indices
 
 SUM_INSTANTS = 9  # instants whose self-stresses give the determinate sums

@@ -6,10 +6,8 @@ bodies. Moments and rotations are scaled by the island's length L, which makes r
 levers are normalised to that. Shorter ones stay: a row that moves no freedom, in this pose or in all, holds what the
 tree holds already, and its rounding must not become a direction. The verdict uses the instant's own null space.
 
-One sweep of statics propagates a null vector to all joints. manual/theory.md, "Redundancy".
-
-Make neighbouring poses, displaced along admissible rates, so that a coincidence in one pose is not taken for a
-rule.
+One sweep of statics propagates a null vector to all joints. manual/theory.md, "Redundancy". Neighbouring poses,
+displaced along admissible rates, show whether something is a rule or a coincidence of one pose.
 """
 
 from __future__ import annotations
@@ -23,7 +21,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.response import jacobian, multiplier_joint_loads
 from heuncli.multibody.tree.islands import is_couple, mean_lever
 from heuncli.multibody.tree.layout import Island, Layout

@@ -5,13 +5,10 @@ way do so, which is no choice. Stiffness: least sum of F^2/k + M^2/k over the jo
 components in `from` axes, including a drive's load; what does not strain them stays indeterminate. Least norm: least
 sum F^2 + (M/length)^2 over all joints, independent of the units. manual/theory.md, "Redundancy".
 
-Handle joints that give way in some directions (stiffness 0): they carry nothing there as soon as another joint
-holds.
-
-A direction in which a joint gives way is like a free one, except that the joint holds it where nothing else does. What
-others can hold is what self-stresses reach: the load in such a direction vanishes if some self-stress removes it
-without changing any other yielding load. That is no choice among splits; it follows from the model. What yielding
-joints could only exchange among each other stays indeterminate.
+A direction in which a joint gives way (stiffness 0) is like a free one, except that the joint holds it where nothing
+else does. What others can hold is what self-stresses reach: the load in such a direction vanishes if some self-stress
+removes it without changing any other yielding load. That is no choice among splits; it follows from the model. What
+yielding joints could only exchange among each other stays indeterminate.
 
     R: the loads of all such directions that self-stresses reach;  U: those of one joint, its forces or its moments
     the loads in R ∩ U vanish, exactly

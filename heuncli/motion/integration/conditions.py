@@ -14,7 +14,8 @@ import numpy as np
 
 from heuncli.kernel.choose import expressions as kernel
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.multibody.mechanism.model import GROUND, NamedPoint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import NamedPoint
 from heuncli.multibody.response import evaluate_variables
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table

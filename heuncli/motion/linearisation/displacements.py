@@ -1,12 +1,9 @@
 """Displace states and perturb scenes: by finite amounts along freedoms, and by rounding.
 
-Displace states along their freedoms by finite amounts; the displacements of the linear equations are tangent to
-these.
-
-Perturb all numbers of a scene by rounding, independently; the difference of two such scenes is the rounding error.
-
-Masses, springs, lengths, directions and the constants of expressions are known no better than typed and computed. What
-cancels between them, inside a law or between laws, shows in such scenes by its terms.
+The displacements of the linear equations are tangent to the finite ones. The difference of two scenes, all numbers of
+which are perturbed by rounding independently, is the rounding error: masses, springs, lengths, directions and the
+constants of expressions are known no better than typed and computed. What cancels between them, inside a law or between
+laws, shows in such scenes by its terms.
 """
 
 from __future__ import annotations

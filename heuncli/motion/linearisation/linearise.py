@@ -7,8 +7,7 @@ layout's results: a ball joint's three rotations (and its angular velocity) abou
 other freedom. The kernel differentiates its own equations (kernel/tangent.py); closure rows are chosen at the state and
 then held.
 
-Express displacements by joint coordinates: angles and travels, and rotations and shifts where joints leave more
-free.
+As joint coordinates, displacements are angles and travels, and rotations and shifts where joints leave more free:
 
     pin, slide, cylinder     J.angle, J.travel
     line                     J.travel, and the rotations J.x, J.y, J.z
@@ -28,7 +27,8 @@ import numpy as np
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.response import compute_motions, make_workspace, settle_state
 from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.multibody.tree.tables import Table

@@ -1,4 +1,4 @@
-"""Small oscillations: the motions exp(l t) of the reduced linear equations.
+"""Small oscillations, the motions exp(l t) of the reduced linear equations, and the modes of a scene as reported.
 
     l = growth + 2 pi i frequency;   damping ratio = -growth / |l|
 
@@ -6,8 +6,6 @@ What nothing holds is found from the null space of the stiffness and removed bef
 the double eigenvalue 0 of a free motion into two of the order of its root, which would look like a frequency. Without
 damping and gyroscopic terms, l^2 are the eigenvalues of -K, half as many, and real for loads with a potential. The
 error of an eigenvalue is rounding times its own condition; a growth below that counts as none.
-
-The modes of a scene as reported: about which state, frequencies, damping, growth, and shapes by coordinates.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from heuncli.kernel.choose import expressions as evaluator
 from heuncli.kernel.choose import jets
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.linearisation.steady_motion import LinearisedState
-from heuncli.multibody.mechanism.model import PairLoad
+from heuncli.multibody.mechanism.loads import PairLoad
 from heuncli.multibody.response import evaluate_variables
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array

@@ -4,7 +4,7 @@ The linear equations then have constant coefficients. At rest nothing moves and 
 steadily (what is driven, and what spins freely), the same must hold after the motion has continued for a while, as seen
 from the moving bodies: a weight across a turning shaft turns in the shaft's frame, and nothing comes to rest there.
 
-The linear equations about a steady motion in which wheels roll, so that there are more poses than free speeds.
+Where wheels roll, there are more poses than free speeds, and the linear equations are:
 
     dq = T x,   du = V z + S x                  T (n, p): what pose constraints admit; V (n, f): what all rows admit
     x' = A11 x + A12 z,   z' = A21 x + A22 z    p + f numbers of state

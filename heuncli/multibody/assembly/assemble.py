@@ -1,13 +1,11 @@
 """Compute poses and rates at the start that satisfy all joints (manual/format.md, "Where bodies start").
 
-Which bodies had to leave their place in the drawing for the joints to close, and how far.
-
-A body has such a place where `near` gives one, or where the scene is drawn in world coordinates: then most joints close
+A note says which bodies had to leave their place in the drawing for the joints to close, and how far. A body has such a
+place where `near` gives one, or where the scene is drawn in world coordinates: then most joints close
 as drawn, and no held or driven coordinate needs another pose. Other bodies are placed, not moved.
 
-Conditions at the start of one-sided joints: slack ropes, bodies that leave their path, rods free between limits.
-
-A rope shorter than the distance of its points as assembled without it acts as a rod; a longer one is slack and sets no
+One-sided joints have conditions of their own: slack ropes, bodies that leave their path, rods free between limits. A
+rope shorter than the distance of its points as assembled without it acts as a rod; a longer one is slack and sets no
 condition; one that just reaches, or whose length is not given, is taut: it keeps its rate where the held velocities
 allow it. Where they do not, an impact occurs at once, or it goes slack.
 """
@@ -32,7 +30,8 @@ from heuncli.multibody.assembly.start_choices import (
     format_choices,
 )
 from heuncli.multibody.assembly.walk import AssemblyPoses, PlacementTree
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Body, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Body, Mechanism
 from heuncli.multibody.mechanism.size import extent_points, scene_size
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.results.results import Array

@@ -3,9 +3,7 @@
 Every kind is one way to hold the `to` point and one way to turn, both in the axes of the body `from`. A held angle, a
 held travel and drives only make the two stricter, so that no later step of the assembly depends on kinds of joints.
 
-A drive's prescribed coordinate at one instant: the only place where the assembly evaluates expressions in time.
-
-The gaps of all joints at once, for any number of poses.
+Only for a drive's prescribed coordinate does the assembly evaluate an expression in time.
 """
 
 from __future__ import annotations
@@ -21,7 +19,8 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Expression

@@ -3,7 +3,7 @@
 A loop runs from the two bodies of a closure to where their paths meet, or to a root; the body where they meet stays,
 and so do the ground and bodies that are held entirely.
 
-Errors of the assembly: they name the joint, the gap and the two bodies.
+An error of the assembly names the joint, the gap and the two bodies.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.walk import PlacementTree
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 
 # Islands

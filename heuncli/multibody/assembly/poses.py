@@ -27,7 +27,8 @@ from heuncli.multibody.assembly.walk import (
     prescribed_coordinates,
     start_poses,
 )
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 
 
 class PoseAssembly:

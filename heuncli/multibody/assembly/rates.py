@@ -37,7 +37,8 @@ from heuncli.multibody.assembly.rows import (
     rate_rows,
 )
 from heuncli.multibody.assembly.walk import AssemblyPoses, find_placement_tree
-from heuncli.multibody.mechanism.model import GROUND, Directed, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Directed, Mechanism
 from heuncli.results.results import Array
 
 MAX_CHECKED_JOINTS = (

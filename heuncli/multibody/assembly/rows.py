@@ -8,7 +8,7 @@ In the axes of `from` every gap changes as F u and T (σ_b − σ_a), however la
 rows"; the lever at P_b). The right sides are the residuals: minus the gap, or what is missing in the rates, or in the
 accelerations.
 
-Reduce the rows of an island's joints to the freedoms that the tree leaves, and find the smallest solution in them.
+The rows of an island's joints are reduced to the freedoms that the tree leaves; the smallest solution is taken:
 
     z = t + B y        turn and shift (by the scene's size L) of all members, from the freedoms y
     C y = e            the remaining rows: closures, and tree joints that a held body cannot follow

@@ -3,11 +3,9 @@
 Each joint first turns the body it reaches by the smallest turn needed, about the body's pivot (the centre of mass; the
 origin where the position is held), then shifts it by the least amount. A placed body is not moved again.
 
-Continuation of a loop drawn closed: turn it from the drawing to its held or driven coordinates.
-
-A loop usually closes in several ways, and the way that needs the smallest rotations may lie beyond a dead centre. So
-its coordinates move to their prescribed values in small steps, as the machine would be cranked, and it is closed at
-each.
+A loop drawn closed is turned from the drawing to its held or driven coordinates. A loop usually closes in several ways,
+and the way that needs the smallest rotations may lie beyond a dead centre. So its coordinates move to their prescribed
+values in small steps, as the machine would be cranked, and it is closed at each.
 """
 
 from __future__ import annotations

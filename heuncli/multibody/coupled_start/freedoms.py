@@ -3,7 +3,7 @@
 Rates are linear in the rates of the freedoms: the effect of one of them is measured with all others at rest, the driven
 ones too; the effect of the driven ones is the rest that remains when none moves.
 
-What is held at the start besides the closure rows: given poses and velocities of bodies, coordinates of joints.
+Besides the closure rows, given poses and velocities of bodies and coordinates of joints are held:
 
     J y = lack                     y the step of the freedoms, turns in rad, lengths by the scene's size
 

@@ -1,9 +1,6 @@
 """Prepare a mechanism to run with its couplings satisfied: multibody/tree/prepare.py, extended by couplings.
 
-Check that the discs of cams are on their lift at the start, for lifts that cover only part of a turn.
-
-Check wheels at the start: a disc that lies flat on its plane touches it everywhere and cannot roll.
-"""
+Cams that cover only part of a turn must be on their lift at the start, and no wheel may lie flat on its plane."""
 
 from __future__ import annotations
 

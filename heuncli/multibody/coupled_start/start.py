@@ -4,16 +4,10 @@ A coupling of coordinates starts as it is assembled and constrains rates only; w
 length, a sum of coordinates) it moves bodies that nothing holds. The bodies that carry the coupled ones move only where
 these cannot satisfy their couplings by themselves.
 
-Choose the bodies that a start releases to satisfy its couplings: those around the coupled loops first, their parents
-later.
-
-A placed body is not moved to spare the ones that it carries (manual/format.md, "Where bodies start"): of two geared
-shafts the one without a given rate turns, and not the frame that carries both. Only where the loop by itself cannot
-satisfy its rows is its parent released, too, one body further in at a time.
-
-Errors where couplings contradict what is held at the start.
-
-Sentences on what the couplings change in a start that heun has chosen.
+Bodies around the coupled loops are released first, their parents later. A placed body is not moved to spare the ones
+that it carries (manual/format.md, "Where bodies start"): of two geared shafts the one without a given rate turns, and
+not the frame that carries both. Only where the loop by itself cannot satisfy its rows is its parent released, too, one
+body further in at a time.
 """
 
 from __future__ import annotations
@@ -28,7 +22,8 @@ from heuncli.base.records import replace
 from heuncli.multibody.assembly.start_choices import StartChoice, format_choices
 from heuncli.multibody.coupled_start.fit import CoupledFit, StartRows
 from heuncli.multibody.coupled_start.freedoms import Freedoms, find_coupled_bodies
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.tree.islands import loop_bodies
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene

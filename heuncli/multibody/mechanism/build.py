@@ -13,26 +13,20 @@ import numpy as np
 from heuncli.base.joint_kinds import TYPES, JointKind
 from heuncli.base.records import replace
 from heuncli.multibody.mechanism.couplings import Coupling, unit_vector
-from heuncli.multibody.mechanism.model import (
+from heuncli.multibody.mechanism.loads import (
     GROUND,
-    Blow,
-    Body,
     BushingLoad,
-    Directed,
-    Elastic,
-    Joint,
     JointLoad,
     Load,
-    Mechanism,
-    NamedPoint,
     PairLoad,
     PointLoad,
-    Stop,
     TriangularDistribution,
 )
+from heuncli.multibody.mechanism.model import Blow, Body, Directed, Elastic, Joint, Mechanism, NamedPoint, Stop
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression, is_point_name
+from heuncli.scene.file_format import loads
 from heuncli.scene.file_format import models as m
 from heuncli.scene.shapes.inertia import split_pseudo_inertia
 
@@ -106,7 +100,7 @@ def build(spec: m.Spec, forms: dict[str, CompositeSolid], stages: Stages = NO_CA
     )
 
 
-def to_array(value: m.Vec | m.Matrix | None) -> Array | None:
+def to_array(value: m.Vec | loads.Matrix | None) -> Array | None:
     """Return an array, or None where the value is not given."""
     return None if value is None else np.array(value, dtype=float)
 
@@ -116,7 +110,7 @@ def make_directed(value: m.FramedVector[m.Vec] | None) -> Directed | None:
     return None if value is None else Directed(np.array(value.vector), value.in_body)
 
 
-def build_body(b: m.Body[m.Vec, m.Matrix], shape: CompositeSolid | None) -> Body:
+def build_body(b: m.Body[m.Vec, loads.Matrix], shape: CompositeSolid | None) -> Body:
     """Build a body, with its mass properties as given or from its shapes."""
     if shape is not None:
         mass, center, inertia = split_pseudo_inertia(shape.whole_inertia())
@@ -206,7 +200,7 @@ def build_load_parts(
     name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, JointKind]]
 ) -> tuple[Load, ...]:
     """Build an applied load; a distributed one as two parts, each growing towards one of its ends."""
-    if not isinstance(f, m.Distributed):
+    if not isinstance(f, loads.Distributed):
         return (build_load(name, f, index, joints),)
     start, end = np.array(f.from_), np.array(f.to)
     spreads = (f.vector, TriangularDistribution(start, end)), (f.to_vector, TriangularDistribution(end, start))
@@ -219,45 +213,45 @@ def build_load_parts(
 def build_load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, JointKind]]) -> Load:
     """Build an applied load that is not distributed."""
     match f:
-        case m.PointForce():
+        case loads.PointForce():
             return PointLoad(name, "force", index[f.on.body], np.array(f.on.point), f.vector, f.frame == "body")
-        case m.Couple():
+        case loads.Couple():
             point = np.array(f.on.point) if f.on is not None else None
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
-        case m.Actuator() | m.Spring():
+        case loads.Actuator() | loads.Spring():
             a, b = f.from_, f.to
             ends = index[a.body], np.array(a.point), index[b.body], np.array(b.point)
-            if isinstance(f, m.Actuator):
+            if isinstance(f, loads.Actuator):
                 return PairLoad(name, f.type, *ends, f.value)
             if f.force is not None:
                 return PairLoad(name, "actuator", *ends, f.force)
             return PairLoad(name, "spring", *ends, None, f.stiffness, f.length, f.damping)
-        case m.Bushing():
+        case loads.Bushing():
             return build_bushing(name, f, index)
-        case m.Torque():
+        case loads.Torque():
             return JointLoad(name, f.type, joints[f.joint][0], f.value)
-        case m.TurnSpring():
+        case loads.TurnSpring():
             k = joints[f.joint][0]
             if f.torque is not None:
                 return JointLoad(name, "torque", k, f.torque)
             return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
-        case m.Damper():
+        case loads.Damper():
             # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
             k, kind = joints[f.joint]
             if f.law is not None:
                 return JointLoad(name, "torque", k, f.law)
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
-        case m.Friction():
+        case loads.Friction():
             return build_friction(name, f, joints[f.joint][0])
-        case m.Distributed():
+        case loads.Distributed():
             raise TypeError("a distributed load is two loads")
 
 
-def build_bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
+def build_bushing(name: str, f: loads.Bushing, index: dict[str, int]) -> BushingLoad:
     """Build a bushing: six springs and dampers."""
 
-    def elastic_arrays(elastic: m.Elastic[m.Vec]) -> Elastic:
+    def elastic_arrays(elastic: loads.Elastic[m.Vec]) -> Elastic:
         return Elastic(
             np.array(elastic.stiffness), np.array(elastic.damping), np.array(elastic.preload), elastic.extra_load
         )
@@ -269,7 +263,7 @@ def build_bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad
     )  # fmt: skip
 
 
-def build_friction(name: str, f: m.Friction, joint: int) -> JointLoad:
+def build_friction(name: str, f: loads.Friction, joint: int) -> JointLoad:
     """Build friction of a given size, or in proportion to the joint's own load."""
     if f.coefficient is None:
         of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)

@@ -1,6 +1,6 @@
 """Build the couplings of the spec as conditions between bodies; only this module depends on their kinds.
 
-Screws: a thread between a body that turns and one that slides along the same axis.
+A screw is a thread between a body that turns and one that slides along the same axis:
 
     travel = lead / (2 pi) angle                       in the coordinates of the joints, relative to the start
     f = e,  m = lead / (2 pi) n                        per unit of thrust ON the sliding body, along its travel
@@ -18,11 +18,10 @@ since both share the cosine of lambda. With tan(rho) = mu that is the square thr
 Shigley, Mechanical Engineering Design, power screws, (8-1), (8-2). On a flank that is inclined by beta the normal force
 is larger by 1 / cos(beta) (scene/file_format/resolve_couplings.py).
 
-A wheel as its conditions: it touches its plane, and does not slip along its track or sideways.
-
-The first constrains a pose, the others a speed. Multipliers are the forces ON the wheel: along the plane's normal,
-along its track, along the projection of its axle on the plane. That a plane only pushes is monitored
-(scene/file_format/resolve_couplings.py): the loads of more wheels than necessary are indeterminate.
+A wheel has three conditions: it touches its plane, and does not slip along its track or sideways. The first constrains
+a pose, the others a speed. Multipliers are the forces ON the wheel: along the plane's normal, along its track, along
+the projection of its axle on the plane. That a plane only pushes is monitored (scene/file_format/resolve_couplings.py):
+the loads of more wheels than necessary are indeterminate.
 """
 
 from __future__ import annotations
@@ -49,7 +48,8 @@ from heuncli.multibody.mechanism.couplings import (
     unit_vector,
 )
 from heuncli.multibody.mechanism.gearing import GearMember, find_gears, gear_row, joint_line, mesh_parts
-from heuncli.multibody.mechanism.model import GROUND, Body, Joint, Load, ThreadLoad
+from heuncli.multibody.mechanism.loads import GROUND, Load, ThreadLoad
+from heuncli.multibody.mechanism.model import Body, Joint
 from heuncli.multibody.mechanism.strands import belt_row, pretension_load
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import make_path

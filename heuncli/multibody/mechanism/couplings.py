@@ -2,8 +2,6 @@
 
 Gears, belts, screws, ropes, cams and wheels are couplings. Their conditions are given here in the numbers that the
 kernel reads (kernel/scene.py, Closure); later code does not depend on their kinds, except to report on them.
-
-Directions as unit vectors.
 """
 
 from __future__ import annotations

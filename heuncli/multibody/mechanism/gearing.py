@@ -20,7 +20,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.couplings import Coordinate, CoupledRow, CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Body, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Body, Joint
 from heuncli.results.results import Array
 from heuncli.scene.file_format import couplings as c
 from heuncli.scene.shapes.rotations import cross_vectors

@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Body, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Body, Mechanism
 from heuncli.results.results import Array
 
 

@@ -1,13 +1,13 @@
 """Belts and chains as strands, and elastic ropes: what pulls along a line.
 
-Belts and chains: two strands along the lines tangent to both pulleys, in the axes of their carrier.
+Belts and chains have two strands along the lines tangent to both pulleys, in the axes of their carrier:
 
     nu . x = (r_1 - r_2) / D, crossed (r_1 + r_2) / D       nu: from the centre to a strand, x: to the other
     T_1 = T_0 + lambda / 2,  T_2 = T_0 - lambda / 2    the first strand is the tight one when the first pulley drives
 
 The belt is inextensible and does not slip. Its own mass, and so its centrifugal force at speed, is left out.
 
-Elastic ropes: their pull as a function of their length and its rate.
+The pull of an elastic rope is a function of its length and its rate:
 
     T = k x + c e',   x = S - l0,  k = k0 L / l0,  c = c0 L / l0,  e' = S' - S l0' / l0
 
@@ -27,7 +27,8 @@ from heuncli.base.errors import Finding
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.couplings import Coordinate, CoupledRow
 from heuncli.multibody.mechanism.gearing import GearMember, find_gears, joint_line, mesh_parts
-from heuncli.multibody.mechanism.model import Body, Joint, PairLoad, RopeLoad
+from heuncli.multibody.mechanism.loads import PairLoad, RopeLoad
+from heuncli.multibody.mechanism.model import Body, Joint
 from heuncli.results.results import Array
 from heuncli.scene.expressions.composition import (
     add_expressions,

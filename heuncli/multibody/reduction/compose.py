@@ -1,6 +1,6 @@
 """Apply the steps of reduction one after the other; each one reduces the scene that the previous one has made.
 
-A smaller scene that moves as a larger one does, and is integrated in its place.
+The smaller scene moves as the larger one does, and is integrated in its place:
 
     y = embed(t, y'),   y' = restrict(t, y)        states of the larger and of the smaller scene
 

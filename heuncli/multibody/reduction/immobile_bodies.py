@@ -18,7 +18,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import null_space
 from heuncli.base.records import record, replace
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.smaller_scene import BodyParts, BodyPlacement, make_smaller_scene
 from heuncli.multibody.reduction.spins import find_constant_spins

@@ -6,10 +6,9 @@ A joint's axes turn with its body, and so does the attitude at which its angle i
 that all its coordinates stay what they were; only where a plane's two directions are chosen again do the coordinates
 along them turn. A joint between two points of one body is dropped, and loads in it act on the ground.
 
-Transform couplings to a smaller scene: the same conditions, between the bodies that theirs are part of there.
-
-Each of a part's points and directions is fixed in one of its bodies, and is transformed as that body is. A condition
-that keeps its value at the start keeps it here, too: its length stays.
+Couplings have the same conditions, between the bodies that theirs are part of there. Each of a part's points and
+directions is fixed in one of its bodies, and is transformed as that body is. A condition that keeps its value at the
+start keeps it here, too: its length stays.
 """
 
 from __future__ import annotations
@@ -21,19 +20,8 @@ import numpy as np
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import CamShape, CoupledRow, Coupling, CouplingPart, Place
-from heuncli.multibody.mechanism.model import (
-    GROUND,
-    Blow,
-    Body,
-    Joint,
-    JointLoad,
-    Load,
-    Mechanism,
-    NamedPoint,
-    Placement,
-    PointLoad,
-    TwoPointLoad,
-)
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad, Load, Placement, PointLoad, TwoPointLoad
+from heuncli.multibody.mechanism.model import Blow, Body, Joint, Mechanism, NamedPoint
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.pack import lay_out
 from heuncli.multibody.tree.prepare import PreparedScene

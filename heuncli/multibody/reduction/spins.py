@@ -23,7 +23,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
-from heuncli.multibody.mechanism.model import Body, BushingLoad, Mechanism, PairLoad, PointLoad, RopeLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, PairLoad, PointLoad, RopeLoad, ThreadLoad
+from heuncli.multibody.mechanism.model import Body, Mechanism
 from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.state_embedding import rotate_vector
 from heuncli.multibody.tree.layout import Layout

@@ -17,7 +17,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import replace
-from heuncli.multibody.mechanism.model import GROUND, Body, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Body, Mechanism
 from heuncli.multibody.reduction.compose import Reduction
 from heuncli.multibody.reduction.smaller_scene import (
     BodyParts,

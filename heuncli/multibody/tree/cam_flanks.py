@@ -1,6 +1,6 @@
 """The flanks of a scene's cams: find those that cannot be made, or do not move their followers.
 
-Compute the flank of a cam: the outline of its disc, and its curvature.
+The flank is the outline of the disc, with its curvature:
 
     v = L' w - e x (C - O)         velocity of the follower's point C past the disc, per unit of the disc's angle
     1/rho = -n . v' / |v|^2        of the path of a roller's centre, n = e x v outward; the flank is a radius R within

@@ -1,11 +1,7 @@
 """The closure rows of the kernel: the numbers on their paths, and the rows of couplings.
 
-Index the numbers of each closure row: the bodies on its path, their answers, and the fill-in.
-
 A row of the closure Jacobian has numbers for the freedoms of the bodies on its path, which is between its two ends and
 the ground. Eliminating earlier rows from it fills in those of the bodies that they reach.
-
-The closure rows of couplings: sums of conditions of two bodies, which the kernel keeps in a table of their own.
 """
 
 from __future__ import annotations

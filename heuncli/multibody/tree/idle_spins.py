@@ -13,7 +13,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import Body, Mechanism, PointLoad
+from heuncli.multibody.mechanism.loads import PointLoad
+from heuncli.multibody.mechanism.model import Body, Mechanism
 from heuncli.results.results import Array
 
 Z = np.array([0.0, 0.0, 1.0])

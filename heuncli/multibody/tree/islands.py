@@ -13,7 +13,7 @@ from heuncli.base import tolerances
 from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import CoupledRow
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Island, Layout
 from heuncli.multibody.tree.rows import IslandRow, make_kernel_table
 from heuncli.results.results import Array

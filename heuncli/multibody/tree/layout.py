@@ -12,7 +12,8 @@ import numpy as np
 
 from heuncli.base.records import fields, record, replace
 from heuncli.kernel.choose import scene as kernel
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.rows import VariableRow, make_kernel_table
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart

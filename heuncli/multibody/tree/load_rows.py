@@ -12,18 +12,17 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
-from heuncli.multibody.mechanism.model import (
+from heuncli.multibody.mechanism.loads import (
     GROUND,
     BushingLoad,
     JointLoad,
     Load,
-    Mechanism,
-    NamedPoint,
     PairLoad,
     PointLoad,
     RopeLoad,
     ThreadLoad,
 )
+from heuncli.multibody.mechanism.model import Mechanism, NamedPoint
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout, LayoutFrame, empty_load_tables, make_layout
 from heuncli.multibody.tree.rows import NO_PROGRAM, ZERO, LoadRow, Program, VariableRow, WatchRow, make_kernel_table

@@ -11,15 +11,8 @@ from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS, Direction
 from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
-from heuncli.multibody.mechanism.model import (
-    GROUND,
-    Assembly,
-    Joint,
-    JointLoad,
-    Mechanism,
-    RopeLoad,
-    Stop,
-)
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad, RopeLoad
+from heuncli.multibody.mechanism.model import Assembly, Joint, Mechanism, Stop
 from heuncli.multibody.tree.closure_rows import (
     add_lift,
     assembled_length,

@@ -3,8 +3,6 @@
 Between two places where a rope is held, its ends and the sheaves on which it does not slip, one tension acts in all
 strands: one condition, whose parts are the strands, the arcs on the sheaves where it slides, and the wound lengths on
 those where it does not (kernel/sheaves.py). Which way round a sheave is meant can only be found from the poses.
-
-Couplings whose conditions depend on the poses at the start: ropes.
 """
 
 from __future__ import annotations
@@ -19,7 +17,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import NO_VECTOR, Coordinate, CoupledRow, Coupling, CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism, RopeLoad
+from heuncli.multibody.mechanism.loads import GROUND, RopeLoad
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.mechanism.strands import rope_load
 from heuncli.multibody.tree.starts import compute_joint_start
 from heuncli.results.results import Array

@@ -25,7 +25,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import GROUND, Joint, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.results.results import Array
 
 

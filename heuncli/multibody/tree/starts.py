@@ -1,7 +1,4 @@
-"""The joints in the assembled mechanism: coordinates, rates, reference attitudes, directions.
-
-Drives by a rate, or counted from the assembled start: after assembly their coordinates are known in time.
-"""
+"""The joints in the assembled mechanism: coordinates, rates, reference attitudes, directions."""
 
 from __future__ import annotations
 
@@ -13,7 +10,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, Direction
 from heuncli.base.records import record, replace
-from heuncli.multibody.mechanism.model import GROUND, Assembly, Joint, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Assembly, Joint, Mechanism
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.results.results import Array
 from heuncli.scene.expressions.discontinuities import find_first_not_positive

@@ -2,8 +2,6 @@
 
 The types follow from the fields of kernel/scene.py; the order of a solution's parts is that in which kernel/answers.py
 writes them.
-
-Whether a laid-out scene moves in the xy plane only, so that the kernel may drop all components normal to it.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from heuncli.output.documents.document import OutputColumn, OutputTable, TextCel
 from heuncli.output.machine_geometry.poses import extract_poses
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
-from heuncli.scene.file_format.models import Bushing
+from heuncli.scene.file_format.loads import Bushing
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.digits import OPEN
 from heuncli.study.quantities.reader_numbers import choose_reader_style

@@ -12,7 +12,7 @@ from heuncli.output.documents.document import OutputTable, Part, Sentence
 from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
 from heuncli.output.tables.table_blocks import describe_chosen_components
 from heuncli.output.tables.table_plans import COUPLINGS, FORCES, FOUNDATION, JOINTS, STOPS, TablePlan
-from heuncli.scene.file_format.models import Bushing
+from heuncli.scene.file_format.loads import Bushing
 
 NO_JOINTS_NOTE = "No joints, and no connection to the ground."
 ONLY_IMPACTS_NOTE = "Only impulses are requested: see the impulses for the joints and the ground."

@@ -17,11 +17,10 @@ from heuncli.output.tables.page import Page
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.compose.smoothed_friction import make_partial_note
+from heuncli.study.compose.warnings import make_partial_note
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.table_units import Units
-from heuncli.study.queries.smoothed_friction import find_partial_friction
-from heuncli.study.queries.study import Study
+from heuncli.study.queries.study import Study, find_partial_friction
 
 AS_IT_STANDS = "base model"  # the scene without the values of a case
 LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "events"})

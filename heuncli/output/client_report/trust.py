@@ -12,7 +12,8 @@ from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Facts, Listing, OutputColumn, OutputTable, Part, Sentence, TextCell
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.heading import make_heading
-from heuncli.results.results_schema import XYZ, error_kind_of_path
+from heuncli.results.path_words import error_kind_of_path
+from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.digits import format_error
 from heuncli.version import VERSION
 

@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.study.quantities.digits import Style, trim_zeros
-from heuncli.study.quantities.error_digits import format_with_error
+from heuncli.study.quantities.digits import Style, format_with_error, trim_zeros
 
 if TYPE_CHECKING:
     from heuncli.output.drawing.figure import Figure

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape
-from heuncli.base.wrapping import wrap_text
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
 
 GAP = "  "

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape
-from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing import style
 from heuncli.output.drawing.figure import Bars, Figure, LegendEntry, Panel, PlaceLabel, Scaling, VerticalMark
 from heuncli.output.drawing.item_shapes import draw_item

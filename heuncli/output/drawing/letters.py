@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape
-from heuncli.base.wrapping import wrap_text
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import Band, Figure, Item, LegendEntry, Panel, PlaceLabel, Trace, VerticalMark
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note

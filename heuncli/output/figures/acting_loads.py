@@ -16,8 +16,8 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import AppliedLoad
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.multibody.mechanism.model import GROUND as ON_GROUND
-from heuncli.multibody.mechanism.model import PointLoad
+from heuncli.multibody.mechanism.loads import GROUND as ON_GROUND
+from heuncli.multibody.mechanism.loads import PointLoad
 from heuncli.output.drawing.figure import Arrow, KeyArrow, PlaceLabel, Strokes, Symbol
 from heuncli.output.drawing.ticks import format_short
 from heuncli.output.figures.machine_items import to_pair
@@ -26,8 +26,8 @@ from heuncli.output.machine_geometry.joint_symbols import find_guided_actuators
 from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.views import SceneView
+from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block
-from heuncli.results.results_schema import IMPULSE_UNITS
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.quantities.captions import describe_object

@@ -26,11 +26,12 @@ from heuncli.loads.kinetostatics.stretch import (
     chebyshev_polynomials,
     make_cuts_at,
 )
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.output.figures.courses import choose_instants
 from heuncli.output.figures.summits import find_bounds, halve_steps
+from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, Mask, Results
-from heuncli.results.results_schema import IMPULSE_UNITS, RESULTANT_UNITS, RESULTANTS
+from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.scene.file_format.couplings import Rope
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.channels import Channel, make_section_channels
@@ -39,7 +40,7 @@ from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import ChannelSearch, StudyColumns
-from heuncli.study.search.stretches import find_cut_extremes, find_stretch
+from heuncli.study.search.cuts import find_cut_extremes, find_stretch
 
 SECTIONS = frozenset({"sections"})
 N_PLACES, MIN_PLACES = 240, 8  # places along a bar, 3 pixels apart; minimum between two corners

@@ -31,11 +31,11 @@ from heuncli.output.figures.measured_points import MeasuredPoints, draw_points
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.thinning import find_visible_points
 from heuncli.results.results import Array
-from heuncli.study.compose.smoothed_friction import has_smoothed_friction
+from heuncli.study.compose.warnings import has_smoothed_friction
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure_uncertainty import find_unit
-from heuncli.study.queries.smoothed_friction import make_friction_warning
+from heuncli.study.queries.study import make_friction_warning
 
 LABEL_MARGIN, BAR_MARGIN = 0.14, 0.2  # share above and below the curves, for labels; above bars
 PANEL_HEIGHTS = (290.0, 220.0, PANEL_HEIGHT)  # pixels of a panel, by the number of panels: one, two, more

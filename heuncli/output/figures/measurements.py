@@ -12,8 +12,7 @@ import numpy as np
 
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.number_range import are_in_range, range_error
-from heuncli.base.units import Dimension, describe, parse_unit
+from heuncli.base.units import Dimension, are_in_range, describe, parse_unit, range_error
 from heuncli.output.figures.measured_points import MeasuredPoints
 from heuncli.results.results import Array
 from heuncli.results.results_schema import parse_index

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.analyses.balancing.balance_labels import format_cycle, format_reference_point, get_unit
-from heuncli.analyses.balancing.results import BalanceResults, OrderRow
+from heuncli.analyses.balancing.results import BalanceResults, OrderRow, format_cycle, format_reference_point, get_unit
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot, share_x_axis
 from heuncli.output.drawing.ticks import choose_ends, format_short

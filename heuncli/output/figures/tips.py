@@ -24,7 +24,8 @@ from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run, list_angle_paths
 from heuncli.results.results import Array
 from heuncli.results.results_schema import SPACE
-from heuncli.scene.file_format.models import Actuator, Spec
+from heuncli.scene.file_format.loads import Actuator
+from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.queries.measure_uncertainty import find_search_error, find_unit
 from heuncli.study.queries.study import Study

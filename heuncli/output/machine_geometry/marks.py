@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.multibody.mechanism.model import GROUND as ON_GROUND
+from heuncli.multibody.mechanism.loads import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.rope_routes import body_pose

@@ -8,8 +8,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from heuncli.base.errors import Problem, SolveError, UsageError
-from heuncli.study.load_cycles.collective import Collective, Counting, LoadHistory, UnfitCounting, make_collective
-from heuncli.study.queries.histories import CODE, make_histories
+from heuncli.study.load_collectives import (
+    CODE,
+    Collective,
+    Counting,
+    LoadHistory,
+    UnfitCounting,
+    make_collective,
+    make_histories,
+)
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
 

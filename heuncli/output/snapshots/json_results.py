@@ -19,8 +19,9 @@ from heuncli.output.snapshots.columns import ResultView, SnapshotScope, collect_
 from heuncli.output.snapshots.golden_file import N_EVEN, RunSnapshot
 from heuncli.output.snapshots.record import SnapshotBounds, SnapshotCourse, make_run_snapshot
 from heuncli.output.tables.page import Page, make_page
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Block, Magnitudes, Results
-from heuncli.results.results_schema import REPORT_OF, find_quantity
+from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.quantities.channels import iter_channels
 from heuncli.study.quantities.digits import largest_magnitude
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels

@@ -19,7 +19,8 @@ from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import collect_scene_names
 from heuncli.scene.file_format.rules.outcome import find_path_error
-from heuncli.study.compose.smoothed_friction import has_smoothed_friction
+from heuncli.study.compose.warnings import has_smoothed_friction
+from heuncli.study.model.options import collect_results
 from heuncli.study.quantities.digits import OPEN, UNKNOWN
 from heuncli.study.queries.measure import (
     NOT_CLAIMED,
@@ -29,9 +30,7 @@ from heuncli.study.queries.measure import (
     find_exceeded_horizon,
     measure_value,
 )
-from heuncli.study.queries.option_values import collect_results
-from heuncli.study.queries.smoothed_friction import make_friction_warning
-from heuncli.study.queries.study import Study
+from heuncli.study.queries.study import Study, make_friction_warning
 
 T = TypeVar("T")
 PATH = re.compile(r"[\w.]+(?:[@:][\w.:+-]*)*\Z")

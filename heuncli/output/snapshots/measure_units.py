@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from heuncli.base.errors import Problem, UsageError
-from heuncli.results.path_words import split_path
+from heuncli.results.path_words import find_quantity, split_path
 from heuncli.results.results import Results
-from heuncli.results.results_schema import find_quantity
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import DisplayUnit, Units, find_si_unit
 from heuncli.study.queries.measure import MeasureRequest

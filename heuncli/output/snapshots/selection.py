@@ -13,10 +13,11 @@ from heuncli.base.errors import Problem, UsageError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar, list_words, suggest
 from heuncli.output.tables.page import TABLE_DEFAULT
-from heuncli.results.results_schema import IMPULSES, REPORT_OF, REPORTS, ROWS, SHARES, add_shared_reports, find_quantity
+from heuncli.results.path_words import find_quantity
+from heuncli.results.results_schema import IMPULSES, REPORT_OF, REPORTS, ROWS, SHARES, add_shared_reports
 from heuncli.scene.file_format.models import Spec
+from heuncli.study.model.options import require_choice
 from heuncli.study.model.selection import EntryKeys, Selection, list_entries, split_entry
-from heuncli.study.queries.option_values import require_choice
 
 
 class ReportChoice(NamedTuple):

@@ -10,11 +10,10 @@ from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, DoubtfulIn
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, Extremes
 from heuncli.results.results_schema import SHARES
-from heuncli.study.compose.smoothed_friction import has_smoothed_friction, make_partial_note
+from heuncli.study.compose.warnings import has_smoothed_friction, make_partial_note
 from heuncli.study.model.selection import EntryKeys, Selection
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.queries.smoothed_friction import find_partial_friction
-from heuncli.study.queries.study import Study
+from heuncli.study.queries.study import Study, find_partial_friction
 
 AXIS: EntryKeys = ("foundation", "axis")
 RUN_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"

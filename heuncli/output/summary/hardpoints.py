@@ -16,7 +16,7 @@ from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import Action, ActionEnd
 from heuncli.loads.kinetostatics.reactions import JointLoads
-from heuncli.multibody.mechanism.model import GROUND as GROUND_INDEX
+from heuncli.multibody.mechanism.loads import GROUND as GROUND_INDEX
 from heuncli.output.tables.extremes_tables import PART
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.names import GROUND

@@ -23,6 +23,7 @@ from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.channels import Channel
 from heuncli.study.queries.study import Study
+from heuncli.study.search.extremes import sort_distinct
 
 FULL_TURN = 2.0 * math.pi
 DIRECTION_DECIMALS = 2  # shown of a unit vector; what is equal in these is one direction
@@ -67,7 +68,7 @@ class SummaryRow(NamedTuple):
     direction (3,): of a vector, in the axes of the tables; None where there is none
     time: of the value; is_constant: it is equal at all instants
     angle: of the crank at that instant [rad]
-    place: along a run of cuts
+    place: along a series of cuts
     is_partly_open: at other instants it is indeterminate
     is_doubtful: friction is not at its full value there
     is_given: it acts from outside, as the spec says
@@ -132,7 +133,7 @@ def make_run_summary(
     rows = _add_shares(rows, page.magnitudes.size)
     crank = ""
     if rows:
-        instants = np.unique([*(row.time for row in rows), *page.results.time[[0, -1]].tolist()])
+        instants = sort_distinct(np.array([*(row.time for row in rows), *page.results.time[[0, -1]]]))
         rows, crank = _add_directions(study, rows, instants)
     is_searched = searched.extremes is None or searched.extremes.is_searched
     note = page.doubtful.note if any(row.is_doubtful for row in rows) else ""
@@ -180,7 +181,7 @@ class GreatestValues(NamedTuple):
         )  # fmt: skip
 
     def _find_extremes(self, path: str, channel: Channel) -> Sequence[tuple[float, float, CutPosition | None]]:
-        """Return lowest and highest value, each with its instant, and its place along a run of cuts."""
+        """Return lowest and highest value, each with its instant, and its place along a series of cuts."""
         extremes = self.searched.extremes
         if extremes is None or path not in self.numbers:
             at = float(self.searched.page.results.time[0])

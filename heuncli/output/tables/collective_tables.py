@@ -10,7 +10,7 @@ import numpy as np
 from heuncli.output.documents.as_csv import make_columns
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, append_unit
 from heuncli.results.results import Array
-from heuncli.study.load_cycles.collective import REFERENCE, Collective
+from heuncli.study.load_collectives import REFERENCE, Collective
 from heuncli.study.quantities.digits import Style, choose_style, format_error, write_numbers, write_times
 from heuncli.study.quantities.table_units import Units
 

@@ -18,8 +18,9 @@ from heuncli.base.errors import LimitError, Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.as_json import AT_ONCE, FORMAT, iter_json
 from heuncli.results.cut_rows import cut_indices
+from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, Results
-from heuncli.results.results_schema import IMPULSE_UNITS, IMPULSES, find_row
+from heuncli.results.results_schema import IMPULSES, find_row
 from heuncli.results.stored_arrays import StoredArray
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
 from heuncli.study.quantities.labels import Labels

@@ -20,8 +20,9 @@ from heuncli.output.tables.impact_table import make_impact_table
 from heuncli.output.tables.instants_tables import make_instants_tables
 from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import IMPULSES
+from heuncli.results.path_words import IMPULSE_BLOCKS, IMPULSE_UNITS, find_quantity
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
-from heuncli.results.results_schema import IMPULSE_BLOCKS, IMPULSE_UNITS, SHARES, find_quantity
+from heuncli.results.results_schema import SHARES
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.quantities.digits import (
     UNKNOWN,

@@ -21,8 +21,9 @@ from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants, dr
 from heuncli.output.tables.instants_tables import make_instants_tables
 from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import PLANS
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Results
-from heuncli.results.results_schema import REPORT_OF, REPORTS, find_quantity
+from heuncli.results.results_schema import REPORT_OF, REPORTS
 from heuncli.study.quantities.channels import ChannelSelection, iter_channels
 from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
 from heuncli.study.quantities.labels import Labels

@@ -9,7 +9,8 @@ from typing import Any
 
 from heuncli.output.documents.document import format_head
 from heuncli.output.tables.collective_schema import make_collectives_schema
-from heuncli.results.results_schema import IMPULSES, NAMES, TREE, Node, Quantity
+from heuncli.results.path_words import NAMES, TREE, Node
+from heuncli.results.results_schema import IMPULSES, Quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")

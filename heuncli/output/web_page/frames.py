@@ -19,8 +19,8 @@ from heuncli.motion.integration.integrated_scene import find_one_sided_limits
 from heuncli.results.results import Array, Indices, Results
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.queries.study import Study
+from heuncli.study.search.columns import find_largest_turns
 from heuncli.study.search.extremes import sort_distinct
-from heuncli.study.search.instants import find_largest_turns
 
 MIN_FRAMES = 120  # frames of a motion
 MAX_TURN = 0.3  # rad: how far a body may turn from one frame to the next

@@ -2,11 +2,10 @@
 
 Only the kernel's evaluator calculates numbers, also here, where constants are folded.
 
-Recalculate a number from its expression with other parameter values, without parsing the text again.
-
-An expression of parameters alone becomes a row of numbers: each is a literal, a parameter, or the result of an
-operation on earlier ones. With other values the row stays the same, unless a choice depends on a value (`a if c else
-b`, tables, an exponent that is no literal): then nothing is cached.
+A number is calculated again with other parameter values without parsing the text again. An expression of parameters
+alone becomes a row of numbers: each is a literal, a parameter, or the result of an operation on earlier ones. With
+other values the row stays the same, unless a choice depends on a value (`a if c else b`, tables, an exponent that is no
+literal): then nothing is cached.
 """
 
 from __future__ import annotations

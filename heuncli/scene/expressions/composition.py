@@ -1,8 +1,6 @@
-"""Compose expressions from others: with scaled coordinates, products, sums, limits.
+"""Compose expressions from others: with scaled coordinates, products, limits, sums, components along other axes.
 
 Each expression has its own constants, tables, coordinates and branches; in the composed one their indices are shifted.
-
-Sum expressions: components of a vector in time along other axes.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Tokens are numbers, names and marks. For names of other programs and of results, others are proposed.
 
-Resolve the point of a body that a value names: points.BODY.POINT.x, or points.POINT.x if only one body has it.
+A point of a body is named points.BODY.POINT.x, or points.POINT.x if only one body has it.
 """
 
 from __future__ import annotations

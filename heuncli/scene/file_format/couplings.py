@@ -1,8 +1,6 @@
-"""Validated couplings: the entries of `couplings` and `rolling` in SI with their references resolved.
+"""Validated couplings, the entries of `couplings` and `rolling` in SI, and the points of bodies that entries refer to.
 
 One class per type; joints and bodies by name. As in scene/file_format/models.py, None marks what the spec leaves out.
-
-Points of bodies, as joints, loads, couplings and sections refer to them.
 """
 
 from __future__ import annotations

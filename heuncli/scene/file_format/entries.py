@@ -1,4 +1,4 @@
-"""Base class of the format's entries: a class whose annotations are its keys and whose values `validation` validates.
+"""The base class of the format's entries, whose annotations are its keys, and its validation by pydantic_core.
 
 To its users an Entry behaves like a frozen pydantic model, and pydantic_core validates it. But pydantic builds a class
 and a validator for each of sixty kinds at import; with its own modules that is a third of a small run. Here a kind
@@ -6,8 +6,6 @@ costs nothing until its first entry is read. Where real pydantic models are need
 the same classes.
 
 The markers in an annotation follow pydantic's protocol (`__get_pydantic_core_schema__`), so that both understand them.
-
-Validate plain data into entries with pydantic_core; the schema of a kind is built when its first entry is read.
 """
 
 from __future__ import annotations

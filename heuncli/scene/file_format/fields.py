@@ -14,9 +14,9 @@ from pydantic_core import core_schema
 
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
-from heuncli.base.number_range import is_in_range
 from heuncli.base.records import record, replace
 from heuncli.base.spelling import spend_effort, suggest
+from heuncli.base.units import is_in_range
 from heuncli.scene.expressions.grammar import NO_NAMES
 from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format.entries import Entry, OneOf, Preprocessor, Tag

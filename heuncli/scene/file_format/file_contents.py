@@ -1,8 +1,7 @@
 """What named files hold: measured curves of expectations, and surfaces of shapes.
 
-Curves of expectations: two columns of a CSV file, in SI (manual/format.md, "Expect"). Impure: reads files.
-
-Read the mesh files that shapes name into closed surfaces, and check them. Impure: reads files.
+A curve is two columns of a CSV file, in SI (manual/format.md, "Expect"); a mesh is checked to be a closed surface.
+Impure: reads files.
 """
 
 from __future__ import annotations
@@ -16,9 +15,8 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding, SourceLocation
-from heuncli.base.number_range import are_in_range, is_in_range, range_error
 from heuncli.base.records import replace
-from heuncli.base.units import Dimension, describe
+from heuncli.base.units import Dimension, are_in_range, describe, is_in_range, range_error
 from heuncli.scene.file_format.columns import Columns, iter_rows
 from heuncli.scene.file_format.format import ExpectEntry
 from heuncli.scene.file_format.format_shapes import MeshShape

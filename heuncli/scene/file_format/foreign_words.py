@@ -1,9 +1,7 @@
 """Words of other programs and other mistakes in keys and types, mapped to heun's words and hints.
 
-Common words for types of joints and loads, accepted in place of heun's own words.
-
-`replace_type_aliases` puts heun's words in their place before anything else reads the data. So results, messages and
-all later code know one word for each type.
+Common words for types of joints and loads are accepted: `replace_type_aliases` puts heun's words in their place before
+anything else reads the data. So results, messages and all later code know one word for each type.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The format's block `couplings`, one class per type: keys as users write them, values read to SI.
-
-The format's block `rolling`: keys as users write them, values read to SI; centre and axle of a wheel.
-"""
+"""The format's blocks `couplings`, one class per type, and `rolling`: keys as users write them, values read to SI."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The file format: joints. A class per kind of joint; its keys as users write them, its values read to SI.
-
-Loads between two points or in a joint, bushings and motors: a part of the file format.
-"""
+"""The file format: a class per kind of joint and of load in one; keys as users write them, values read to SI."""
 
 from __future__ import annotations
 

@@ -4,13 +4,10 @@ manual.
 What a schema cannot express is left to `heun validate`: that a name exists, that a unit fits, which keys exclude each
 other. `space: planar` allows vectors of two components and pins without an axis; the schema allows both forms.
 
-Map each model to the chapter of the manual's page on the format whose table describes its keys.
+Unit, default and meaning of each key are those of the manual's page on the format, by chapter. Impure: reads the page.
 
-Read the manual's page on the format: unit, default and meaning of each key, by chapter. Impure: reads the page.
-
-The format as pydantic models, made from the classes that read it, for the JSON Schema.
-
-They validate like `validation`, which tests verify: one format, described to pydantic in two ways.
+The schema is that of pydantic models, made from the classes that read the format. They validate like `validation`,
+which tests verify: one format, described to pydantic in two ways.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Collect what a scene names from the plain data, so that references can be checked even if other entries have
 errors.
 
-Complete a planar scene to one in space: balls become pins about z, vectors of two components get a third.
+A planar scene is completed to one in space: balls become pins about z, vectors of two components get a third.
 """
 
 from __future__ import annotations

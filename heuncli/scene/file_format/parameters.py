@@ -1,10 +1,7 @@
 """Values of a scene: its parameters, and what `--set` and load cases put in place of values.
 
-Evaluate the parameters of a scene: numbers that may refer to each other in any order.
-
-Apply `--set`: put values from the command line into the plain data before anything reads it.
-
-Load cases: the settings of a case, as those of `--set`, and the problems with them.
+Parameters are numbers that may refer to each other in any order. Settings from the command line, and those of a load
+case, are put into the plain data before anything reads it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Translate pydantic's errors into the messages, codes and paths of specs.
 
-The error for an entry without `type`: it names the types that the entry's keys fit.
+The error for an entry without `type` names the types that the entry's keys fit.
 """
 
 from __future__ import annotations

@@ -8,9 +8,17 @@ from typing import Any
 
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.number_range import is_in_range, range_error
 from heuncli.base.records import replace
-from heuncli.base.units import Dimension, correct_unit, describe, parse_unit, si_expression_hint, si_unit
+from heuncli.base.units import (
+    Dimension,
+    correct_unit,
+    describe,
+    is_in_range,
+    parse_unit,
+    range_error,
+    si_expression_hint,
+    si_unit,
+)
 from heuncli.scene.expressions.grammar import (
     DependentError,
     Scope,

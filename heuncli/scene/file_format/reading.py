@@ -6,9 +6,8 @@ end or exceed the limit. Devices may never end, so they are refused unread, exce
 The files that a command has read are remembered by device and inode, so that the command never overwrites one of them:
 a link, a hard link, another spelling or `/dev/fd/3` is the same file.
 
-Digest of a text, by which results name the spec they belong to.
-
-Imports SHA-256 from Python's own C module, as `random` does, because hashlib loads OpenSSL first, which takes 3 ms.
+Results name the spec they belong to by a digest of its text. It imports SHA-256 from Python's own C module, as `random`
+does, because hashlib loads OpenSSL first, which takes 3 ms.
 """
 
 from __future__ import annotations

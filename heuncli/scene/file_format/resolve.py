@@ -15,6 +15,7 @@ from heuncli.scene.expressions.grammar import Scope, compile_expression
 from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format import loads
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.couplings import Coupling
 from heuncli.scene.file_format.fields import EndEntry
@@ -175,7 +176,7 @@ class Resolver:
 
     def attach_locations(
         self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector"
-    ) -> m.Vector:
+    ) -> loads.Vector:
         x, y, z = (self.attach_location(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
         return x, y, z
 
@@ -206,7 +207,7 @@ class Resolver:
     def piece(self, piece: f.PieceEntry | None) -> m.MassProperties | None:
         return m.MassProperties(piece.mass, piece.center, inertia_tensor(piece)) if piece is not None else None
 
-    def body(self, name: str, body: f.BodyEntry) -> m.Body[m.Vec, m.Matrix]:
+    def body(self, name: str, body: f.BodyEntry) -> m.Body[m.Vec, loads.Matrix]:
         near = body.near
         return m.Body(
             name=name,

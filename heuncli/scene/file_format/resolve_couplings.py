@@ -17,7 +17,8 @@ from heuncli.scene.file_format import format as whole
 from heuncli.scene.file_format import format_couplings as f
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.format_couplings import RollingEntry, find_axle_direction, find_centre
-from heuncli.scene.file_format.models import End, ResultCondition, Vector, Z
+from heuncli.scene.file_format.loads import Vector
+from heuncli.scene.file_format.models import End, ResultCondition, Z
 
 SLACK_BELT_MESSAGE = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
 

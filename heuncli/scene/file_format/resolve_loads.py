@@ -19,6 +19,7 @@ from heuncli.scene.expressions.composition import (
 from heuncli.scene.expressions.programs import LOADS, OWN, Expression
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import loads
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.resolve_couplings import ReferenceResolver
 from heuncli.scene.file_format.rotations import IDENTITY
@@ -31,61 +32,61 @@ def resolve_load(resolver: ReferenceResolver, name: str, load: f.LoadEntry) -> m
     return resolved
 
 
-def resolve_force(resolver: ReferenceResolver, name: str, load: f.ForceEntry) -> m.PointForce:
+def resolve_force(resolver: ReferenceResolver, name: str, load: f.ForceEntry) -> loads.PointForce:
     """Resolve a force at a point."""
-    return m.PointForce(resolver.end(load.on), resolver.attach_locations(load.vector, f"forces.{name}"), load.frame)
+    return loads.PointForce(resolver.end(load.on), resolver.attach_locations(load.vector, f"forces.{name}"), load.frame)
 
 
-def resolve_couple(resolver: ReferenceResolver, name: str, load: f.CoupleEntry) -> m.Couple:
+def resolve_couple(resolver: ReferenceResolver, name: str, load: f.CoupleEntry) -> loads.Couple:
     """Resolve a couple on a body."""
     on = resolver.end(load.on) if load.on.at is not None else None
-    return m.Couple(load.on.body, on, resolver.attach_locations(load.vector, f"forces.{name}"), load.frame)
+    return loads.Couple(load.on.body, on, resolver.attach_locations(load.vector, f"forces.{name}"), load.frame)
 
 
-def resolve_torque(resolver: ReferenceResolver, name: str, load: f.TorqueEntry) -> m.Torque:
+def resolve_torque(resolver: ReferenceResolver, name: str, load: f.TorqueEntry) -> loads.Torque:
     """Resolve a torque about a pin's axis or a thrust along a slide's."""
-    return m.Torque(load.joint, resolver.attach_location(load.value, f"forces.{name}.value"))
+    return loads.Torque(load.joint, resolver.attach_location(load.value, f"forces.{name}.value"))
 
 
-def resolve_actuator(resolver: ReferenceResolver, name: str, load: f.ActuatorEntry) -> m.Actuator:
+def resolve_actuator(resolver: ReferenceResolver, name: str, load: f.ActuatorEntry) -> loads.Actuator:
     """Resolve a given force between two points."""
     value = resolver.attach_location(load.value, f"forces.{name}.value")
-    return m.Actuator(resolver.end(load.from_), resolver.end(load.to), value)
+    return loads.Actuator(resolver.end(load.from_), resolver.end(load.to), value)
 
 
-def resolve_spring(resolver: ReferenceResolver, name: str, load: f.SpringEntry) -> m.Spring:
+def resolve_spring(resolver: ReferenceResolver, name: str, load: f.SpringEntry) -> loads.Spring:
     """Resolve a spring between two points, by its numbers or by its law."""
     law = bind_law(resolver, load.force, f"forces.{name}.force", f"{LOADS}.{name}")
     numbers = load.stiffness or 0.0, load.length or 0.0, load.damping or 0.0
-    return m.Spring(resolver.end(load.from_), resolver.end(load.to), *numbers, law)
+    return loads.Spring(resolver.end(load.from_), resolver.end(load.to), *numbers, law)
 
 
-def resolve_turn_spring(resolver: ReferenceResolver, name: str, load: f.TurnSpringEntry) -> m.TurnSpring:
+def resolve_turn_spring(resolver: ReferenceResolver, name: str, load: f.TurnSpringEntry) -> loads.TurnSpring:
     """Resolve a spring in a joint, by its numbers or by its law."""
     law = bind_law(resolver, load.torque, f"forces.{name}.torque", load.joint)
-    return m.TurnSpring(load.joint, load.stiffness or 0.0, load.angle or 0.0, load.damping or 0.0, law)
+    return loads.TurnSpring(load.joint, load.stiffness or 0.0, load.angle or 0.0, load.damping or 0.0, law)
 
 
-def resolve_damper(resolver: ReferenceResolver, name: str, load: f.DamperEntry) -> m.Damper:
+def resolve_damper(resolver: ReferenceResolver, name: str, load: f.DamperEntry) -> loads.Damper:
     """Resolve a damper in a joint, by its coefficients or by its law."""
     coefficient = constant_value(load.coefficient) if load.coefficient is not None else 0.0
     torque, force = (
         bind_law(resolver, getattr(load, k), f"forces.{name}.{k}", load.joint) for k in ("torque", "force")
     )
-    return m.Damper(load.joint, coefficient, load.sliding, torque or force)
+    return loads.Damper(load.joint, coefficient, load.sliding, torque or force)
 
 
-def resolve_friction(resolver: ReferenceResolver, name: str, load: f.FrictionEntry) -> m.Friction:
+def resolve_friction(resolver: ReferenceResolver, name: str, load: f.FrictionEntry) -> loads.Friction:
     """Resolve friction in a joint."""
     torque, force = (
         resolver.attach_location(value, f"forces.{name}.{k}") if (value := getattr(load, k)) is not None else None
         for k in ("torque", "force")
     )
     speed = constant_value(load.speed)
-    return m.Friction(load.joint, torque, force, speed, load.coefficient, load.radius, load.length)
+    return loads.Friction(load.joint, torque, force, speed, load.coefficient, load.radius, load.length)
 
 
-def resolve_motor(resolver: ReferenceResolver, name: str, load: fe.MotorEntry) -> m.Torque:
+def resolve_motor(resolver: ReferenceResolver, name: str, load: fe.MotorEntry) -> loads.Torque:
     """Resolve a motor: ratio * value * curve(ratio * rate), within the limit of the motor itself."""
     path = f"forces.{name}"
     curve = resolver.attach_location(make_torque_curve(load), f"{path}.curve")
@@ -97,10 +98,10 @@ def resolve_motor(resolver: ReferenceResolver, name: str, load: fe.MotorEntry) -
         resolver, multiply_expressions(Expression.from_number(load.ratio), law), f"{path}.curve", load.joint
     )
     assert bound is not None
-    return m.Torque(load.joint, bound, load.type)
+    return loads.Torque(load.joint, bound, load.type)
 
 
-def resolve_distributed(resolver: ReferenceResolver, name: str, load: f.DistributedEntry) -> m.Distributed:
+def resolve_distributed(resolver: ReferenceResolver, name: str, load: f.DistributedEntry) -> loads.Distributed:
     """Resolve a load along a line on a body."""
     body, path = resolver.document.bodies[load.on], f"forces.{name}"
     start, end = find_point(body, load.from_), find_point(body, load.to)
@@ -108,16 +109,16 @@ def resolve_distributed(resolver: ReferenceResolver, name: str, load: f.Distribu
     assert end is not None
     vector = resolver.attach_locations(load.vector, path)
     to_vector = vector if load.to_vector is None else resolver.attach_locations(load.to_vector, path, "to_vector")
-    return m.Distributed(load.on, start, end, vector, to_vector, load.frame)
+    return loads.Distributed(load.on, start, end, vector, to_vector, load.frame)
 
 
-def resolve_bushing(resolver: ReferenceResolver, name: str, load: fe.BushingEntry) -> m.Bushing:
+def resolve_bushing(resolver: ReferenceResolver, name: str, load: fe.BushingEntry) -> loads.Bushing:
     """Resolve a bushing between two bodies."""
     rotation = orientation_matrix(load.orientation) if load.orientation is not None else IDENTITY
     to_rotation = orientation_matrix(load.to_orientation) if load.to_orientation is not None else rotation
     shift = make_elastic(resolver, name, "shift", load.stiffness, load.damping, load.preload)
     turn = make_elastic(resolver, name, "turn", load.turning, load.turning_damping, load.turning_preload)
-    return m.Bushing(resolver.end(load.from_), resolver.end(load.to), shift, turn, rotation, to_rotation)
+    return loads.Bushing(resolver.end(load.from_), resolver.end(load.to), shift, turn, rotation, to_rotation)
 
 
 MEANINGS: dict[str, Callable[..., m.Force]] = {
@@ -145,7 +146,7 @@ def bind_law(resolver: ReferenceResolver, law: Expression | None, path: str, own
 
 def make_elastic(
     resolver: ReferenceResolver, name: str, motion: str, stiffness: Any, damping: Any, preload: m.Vec | None
-) -> m.Elastic[m.Vec]:
+) -> loads.Elastic[m.Vec]:
     """Make the three springs of a bushing's translation or rotation.
 
     motion: "shift" or "turn". An axis without a constant stiffness has a table.
@@ -161,7 +162,7 @@ def make_elastic(
                 resolver.attach_location(law, path), {law.uses[0]: (f"{LOADS}.{name}", f"{motion}_{'xyz'[i]}")}
             )
             extra_load[i] = add_expressions(extra_load[i], law_of_axis)
-    return m.Elastic(
+    return loads.Elastic(
         (numbers[0], numbers[1], numbers[2]),
         expand_to_axes(damping),
         preload,

@@ -9,7 +9,8 @@ import math
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding
-from heuncli.scene.file_format.models import Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import Vec
 
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 

@@ -2,11 +2,9 @@
 
 All functions except orientation_matrix accept any document that could be read, even one with errors.
 
-Make the parts of motors: their torque over speed, and their rotors.
-
-A rotor is a body of its own: a thin disc about the axis of the motor's joint, on a pin in the body `from`, coupled to
-the joint by a ratio. So its inertia, its gyroscopic moments and the reaction of its gear on the housing follow from the
-mechanics of bodies.
+A motor has a torque over speed and a rotor. A rotor is a body of its own: a thin disc about the axis of the motor's
+joint, on a pin in the body `from`, coupled to the joint by a ratio. So its inertia, its gyroscopic moments and the
+reaction of its gear on the housing follow from the mechanics of bodies.
 """
 
 from __future__ import annotations
@@ -25,8 +23,8 @@ from heuncli.scene.file_format import couplings as c
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_joints as fe
 from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format import loads, rotations
 from heuncli.scene.file_format import models as m
-from heuncli.scene.file_format import rotations
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.rotations import unit_vector
 
@@ -46,7 +44,7 @@ ORIENTATIONS: dict[str, tuple[str, ...]] = {
 }
 
 
-def orientation_matrix(value: fs.Orientation) -> m.Matrix:
+def orientation_matrix(value: fs.Orientation) -> loads.Matrix:
     """Return the rotation matrix of an orientation. Raises Finding."""
     given_keys = {key for keys in ORIENTATIONS.values() for key in keys if getattr(value, key) is not None}
     forms = [name for name, keys in ORIENTATIONS.items() if given_keys & set(keys)]
@@ -76,7 +74,7 @@ def orientation_matrix(value: fs.Orientation) -> m.Matrix:
     return rotations.rotation_from_matrix(value.matrix)
 
 
-def inertia_tensor(owner: f.BodyEntry | f.PieceEntry) -> m.Matrix:
+def inertia_tensor(owner: f.BodyEntry | f.PieceEntry) -> loads.Matrix:
     """Return the inertia tensor about the centre of mass: moments on the diagonal, negated deviation moments off it."""
     inertia = owner.inertia
     if isinstance(inertia, float):  # planar: a flat body with this moment about z
@@ -250,7 +248,7 @@ def rotor_name(motor: str) -> str:
 class Rotors(NamedTuple):
     """The bodies, joints and couplings that represent the rotors of a scene, by name, and their locations."""
 
-    bodies: dict[str, m.Body[m.Vec, m.Matrix]]
+    bodies: dict[str, m.Body[m.Vec, loads.Matrix]]
     joints: dict[str, m.Joint[str, m.Vec]]
     couplings: dict[str, c.Coupling]
     locations: dict[str, SourceLocation]
@@ -283,7 +281,7 @@ def make_rotors(
     return found
 
 
-def make_disc(name: str, rotor: fe.RotorEntry, axis: m.Vec) -> m.Body[m.Vec, m.Matrix]:
+def make_disc(name: str, rotor: fe.RotorEntry, axis: m.Vec) -> m.Body[m.Vec, loads.Matrix]:
     """Make a thin disc about an axis; its inertia about a diameter is half of that about the axis."""
     n = unit_vector(axis)
     rows: Any = tuple(tuple(0.5 * rotor.inertia * ((i == k) + n[i] * n[k]) for k in range(3)) for i in range(3))

@@ -13,9 +13,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.number_range import are_in_range, range_error
 from heuncli.base.records import record, replace
-from heuncli.base.units import Dimension, parse_unit
+from heuncli.base.units import Dimension, are_in_range, parse_unit, range_error
 from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format.columns import (

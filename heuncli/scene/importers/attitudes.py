@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import math
 
-from heuncli.scene.file_format.models import Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import Vec
 from heuncli.scene.file_format.rotations import matrix_product
 
 EPS = 2.220446049250313e-16

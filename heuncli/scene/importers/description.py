@@ -11,15 +11,10 @@ these axes, by the attitude of the part at that zero (attitudes.py).
 All numbers are SI. A remark is one comment line for the reader of the spec: the name in the file, data that a spec
 cannot hold, a repair. It may hold foreign text; the writer escapes it.
 
-The options of `heun import`, for all formats. `ModelReader.options` says which of them a format supports.
+`ModelReader.options` says which options of `heun import` a format supports.
 
-Turn names from other programs' files into valid spec names: a letter, then letters, digits and _; unique and not
-reserved.
-
-A valid name, in any script, stays as it is. In others, invalid characters become _, and a number is appended where two
-names would be equal.
-
-Explain how to move an imported machine, in the comments at the head of its spec; the same words for all formats.
+A spec name is a letter, then letters, digits and _, unique and not reserved. A valid name, in any script, stays as it
+is. In others, invalid characters become _, and a number is appended where two names would be equal.
 """
 
 from __future__ import annotations
@@ -33,7 +28,8 @@ from typing import Any
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.expressions.names import RESERVED
-from heuncli.scene.file_format.models import Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import Vec
 from heuncli.scene.file_format.names import CAUSE_NAMES, GROUND, is_name
 from heuncli.scene.file_format.source import WORD_VALUES
 

@@ -11,7 +11,7 @@ import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from heuncli.base.text_safety import escape
-from heuncli.scene.file_format.models import Matrix
+from heuncli.scene.file_format.loads import Matrix
 from heuncli.scene.file_format.source import parse_plain_scalar
 from heuncli.scene.importers.description import (
     DescribedBody,

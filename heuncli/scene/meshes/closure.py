@@ -1,14 +1,12 @@
 """Make triangles a closed surface: merge their corners, check that it is closed, find its inside, count its shells.
 
-Check that triangles form a closed surface, find its inside, and count its shells.
+Closed means that every edge is used once in each direction. Then each shell has an inside, of positive volume if its
+triangles are counter-clockwise from outside. A shell that lies in no other bounds material; one that lies in another is
+a hole. The number of times that a shell encloses a point is its solid angle there over 4 pi (van Oosterom, Strackee,
+1983).
 
-Closed: every edge is used once in each direction. Then each shell has an inside, of positive volume if its triangles
-are counter-clockwise from outside. A shell that lies in no other bounds material; one that lies in another is a hole.
-The number of times that a shell encloses a point is its solid angle there over 4 pi (van Oosterom, Strackee, 1983).
-
-Merge corners that are the same: first those of equal coordinates, then those closer than the digits of a float32.
-
-STL gives every triangle corners of its own. If programs round them twice, they differ in the last digit.
+Corners of equal coordinates are merged first, then those closer than the digits of a float32: STL gives every triangle
+corners of its own. If programs round them twice, they differ in the last digit.
 """
 
 from __future__ import annotations

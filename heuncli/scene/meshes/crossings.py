@@ -13,11 +13,10 @@ decided where every face is moved inward by near/2 (`move_faces_inward`): then f
 anything deeper by 3 near, a needle by 6, still crosses. The planes of triangles that are narrow against near are
 rotated by rounding: they are not used, but their edges are.
 
-Find pairs of overlapping boxes among many, down a tree of boxes, all pairs of a level at once.
-
-The boxes are sorted along a space-filling curve (Morton, 1966), and groups of them are put into larger ones. A pair of
-nodes whose boxes overlap is followed to the pairs of their members. The members of nodes are stored in columns (the
-first of each node, the second of each and so on), so that all pairs are tested in one coordinate at a time.
+Pairs that may cross are those of overlapping boxes, found down a tree of boxes, all pairs of a level at once. Boxes are
+sorted along a space-filling curve (Morton, 1966), and groups of them are put into larger ones. A pair of nodes whose
+boxes overlap is followed to the pairs of their members. The members of nodes are stored in columns (the first of each
+node, the second of each and so on), so that all pairs are tested in one coordinate at a time.
 """
 
 from __future__ import annotations

@@ -1,14 +1,9 @@
 """Read the formats STL and OBJ; the numbers, faces and errors that all formats share.
 
-Parse numbers from the words of a mesh file, and make the error for a file that cannot be read.
+OBJ has corners `v x y z` and faces `f 1 2 3` with corner numbers from 1, or -1 for the last one; the rest is ignored. A
+face with more corners is divided into triangles from its first corner, as drawing programs do.
 
-Divide faces of three and more corners into triangles from the first corner.
-
-Read OBJ: corners `v x y z`, faces `f 1 2 3` with corner numbers from 1, or -1 for the last one; the rest is ignored.
-
-A face with more corners is divided into triangles from its first corner, as drawing programs do.
-
-Read STL: triangles without topology; binary, each corner three float32, or as text.
+STL has triangles without topology; binary, each corner three float32, or as text:
 
     80 bytes, count (uint32), count times: normal, three corners (12 float32), 2 bytes         little-endian
     solid NAME  facet normal x y z  outer loop  vertex x y z (three times)  endloop  endfacet ...  endsolid NAME

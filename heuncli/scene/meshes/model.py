@@ -4,9 +4,8 @@
 of the tetrahedra between a point and the triangles a, b, c, counter-clockwise from outside; here the point is the
 middle of the surface, so that a surface far from the origin loses no digits.
 
-Move the faces of a surface slightly inward: faces that touched become separate, those that cross still do.
-
-A corner moves against the mean of the normals around it, weighted by the angles there (Thuermer, Wuethrich, 1998), so
+Where the faces of a surface are moved slightly inward, those that touched become separate, those that cross still do. A
+corner moves against the mean of the normals around it, weighted by the angles there (Thuermer, Wuethrich, 1998), so
 that the mean depends on the surface and not on its triangulation. It moves so far that each face there moves by the
 given distance.
 """

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from heuncli.base.errors import Finding
-from heuncli.base.number_range import are_in_range
+from heuncli.base.units import are_in_range
 from heuncli.scene.meshes.closure import (
     coordinate_resolution,
     find_edge_neighbours,

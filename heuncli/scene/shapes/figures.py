@@ -4,10 +4,7 @@ Beam theory assumes cuts perpendicular to the bar: then a cylinder, tube or cone
 rectangle, and a sphere always a circle. For an oblique cut the result only says whether the plane meets the shape, and
 why the figure is unknown.
 
-The kinds of figures in which planes cut a shape: circles and rings, rectangles, other outlines, or unknown.
-
-Compute the properties of the outlines in which planes cut a body of triangles: polygons with holes, by Green's
-theorem.
+A body of triangles is cut in polygons with holes; their properties follow from Green's theorem:
 
     A = sum c/2     Sx = sum (x + x') c/6     Ixx = sum (x x + x x' + x' x') c/12     c = x y' - x' y
 over the edges from (x, y) to (x', y') with the inside to their left; higher ones likewise. About the centroid I1 = Iyy,

@@ -2,7 +2,7 @@
 
 Only for a warning: two figures closer to each other than 1e-3 of their size count as one.
 
-Find which triangles of a closed surface parallel planes cross, and where.
+Parallel planes cross some of the triangles of a closed surface:
 
     X (3, n)   corners, the third coordinate along the planes' normal        D (k,)   heights of the planes, ascending
 A corner is above a plane or not; one exactly in the plane is not, as if the plane lay slightly higher. All triangles

@@ -1,8 +1,7 @@
 """Rotations as 3x3 matrices and unit quaternions (w, x, y, z). R takes components in rotated axes to the fixed axes.
 
-Compute with vectors of bodies at many instants component by component: few long sums in place of many short ones.
-
-Vectors are (n, 3, n_t) and matrices (n, 3, 3, n_t) for n bodies, while elsewhere instants come first. A sum over three
+Vectors of bodies at many instants are computed component by component: few long sums in place of many short ones.
+They are (n, 3, n_t) and matrices (n, 3, 3, n_t) for n bodies, while elsewhere instants come first. A sum over three
 components is then three loops over all instants. Products are summed in a fixed order, that of NumPy's einsum for (n_t,
 n, 3).
 """

@@ -5,9 +5,8 @@
 A point or a rod can lie in a plane; `side` (k,) then decides: +1 the plane is just before it (it belongs to the piece),
 -1 just behind it (it does not), 0: half of it does.
 
-Integrate functions that are smooth between known breaks: Gauss-Legendre on each interval, halved if needed.
-
-All functions handle many integrals at once, one for each of k cuts.
+Functions that are smooth between known breaks are integrated by Gauss-Legendre on each interval, halved if needed; they
+handle many integrals at once, one for each of k cuts.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_a
 from heuncli.loads.kinetostatics.energy import system_vector
 from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, foundation_block, make_element_keys
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_block
-from heuncli.multibody.mechanism.model import GROUND, BushingLoad, JointLoad, PairLoad
+from heuncli.multibody.mechanism.loads import GROUND, BushingLoad, JointLoad, PairLoad
 from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
@@ -51,7 +51,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings
         }
     if SHARES in reports:
-        from heuncli.study.compose.cause_shares import add_shares  # few runs need them
+        from heuncli.study.solve.cause_shares import add_shares  # few runs need them
 
         add_shares(blocks_by_name, recovery.shares, mechanism, states, recovery.setup.moment_point)
     axes = recovery.setup.selection.axes

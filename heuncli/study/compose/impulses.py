@@ -24,16 +24,9 @@ from heuncli.motion.integration.diagnosis.solvability import ErrorWording, requi
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import Columns
+from heuncli.results.path_words import BY_CAUSE, IMPULSE_UNITS
 from heuncli.results.results import Array, Block, DeterminateSum
-from heuncli.results.results_schema import (
-    BY_CAUSE,
-    IMPULSE_UNITS,
-    IMPULSES,
-    ROWS,
-    SECTION_FORCES,
-    SECTION_MOMENTS,
-    SHARES,
-)
+from heuncli.results.results_schema import IMPULSES, ROWS, SECTION_FORCES, SECTION_MOMENTS, SHARES
 from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import Recovery, find_determinate_sums
 from heuncli.study.model.setup import Setup

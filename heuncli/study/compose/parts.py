@@ -26,15 +26,14 @@ import numpy as np
 
 from heuncli.base.errors import SolveError
 from heuncli.loads.kinetostatics.foundation import inertia_loads, is_zero_force, largest_force
+from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array
-from heuncli.results.results_schema import find_quantity
 from heuncli.results.stored_arrays import ArrayStore, StoredArray
-from heuncli.study.compose.accuracy import Balance
+from heuncli.study.compose.accuracy import Balance, require_finite_blocks
 from heuncli.study.compose.blocks import make_requested_blocks
-from heuncli.study.compose.finiteness import require_finite_blocks
 from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.compose.results import ComposedInstants
-from heuncli.study.model.memory_estimate import can_compose_in_parts, count_numbers_per_instant
+from heuncli.study.model.options import can_compose_in_parts, count_numbers_per_instant
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
 

@@ -32,7 +32,7 @@ from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, 
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import PairLoad
+from heuncli.multibody.mechanism.loads import PairLoad
 from heuncli.results.results import Array, Block, DeterminateSum, Magnitudes, Mask
 from heuncli.results.results_schema import IMPULSES, SHARED_BLOCKS
 from heuncli.study.model.setup import Setup
@@ -58,7 +58,7 @@ class Recovery:
     given_actions: actions from outside that are no loads of the mechanism: impulses
     causes: the names of the kernel's columns, where these are not those of the mechanism
     skips_indeterminacy_search: indeterminate components at these instants follow from those on either side
-    (study/search/open_between.py), and are not searched for
+    (study/compose/unknown_numbers.py), and are not searched for
     state_instants: for a state and its perturbed copy, the intermediate results already known
     """
 

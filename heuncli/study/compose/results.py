@@ -13,13 +13,17 @@ from heuncli.kernel.choose import KERNEL
 from heuncli.motion.integration.integrated_scene import note_fallback_to_integration
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_schema import IMPULSES
-from heuncli.study.compose.accuracy import Balance, make_accuracy
+from heuncli.study.compose.accuracy import Balance, make_accuracy, require_finite
 from heuncli.study.compose.blocks import make_requested_blocks
-from heuncli.study.compose.finiteness import require_finite
 from heuncli.study.compose.recovery import Recovery, find_determinate_sums
-from heuncli.study.compose.smoothed_friction import describe_partial_samples, has_smoothed_friction
-from heuncli.study.compose.warnings import collect_warnings, make_status, warn_near_singular
-from heuncli.study.model.method_choice import explain_restart
+from heuncli.study.compose.warnings import (
+    collect_warnings,
+    describe_partial_samples,
+    has_smoothed_friction,
+    make_status,
+    warn_near_singular,
+)
+from heuncli.study.model.model_note import explain_restart
 from heuncli.study.model.selection import select_sums
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
@@ -27,7 +31,7 @@ from heuncli.version import VERSION
 
 if TYPE_CHECKING:  # loaded only if there are impulses
     from heuncli.study.compose.impulses import Impulses
-    from heuncli.study.compose.near_singular import OpenMarker
+    from heuncli.study.compose.unknown_numbers import OpenMarker
 
 
 class ComposedInstants(NamedTuple):
@@ -110,7 +114,7 @@ def make_known_blocks(
     if history.checked_run is None or not recovery.setup.scene.layout.rows:
         return make_requested_blocks(recovery, reports), np.zeros(0)
     # only closed chains have singular poses
-    from heuncli.study.compose.near_singular import make_blocks_without_unknown
+    from heuncli.study.compose.unknown_numbers import make_blocks_without_unknown
 
     return make_blocks_without_unknown(recovery, reports, history.checked_run.run, history.jumps, open_marker)
 
@@ -119,31 +123,41 @@ def warn_of_wheels(setup: Setup, history: History, blocks: Block, impulses: Impu
     """Warn of wheels that lift or slip where no event covers it."""
     if not setup.spec.rolling:
         return ()
-    from heuncli.study.compose.wheels import warn_at_impulses, warn_at_instant  # few scenes have them
+    from heuncli.study.compose.scene_warnings import (  # few scenes have them
+        warn_of_wheels_at_impulses,
+        warn_of_wheels_at_instant,
+    )
 
-    instant_warnings = warn_at_instant(setup.spec, blocks.get("couplings", {})) if history.checked_run is None else ()
-    return (*instant_warnings, *(warn_at_impulses(setup.spec, impulses) if impulses is not None else ()))
+    instant_warnings = (
+        warn_of_wheels_at_instant(setup.spec, blocks.get("couplings", {})) if history.checked_run is None else ()
+    )
+    return (*instant_warnings, *(warn_of_wheels_at_impulses(setup.spec, impulses) if impulses is not None else ()))
 
 
 def warn_of_threads(setup: Setup, impulses: Impulses | None) -> tuple[str, ...]:
     """Warn of threads that transmit impulses."""
     if impulses is None or not any(own.type == "screw" for own in setup.spec.couplings.values()):
         return ()
-    from heuncli.study.compose.threads import warn_at_impulses  # few scenes have them
+    from heuncli.study.compose.scene_warnings import warn_of_threads_at_impulses  # few scenes have them
 
-    return tuple(warn_at_impulses(setup.spec, impulses))
+    return tuple(warn_of_threads_at_impulses(setup.spec, impulses))
 
 
 def warn_of_belts(setup: Setup, recovery: Recovery, blocks: Block, impulses: Impulses | None) -> tuple[str, ...]:
     """Warn of belts that would push where no event covers it."""
     if not any(own.type == "belt" for own in setup.spec.couplings.values()):
         return ()
-    from heuncli.study.compose.belts import warn_at_impulses, warn_at_instant  # few scenes have them
+    from heuncli.study.compose.scene_warnings import (  # few scenes have them
+        warn_of_belts_at_impulses,
+        warn_of_belts_at_instant,
+    )
 
     largest = recovery.load_magnitudes.by_unit["N"]
     has_one_instant = setup.spec.analysis.type != "motion"
-    instant_warnings = warn_at_instant(setup.spec, blocks.get("couplings", {}), largest) if has_one_instant else ()
-    return (*instant_warnings, *(warn_at_impulses(setup.spec, impulses) if impulses is not None else ()))
+    instant_warnings = (
+        warn_of_belts_at_instant(setup.spec, blocks.get("couplings", {}), largest) if has_one_instant else ()
+    )
+    return (*instant_warnings, *(warn_of_belts_at_impulses(setup.spec, impulses) if impulses is not None else ()))
 
 
 def find_impulses(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:
@@ -184,7 +198,7 @@ def make_acceleration_note(recovery: Recovery) -> Block:
     """Make the entry on a state that its loads set in motion."""
     if recovery.setup.spec.analysis.type != "state":
         return {}
-    from heuncli.study.compose.accelerating_bodies import describe_accelerations  # not for motions
+    from heuncli.study.compose.scene_warnings import describe_accelerations  # not for motions
 
     found = describe_accelerations(recovery)
     return {"moves": found} if found else {}

@@ -12,14 +12,14 @@ import numpy as np
 
 from heuncli.base.errors import LimitError, SolveError
 from heuncli.base.method_rows import find_method
+from heuncli.base.sentences import format_count
 from heuncli.motion.integration.check.runs import Runs, try_fewer_stages
 from heuncli.motion.integration.integrated_scene import find_discontinuities
 from heuncli.motion.integration.methods.method import Method
 from heuncli.motion.integration.run.kernel_loop import depends_on_state
 from heuncli.motion.integration.run.request import EventfulRun, MotionTask, StiffRun, StoppingRules
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.study.model.counts_and_lists import format_count
-from heuncli.study.model.method_choice import is_smooth
+from heuncli.study.model.model_note import is_smooth
 from heuncli.study.model.setup import Setup
 
 TRIAL_SHARE = 0.1  # of the run, for the trial

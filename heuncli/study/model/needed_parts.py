@@ -12,10 +12,10 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from heuncli.base.records import fields
+from heuncli.base.sentences import list_some
 from heuncli.results.results_schema import EVENTS, IMPULSES, SHARES
 from heuncli.scene.expressions.programs import Expression, is_load_name, is_point_name
 from heuncli.scene.file_format.models import Condition, End, Spec
-from heuncli.study.model.counts_and_lists import list_some
 from heuncli.study.model.selection import Selection, list_entries
 
 Ends = Mapping[str, Mapping[str, set[str]]]

@@ -9,7 +9,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.loads.equilibrium.pose import make_bearing_pose
+from heuncli.base.sentences import MAX_NAMES, format_count, list_some
+from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose
 from heuncli.loads.equilibrium.search import RestSearch
 from heuncli.loads.equilibrium.slopes import separate_indifferent
 from heuncli.loads.equilibrium.steady_states import (
@@ -28,6 +29,8 @@ from heuncli.loads.equilibrium.verification import (
     perturbed_states,
     require_at_rest,
 )
+from heuncli.loads.kinetostatics.bodies import make_body_states
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.linearisation.displacements import find_displacement
@@ -37,8 +40,33 @@ from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Status
-from heuncli.study.model.counts_and_lists import MAX_NAMES, format_count, list_some
-from heuncli.study.model.other_pose import describe_other_pose
+
+UNITS = {"angle": "rad", "travel": "m"}
+MIN_DIFFERENCE = 1e-3  # rad, or parts of the size: smaller differences are not shown
+
+
+def describe_other_pose(layout: Layout, here: Pose, there: Pose) -> str:
+    """Describe the differences of the pose `there` from `here`, the largest first."""
+    own_coordinates, other_coordinates = (
+        evaluate_joint_coordinates(layout, at.evaluation, make_body_states(layout, at.evaluation))
+        for at in (here, there)
+    )
+    differences: list[tuple[float, str]] = []
+    for joint, values in other_coordinates.items():
+        for name, unit in UNITS.items():
+            if name in values:
+                value = float(values[name][0])
+                difference = abs(value - float(own_coordinates[joint][name][0])) / (layout.size if unit == "m" else 1.0)
+                differences.append((difference, f"{joint}.{name} = {value:.6g} {unit}"))
+    centres, other_centres = (make_body_states(layout, at.evaluation).centre[0] for at in (here, there))
+    bodies = [body.name for body in layout.mechanism.bodies]
+    if max((difference for difference, _ in differences), default=0.0) <= MIN_DIFFERENCE:
+        for name, c, d in zip(bodies, centres, other_centres, strict=True):
+            x, y, z = d
+            differences.append((float(np.abs(d - c).max()) / layout.size, f"{name} at ({x:.6g}, {y:.6g}, {z:.6g}) m"))
+    return list_some(
+        [text for difference, text in sorted(differences, key=lambda each: -each[0]) if difference > MIN_DIFFERENCE]
+    )
 
 
 @record

@@ -9,8 +9,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from heuncli.base.records import record
+from heuncli.results.path_words import names_shares, split_leading_key
 from heuncli.results.results import DeterminateSum
-from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES, find_report, names_shares, split_leading_key
+from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES, find_report
 from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
 
 EntryKeys = tuple[str, ...]

@@ -1,14 +1,17 @@
-"""Set up a spec to be solved: build, cut, assemble and lay out the scene, and describe the model made of it."""
+"""Set up a spec to be solved: build, cut, assemble and lay out the scene; find the entry at fault where that fails."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.errors import SolveError
+from heuncli.base.errors import Problem, SolveError, SourceLocation
 from heuncli.base.method_rows import AUTO
 from heuncli.base.records import record, replace
 from heuncli.loads.redundancy.count import count_redundancy
@@ -26,11 +29,17 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.couplings import Rope
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.method_choice import choose_first_method, explain_method
-from heuncli.study.model.model_note import add_rest_sentences, describe_attitudes, describe_reductions, make_model_block
+from heuncli.study.model.model_note import (
+    add_rest_sentences,
+    choose_first_method,
+    describe_attitudes,
+    describe_reductions,
+    explain_method,
+    make_model_block,
+)
 from heuncli.study.model.selection import EVERYTHING, Selection
 
-if TYPE_CHECKING:  # loaded where a scene has sections
+if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.cuts import Cuts
     from heuncli.loads.redundancy.self_stress import CachedStress
     from heuncli.multibody.tree.layout import Layout
@@ -222,3 +231,35 @@ def build_with_cuts(spec: Spec, stages: Stages = NO_CACHE) -> tuple[Mechanism, t
     from heuncli.loads.kinetostatics.cuts import make_cuts  # with the shapes 9 ms that other scenes do not need
 
     return mechanism, make_cuts(mechanism, spec, forms)
+
+
+ENTRY_PATH = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|couplings|rolling|sections|analysis)\.\w+")
+# problems with impulses give the bare name of an entry
+IMPULSE_BLOCKS = ("impulses", "stops", "latches", "joints", "drives", "couplings", "rolling")
+BLOCK_BY_CODE = {"contacts-undecided": "stops"}  # for problems that name no entry
+FALLBACK = "analysis"  # the location of problems without any other
+
+
+@contextmanager
+def attach_locations(spec: Spec) -> Iterator[None]:
+    """Add to every problem of a SolveError raised within the context its location in the spec."""
+    try:
+        yield
+    except SolveError as error:
+        error.replace_problems(*(problem._replace(location=find_location(problem, spec)) for problem in error.problems))
+        raise
+
+
+def find_location(problem: Problem, spec: Spec) -> SourceLocation:
+    """Return the location of the entry that a problem is about, or of the first that its text names, or of the
+    analysis.
+    """
+    if problem.location is not None:
+        return problem.location
+    candidates = (
+        problem.entry_path,
+        *(f"{block}.{problem.entry_path}" for block in IMPULSE_BLOCKS),
+        BLOCK_BY_CODE.get(problem.code, ""),
+    )
+    paths = (*candidates, *ENTRY_PATH.findall(f"{problem.message} {problem.hint}"), FALLBACK)
+    return spec.location(next((path for path in paths if path in spec.locations), "bodies"))

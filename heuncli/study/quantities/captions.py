@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.results.path_words import POSITION_WORD, is_cut_word, split_path
-from heuncli.results.results_schema import CUT, IMPULSES, NAMES, ROWS, SHARES, TREE, Node, Quantity
+from heuncli.results.path_words import NAMES, POSITION_WORD, TREE, Node, is_cut_word, split_path
+from heuncli.results.results_schema import CUT, IMPULSES, ROWS, SHARES, Quantity
 from heuncli.scene.file_format.labels import GROUND
 from heuncli.study.quantities.labels import Labels
 

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.path_words import TREE, Node, error_kind_of_path, find_child  # fmt: skip
 from heuncli.results.results import Array, Block, Results
 from heuncli.results.results_paths import PathValues
 from heuncli.results.results_schema import (
@@ -32,16 +33,12 @@ from heuncli.results.results_schema import (
     SPACE,
     STRESSES,
     TILTING_MOMENTS,
-    TREE,
     XYZ,
-    Node,
     Quantity,
     Shape,
-    error_kind_of_path,
-    find_child,
     find_row,
     is_share,
-)  # fmt: skip
+)
 from heuncli.results.stored_arrays import StoredArray
 from heuncli.study.quantities.labels import Labels
 

@@ -19,8 +19,9 @@ from typing import Literal
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.path_words import BY_CAUSE
 from heuncli.results.results import Array, Magnitudes, Results
-from heuncli.results.results_schema import BY_CAUSE, ESTIMATE_OF_ERROR_KIND
+from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
 from heuncli.study.quantities.labels import DEFAULT_UNITS, Labels
 from heuncli.study.quantities.table_units import Units
@@ -235,3 +236,24 @@ def write_times(times: Sequence[float], span: float) -> list[str]:
 def format_error(value: float) -> str:
     """Format an error to one digit: `3e-11`, `0`."""
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") if value else "0"
+
+
+MAX_DIGITS = 10  # digits
+LARGE_ALONE, SMALL_ALONE = 1e10, 1e-4  # beyond these with an exponent
+
+
+def format_with_error(value: float, error: float) -> str:
+    """Format a number so that its last digit is that of the error's first; without an error with up to MAX_DIGITS
+    digits.
+    """
+    if not math.isfinite(value):
+        return "unbounded"
+    if value == 0.0:
+        return "0"
+    if error <= 0.0:
+        return f"{value:.{MAX_DIGITS}g}"
+    lead = math.floor(math.log10(abs(value)))
+    last = min(max(math.floor(math.log10(error)), lead - MAX_DIGITS + 1), lead)
+    if not SMALL_ALONE <= abs(value) < LARGE_ALONE or last > 0:
+        return f"{value:.{lead - last}e}"
+    return f"{value:.{-last}f}"

@@ -12,8 +12,8 @@ from heuncli.base.errors import Problem, SolveError, UsageError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
 from heuncli.results.results import Array, Block
+from heuncli.study.model.options import require_within_run
 from heuncli.study.queries.measure import MeasureRequest, NotOneNumber, find_exceeded_horizon, find_peak
-from heuncli.study.queries.option_values import require_within_run
 from heuncli.study.queries.study import Study
 
 EXTREMES: dict[str, Literal["abs", "max", "min"]] = {"peak": "abs", "max": "max", "min": "min"}

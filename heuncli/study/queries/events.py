@@ -20,15 +20,10 @@ from heuncli.base.errors import SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.motion.integration.check.changes import ConditionChanges, impulse_time_differences
+from heuncli.results.path_words import error_kind_of_path, find_quantity
 from heuncli.results.results import Array, Block, Results, Status
 from heuncli.results.results_paths import find_values
-from heuncli.results.results_schema import (
-    ESTIMATE_OF_ERROR_KIND,
-    EVENTS,
-    SHARES,
-    error_kind_of_path,
-    find_quantity,
-)
+from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND, EVENTS, SHARES
 from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
 from heuncli.scene.file_format.resolve_couplings import format_rounded_up
 from heuncli.study.compose.recovery import recover
@@ -211,7 +206,7 @@ class WatchedNumber(NamedTuple):
             values = values * values
         if not self.is_along_cuts:
             return values.reshape(len(times))
-        from heuncli.study.search.stretches import compute_envelope
+        from heuncli.study.search.cuts import compute_envelope
 
         return np.asarray(compute_envelope(values)[:, int(self.condition.is_above)])
 
@@ -263,7 +258,7 @@ def watch_number(
     )
     channel = make_path_channel(numbers)
     if channel.has_cuts:
-        from heuncli.study.search.stretches import replace_runs
+        from heuncli.study.search.cuts import replace_runs
 
         setup = replace_runs(setup, channel.is_nonlinear)
     return WatchedNumber(study, setup, condition, channel.is_magnitude, channel.has_cuts), numbers.keys

@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.results import results_schema
+from heuncli.results import path_words, results_schema
 from heuncli.results.results import Array, CutPosition, Results
 from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import (
@@ -61,7 +61,7 @@ def find_reports(path: str) -> frozenset[str] | None:
     """Return the reports that a path needs; None if its first word does not say."""
     words = path.split(".")
     report = results_schema.find_report(words[0])
-    return frozenset({report, SHARES} if results_schema.names_shares(words) else {report}) if report else None
+    return frozenset({report, SHARES} if path_words.names_shares(words) else {report}) if report else None
 
 
 def measure_value(request: MeasureRequest, study: Study) -> Peak:
@@ -143,7 +143,7 @@ def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) 
 
 def measure_impulse_along_cuts(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
     """Return the extreme of one impulse along a series of cuts, over its whole length."""
-    from heuncli.study.search.stretches import find_cut_extremes, find_stretch  # where there are series of cuts
+    from heuncli.study.search.cuts import find_cut_extremes, find_stretch  # where there are series of cuts
 
     setup = study.with_whole_cuts(False)
     whole = replace(study.results, impulses=study.make_impulse_blocks(setup))

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 from heuncli.base import tolerances
 from heuncli.base.records import replace
-from heuncli.results.path_words import split_path
-from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, MAGNITUDES, error_kind_of_path, find_quantity
+from heuncli.results.path_words import error_kind_of_path, find_quantity, split_path
+from heuncli.results.results_schema import CUT, EVENTS, IMPULSES, MAGNITUDES
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.selection import list_entries, split_entry
 from heuncli.study.quantities.digits import find_load_error, find_stated_errors, is_load

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -14,22 +15,28 @@ from heuncli.results.results import Accuracy, Array, Block, CutPosition, Extreme
 from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import REPORTS, SHARED_BLOCKS, SHARES, add_shared_reports
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.compose.finiteness import require_finite
+from heuncli.study.compose.accuracy import require_finite
 from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.compose.results import compose, make_known_blocks
-from heuncli.study.compose.warnings import warn_left_out
+from heuncli.study.compose.warnings import (
+    PartialFriction,
+    depends_on_friction,
+    describe_partial,
+    has_smoothed_friction,
+    list_partial_friction,
+    warn_left_out,
+)
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
-from heuncli.study.search.columns import ChannelSearch, StudyColumns
-from heuncli.study.search.instants import MAX_INSTANTS as MOST_INSTANTS
-from heuncli.study.search.instants import choose_search_times
+from heuncli.study.search.columns import MAX_INSTANTS as MOST_INSTANTS
+from heuncli.study.search.columns import ChannelSearch, StudyColumns, choose_search_times
 from heuncli.study.solve.history import History, resample
 
-if TYPE_CHECKING:  # loaded only if there are conditions or impulses
+if TYPE_CHECKING:
     from heuncli.motion.integration.check.changes import ConditionChanges
     from heuncli.study.compose.impulses import Impulses
-    from heuncli.study.compose.near_singular import OpenMarker
+    from heuncli.study.compose.unknown_numbers import OpenMarker
 
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NONE: frozenset[str] = frozenset()
@@ -110,7 +117,7 @@ class Study:
         """
         times, is_enough = choose_search_times(self.setup, self.history, most)
         if self.setup.cuts and len(times) > 1:
-            from heuncli.study.search.passages import find_passages, has_moving_joints  # where there are sections
+            from heuncli.study.search.cuts import find_passages, has_moving_joints  # where there are sections
 
             if has_moving_joints(self.setup):
                 times = extremes.sort_distinct(
@@ -160,7 +167,7 @@ class Study:
         """
         if not any(cuts.s is not None for cuts in self.setup.cuts):
             return []
-        from heuncli.study.search.stretches import find_impulse_extremes  # only series of cuts are worth it
+        from heuncli.study.search.cuts import find_impulse_extremes  # only series of cuts are worth it
 
         setup = self.with_whole_cuts(False)
         return [find_impulse_extremes(setup, block) for block in self.make_impulse_blocks(setup)]
@@ -219,7 +226,7 @@ class Study:
 
     def compute_shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
         """Return the loads by cause of a series of cuts at other instants, (n,) ascending, cut at some places."""
-        from heuncli.study.search.stretches import cut_at_places
+        from heuncli.study.search.cuts import cut_at_places
 
         return self.compute_reports(times, frozenset({"sections", SHARES}), cut_at_places(self.setup, name, places))
 
@@ -238,7 +245,7 @@ class Study:
         """Return the setup with its series of cuts as whole lengths; bent: for numbers that are no polynomial of the
         loads.
         """
-        from heuncli.study.search.stretches import replace_runs  # only series of cuts are worth it
+        from heuncli.study.search.cuts import replace_runs  # only series of cuts are worth it
 
         return replace_runs(self.setup, bent)
 
@@ -291,3 +298,23 @@ class Study:
         if not bounds.is_complete:
             self.later_warnings[CUT_SHORT] = None
         return bounds
+
+
+def find_partial_friction(study: Study, times: Iterable[float]) -> dict[float, list[PartialFriction]]:
+    """Return the friction that is below its full value, by instant; instants without any are left out."""
+    mechanism = study.setup.scene.mechanism
+    instants = np.array(sorted({t for t in times if math.isfinite(t)}))
+    if not len(instants) or not has_smoothed_friction(mechanism) or study.setup.rest is not None:
+        return {}
+    if study.has_one_instant:
+        instants = study.results.time
+    return list_partial_friction(mechanism, study.find_recovery(instants, NONE).solutions)
+
+
+def make_friction_warning(study: Study, path: str, time: float | None) -> str | None:
+    """Return the warning on a number that depends on friction below its full value at an instant, or None."""
+    if time is None or not depends_on_friction(path):
+        return None
+    found = find_partial_friction(study, [time])
+    partial = next(iter(found.values()), None)
+    return f"{path} at t = {time:.6g} s: {describe_partial(partial)}" if partial else None

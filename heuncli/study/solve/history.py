@@ -29,10 +29,10 @@ from heuncli.motion.integration.run.interruptions import solve_single_instant
 from heuncli.motion.integration.run.request import EventfulRun, StiffRun
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, PairLoad
 from heuncli.results.results import Array, ErrorEstimate
 from heuncli.scene.expressions.discontinuities import pair_adjacent_instants
-from heuncli.study.model.memory_estimate import MemoryBudget, require_memory_for_steps
+from heuncli.study.model.options import MemoryBudget, require_memory_for_steps
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.load_errors import ComparedInstants, LoadErrors
 from heuncli.study.solve.singular_start import require_motion

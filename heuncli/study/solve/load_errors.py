@@ -35,13 +35,23 @@ from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, 
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.size import extent_points
+from heuncli.results.path_words import BY_CAUSE, TRAVELS
 from heuncli.results.results import Array, ErrorEstimate, Mask
-from heuncli.results.results_schema import BY_CAUSE, IMPULSES, TRAVELS
+from heuncli.results.results_schema import IMPULSES
 from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.balance_terms import BalanceTerms
-from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative_error
-from heuncli.study.solve.motion_errors import MOTION_KINDS, compare_attitudes, iter_momentum_quantities
+from heuncli.study.solve.error_extents import (
+    ESTIMATED,
+    MOTION_KINDS,
+    BalanceTerms,
+    Extent,
+    Weights,
+    compare_attitudes,
+    iter_momentum_quantities,
+    lengths,
+    norms,
+    relative_error,
+)
 
 ROW_CHANGE = 1e-6  # of the largest multiplier: indeterminate loads change by more when other rows are chosen
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
@@ -171,7 +181,7 @@ class LoadErrors:
         if "forces" in self.compared:
             self.add_forces(loads, terms)
         if self.by_cause:
-            from heuncli.study.solve.share_errors import iter_compared_shares  # few runs need them
+            from heuncli.study.solve.cause_shares import iter_compared_shares  # few runs need them
 
             pushing = [*applied, *list_rope_actions(couplings)]
             for kind, name, values, factor in iter_compared_shares(

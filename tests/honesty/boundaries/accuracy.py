@@ -14,7 +14,7 @@ from heuncli.motion.integration.check.runs import has_shared_steps
 from heuncli.motion.integration.run.progress import find_hopeless_steps
 from heuncli.output.tables.page import make_page
 from heuncli.study.quantities.labels import make_labels
-from heuncli.study.queries.smoothed_friction import make_friction_warning
+from heuncli.study.queries.study import make_friction_warning
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import bar, read
 from tests.shared.scenes import near, study

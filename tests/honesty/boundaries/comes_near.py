@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from heuncli.analyses.motion_diagnostics.growth import to_results
-from heuncli.analyses.motion_diagnostics.numerics.lyapunov import DisturbanceGrowth
+from heuncli.analyses.motion_diagnostics.lyapunov import DisturbanceGrowth
 from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options

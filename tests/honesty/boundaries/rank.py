@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from heuncli.results.results import Results
-from heuncli.study.compose.near_singular import SAFETY, estimate_errors, find_unknown
+from heuncli.study.compose.unknown_numbers import SAFETY, estimate_errors, find_unknown
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, four_bar, verdict
 from tests.shared.scenes import near

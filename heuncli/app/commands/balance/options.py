@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.balancing.options import BalanceOptions, FlywheelRequest, WeightRequest
+from heuncli.analyses.balancing.results import BalanceOptions, FlywheelRequest, WeightRequest
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import require_choice
 from heuncli.app.commands.balance.request import BalanceRequest

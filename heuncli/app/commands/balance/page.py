@@ -8,9 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.balancing.balance_labels import format_cycle, format_reference_point, get_unit
-from heuncli.analyses.balancing.results import BalanceResults, Counterbalance, CycleLoad, OrderRow, Period
-from heuncli.analyses.balancing.summary import select_largest
+from heuncli.analyses.balancing.results import (
+    BalanceResults,
+    Counterbalance,
+    CycleLoad,
+    OrderRow,
+    Period,
+    format_cycle,
+    format_reference_point,
+    get_unit,
+)
+from heuncli.analyses.balancing.sampling import select_largest
 from heuncli.app.commands.balance.remedies_page import make_remedy_tables
 from heuncli.base.records import replace
 from heuncli.base.tolerances import WRITTEN

@@ -6,9 +6,8 @@ import time
 from collections.abc import Sequence
 from functools import partial
 
-from heuncli.analyses.published.cases import read_case
+from heuncli.analyses.published.cases import list_names, read_case
 from heuncli.analyses.published.comparison import compare_case
-from heuncli.analyses.published.files import list_names
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import UNLIMITED, emit_document
 from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, run_contained, select_exit_code

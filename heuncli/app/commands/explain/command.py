@@ -20,7 +20,7 @@ from heuncli.app.commands.explain.pages import (
 from heuncli.app.commands.explain.request import ExplainRequest
 from heuncli.base.errors import Problem
 from heuncli.base.spelling import find_similar, list_words
-from heuncli.results.results_schema import TREE
+from heuncli.results.path_words import TREE
 
 OTHERS = (
     ("SECTION", 'A section of a page, such as "format stops".'),

@@ -6,17 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 from heuncli.base.spelling import find_similar, list_words
-from heuncli.results.results_schema import (
-    ESTIMATE_OF_ERROR_KIND,
-    IMPULSES,
-    NAMES,
-    REPORT_OF,
-    XYZ,
-    Node,
-    Quantity,
-    error_kind_of_path,
-    find_node,
-)
+from heuncli.results.path_words import NAMES, Node, error_kind_of_path, find_node
+from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND, IMPULSES, REPORT_OF, XYZ, Quantity
 
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 WORLD = "components in world axes"

@@ -27,11 +27,10 @@ from heuncli.output.tables.plurals import format_count
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.study.model.error_places import attach_locations
-from heuncli.study.model.memory_estimate import MemoryBudget
+from heuncli.study.model.options import MemoryBudget, require_positive
 from heuncli.study.model.selection import select_paths
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.queries.at_option import InstantRequest, make_extreme_requests, parse
-from heuncli.study.queries.option_values import require_positive
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 

@@ -7,11 +7,10 @@ from functools import partial
 
 from heuncli.analyses.find.results import IntervalFindings
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.axes import parse_interval
-from heuncli.analyses.variants.conditions import Comparison, parse_condition, resolve_condition
-from heuncli.analyses.variants.course import Sample, make_sample
 from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
-from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.analyses.variants.measures import Comparison, parse_condition, resolve_condition
+from heuncli.analyses.variants.parameters import DesignVariable, parse_interval
+from heuncli.analyses.variants.samples import Sample, make_sample
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file

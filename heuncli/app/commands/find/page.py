@@ -15,16 +15,15 @@ from heuncli.analyses.find.results import (
     UnresolvedBracket,
     UnsolvedStretch,
 )
-from heuncli.analyses.variants.conditions import Comparison
-from heuncli.analyses.variants.course import Sample
+from heuncli.analyses.variants.measures import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.analyses.variants.samples import Sample
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.output.documents.as_csv import make_columns
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputDocument, OutputTable, append_unit
 from heuncli.output.tables.plurals import format_count
-from heuncli.study.quantities.digits import format_error
-from heuncli.study.quantities.error_digits import format_with_error
+from heuncli.study.quantities.digits import format_error, format_with_error
 from heuncli.study.quantities.table_units import Units
 
 DIRECTIONS = {1: "rises", -1: "falls", 0: "at the end"}

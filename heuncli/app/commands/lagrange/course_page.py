@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinate_units import LENGTH, get_units
-from heuncli.analyses.lagrange.results import InertiaCurve
+from heuncli.analyses.lagrange.results import LENGTH, InertiaCurve, get_units
 from heuncli.app.commands.lagrange.page import make_cell
 from heuncli.output.documents.as_csv import make_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinate_units import MIXED_INERTIA_UNIT, get_units
-from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
-from heuncli.analyses.lagrange.section_forces import to_lists
+from heuncli.analyses.lagrange.equations import to_lists
+from heuncli.analyses.lagrange.results import MIXED_INERTIA_UNIT, LagrangeResults, StateSpace, get_units
 from heuncli.base.joint_kinds import is_length
 from heuncli.output.documents.as_csv import make_columns
 from heuncli.output.documents.document import Cell

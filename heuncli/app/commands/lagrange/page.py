@@ -8,9 +8,8 @@ from operator import attrgetter
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinate_units import ANGLE, LENGTH, get_units
-from heuncli.analyses.lagrange.results import LagrangeResults, StateSpace
-from heuncli.analyses.lagrange.section_forces import list_cuts
+from heuncli.analyses.lagrange.equations import list_cuts
+from heuncli.analyses.lagrange.results import ANGLE, LENGTH, LagrangeResults, StateSpace, get_units
 from heuncli.app.commands.lagrange.forms import CSV_COLUMNS, iter_records, to_block
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable, format_head
 from heuncli.results.results import Array

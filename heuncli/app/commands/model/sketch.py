@@ -6,7 +6,7 @@ from heuncli.app.cli.text_figures import render_text, require_width
 from heuncli.app.commands.model.request import ModelRequest
 from heuncli.output.figures.scenes import make_assembly_figure
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 
 
 def render_sketch(spec: Spec, request: ModelRequest) -> str:

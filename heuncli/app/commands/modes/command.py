@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.analyses.modes.exclusion import exclude_entries
-from heuncli.analyses.modes.study import compute_spec_modes
+from heuncli.analyses.modes import compute_spec_modes, exclude_entries
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from heuncli.analyses.published.files import list_names, spec_of
+from heuncli.analyses.published.cases import list_names, spec_of
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.commands.new.request import NewRequest

@@ -25,8 +25,8 @@ from heuncli.scene.file_format.load import load, load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.reading import STANDARD_INPUT
-from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.selection import select_paths
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.queries.at_option import find_requested_times, make_extreme_requests, parse
 from heuncli.study.workflow import solve
 

@@ -12,16 +12,17 @@ from pathlib import PurePath
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.columns import (
+from heuncli.analyses.sweep_rows import (
     CODE,
     NUMBER,
     REASON,
+    SweepHead,
+    SweptRow,
     find_missing_words,
     make_parameter_columns,
     to_cell,
 )
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.sweep_store.store import choose_sweep, open_store, split_store_argument
+from heuncli.analyses.sweep_store import choose_sweep, open_store, split_store_argument
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError

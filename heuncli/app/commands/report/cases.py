@@ -30,10 +30,9 @@ from heuncli.scene.file_format.models import Logo, ReportSettings, Spec
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.reading import STANDARD_INPUT, digest
 from heuncli.scene.file_format.source import read_text
-from heuncli.study.model.error_places import attach_locations
-from heuncli.study.model.memory_estimate import MemoryBudget
-from heuncli.study.model.options import Options
+from heuncli.study.model.options import MemoryBudget, Options
 from heuncli.study.model.selection import Selection, select_paths
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.expectations import compare

@@ -20,7 +20,7 @@ from heuncli.output.tables.collective_tables import CLOSED, make_records, make_t
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.load_cycles.collective import BINS, Collective, Counting
+from heuncli.study.load_collectives import BINS, Collective, Counting
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure import MeasureRequest, NotOneNumber
 from heuncli.study.queries.study import Study

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from heuncli.app.api import read
@@ -19,8 +20,9 @@ from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.snapshots.selection import find_default_reports, parse_choice, select_reports
 from heuncli.output.tables.page import EXPORT_DEFAULT
+from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.study.model.memory_estimate import MemoryBudget
+from heuncli.study.model.options import MemoryBudget
 from heuncli.study.model.selection import Selection, select_paths
 
 if TYPE_CHECKING:
@@ -63,26 +65,17 @@ def main(request: RunRequest) -> int:
     options = replace(
         options, memory_budget=MemoryBudget(*memory.result_memory("table" if measures or collectives else form))
     )
-    if measures:
-        from heuncli.output.snapshots import measure_units
-
-        measure.require_known_paths(measures, spec)
-        measure_units.require_fitting_units(measures, spec, units_shown, request.units)
-    if collectives is not None:
-        from heuncli.app.commands.run.collective import require_paths
-
-        require_paths(collectives, spec)
-    paths = [each.path for each in measures] if collectives is None else collectives.paths
+    paths = _require_paths(request, spec, measures, collectives)
+    is_table = form in TABLES or is_overview
     if request.hardpoints:
         require_choice("--axes", request.axes or "world", (*JOINT_AXES, *spec.bodies))
         selection = Selection(HARDPOINT_REPORTS)
     elif paths:
         selection = select_paths(paths, spec)
     else:
-        is_table = form in TABLES or is_overview
         default = find_default_reports(spec) if is_table or spec.report.results is not None else EXPORT_DEFAULT
         selection = select_reports(only_selection, spec, default, by_cause=request.by_cause)
-    is_export = not (form in TABLES or is_overview or paths) and request.at is None and request.case != ALL_CASES
+    is_export = not (is_table or paths) and request.at is None and request.case != ALL_CASES
     options = replace(options, requested_reports=selection.reports, entries=selection.entries, in_parts=is_export)
     task = RunTask(request, form, options, selection, measures, units_shown, collectives)
     if is_overview:
@@ -109,3 +102,22 @@ def _parse_collectives(request: RunRequest) -> CollectiveTask | None:
     if request.collective is None:
         collective.require_collective(request)
     return collective.parse_task(request)
+
+
+def _require_paths(
+    request: RunRequest, spec: Spec, measures: Sequence[MeasureRequest], collectives: CollectiveTask | None
+) -> Sequence[str]:
+    """Return the paths of the measures or collectives. Raises an error if the spec has no such results, or a unit does
+    not fit.
+    """
+    if measures:
+        from heuncli.output.snapshots import measure, measure_units
+
+        measure.require_known_paths(measures, spec)
+        measure_units.require_fitting_units(measures, spec, parse_units(request.units), request.units)
+    if collectives is None:
+        return [each.path for each in measures]
+    from heuncli.app.commands.run.collective import require_paths
+
+    require_paths(collectives, spec)
+    return collectives.paths

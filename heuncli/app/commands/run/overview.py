@@ -21,7 +21,7 @@ from heuncli.output.summary.summary_document import Summary, make_blocks, make_r
 from heuncli.output.tables.heading import make_heading
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
 

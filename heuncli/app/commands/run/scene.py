@@ -23,9 +23,9 @@ from heuncli.output.tables.heading import make_heading
 from heuncli.results.results import Results
 from heuncli.results.stored_arrays import StoredArray, iter_chunks
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.error_places import attach_locations
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.quantities.labels import Labels, make_labels
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study

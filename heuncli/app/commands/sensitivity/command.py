@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from heuncli.analyses.sensitivity.derivative import compute_derivative
-from heuncli.analyses.sensitivity.results import NoisyDerivative
-from heuncli.analyses.sensitivity.spread_option import parse_spreads
-from heuncli.analyses.sensitivity.tolerance_analysis import NumberSpread, combine_tolerances
+from heuncli.analyses.sensitivity import NoisyDerivative, compute_derivative
+from heuncli.analyses.tolerance_analysis import NumberSpread, combine_tolerances, parse_spreads
 from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue, Reason
 from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from heuncli.analyses.sensitivity.results import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
 from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
@@ -20,8 +20,7 @@ from heuncli.output.documents.document import (
     format_head,
 )
 from heuncli.output.tables.plurals import format_count
-from heuncli.study.quantities.digits import format_error
-from heuncli.study.quantities.error_digits import format_with_error
+from heuncli.study.quantities.digits import format_error, format_with_error
 from heuncli.study.quantities.table_units import Units
 
 COLUMNS = (

@@ -25,7 +25,7 @@ from heuncli.output.web_page.moving_page import render_film_page, render_moving_
 from heuncli.scene.file_format.load import load, load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.study.model.error_places import attach_locations
+from heuncli.study.model.setup import attach_locations
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 

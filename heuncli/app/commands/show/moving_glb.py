@@ -10,7 +10,7 @@ from heuncli.output.machine_geometry.gltf import encode_gltf
 from heuncli.output.machine_geometry.poses import compute_poses, find_up_direction
 from heuncli.output.web_page.geometry import make_page_machine
 from heuncli.study.queries.study import Study
-from heuncli.study.search.instants import find_largest_turns
+from heuncli.study.search.columns import find_largest_turns
 
 WARNING = "--glb: a body rotates up to {:.0f}° between two instants; the animation between them is not accurate"
 

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.analyses.variants.axes import parse_axis_values
-from heuncli.analyses.variants.parameters import CASE, ParameterAxis, RandomVariable
+from heuncli.analyses.variants.parameters import CASE, ParameterAxis, RandomVariable, parse_axis_values
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.names import ALL_CASES

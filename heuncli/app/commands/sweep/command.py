@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from heuncli.analyses.sweep_store.rows import SweepHead
-from heuncli.analyses.sweep_store.store import Store
-from heuncli.analyses.variants.axes import HINT, AxisError
+from heuncli.analyses.sweep_rows import SweepHead
+from heuncli.analyses.sweep_store import Store
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator, varies_cases
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.analyses.variants.measures import MeasureLabel
-from heuncli.analyses.variants.parameters import CASE, ParameterAxis, RandomVariable
+from heuncli.analyses.variants.parameters import CASE, HINT, AxisError, ParameterAxis, RandomVariable
 from heuncli.analyses.variants.plans import Draws, Plan, make_axes_plan
 from heuncli.app.cli import jobs, memory
 from heuncli.app.cli.entry import UsageError
@@ -33,7 +32,7 @@ from heuncli.base.errors import Problem, SpecError
 from heuncli.base.records import replace
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
-from heuncli.study.model.memory_estimate import MemoryBudget
+from heuncli.study.model.options import MemoryBudget
 from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.version import VERSION
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.analyses.variants.draws import SAMPLES_HINT, make_draws, make_imbalance_warning
 from heuncli.analyses.variants.parameters import RandomVariable
-from heuncli.analyses.variants.plans import Draws
+from heuncli.analyses.variants.plans import SAMPLES_HINT, Draws, make_draws, make_imbalance_warning
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.commands.sweep.request import SweepRequest

@@ -10,9 +10,9 @@ import time
 from collections.abc import Generator, Iterator
 from contextlib import closing
 
-from heuncli.analyses.sweep_store.rows import SweepHead
-from heuncli.analyses.sweep_store.store import Store, StoredRows
-from heuncli.analyses.sweep_store.store_file import write_head
+from heuncli.analyses.sweep_rows import SweepHead
+from heuncli.analyses.sweep_store import Store, StoredRows
+from heuncli.analyses.sweep_store_file import write_head
 from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.analyses.variants.measures import VariantResult

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import closing
 
-from heuncli.analyses.sweep_store.store import choose_sweep, format_sweep, open_store, split_store_argument
+from heuncli.analyses.sweep_store import choose_sweep, format_sweep, open_store, split_store_argument
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file
 from heuncli.app.cli.output import print_stderr

@@ -8,10 +8,9 @@ from functools import partial
 from itertools import chain
 
 from heuncli.analyses.tune.results import TuneGoal, TuneTask
-from heuncli.analyses.variants.axes import INTERVAL_HINT, AxisError, parse_interval
-from heuncli.analyses.variants.conditions import WrittenCondition, parse_condition, resolve_condition
 from heuncli.analyses.variants.evaluation import VariantEvaluator
-from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.analyses.variants.measures import WrittenCondition, parse_condition, resolve_condition
+from heuncli.analyses.variants.parameters import INTERVAL_HINT, AxisError, DesignVariable, parse_interval
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import split_spec_and_assignments
 from heuncli.app.commands.tune.request import TuneRequest

@@ -1,19 +1,15 @@
 """Compare two runs of one motion: at which instants, by which distance, and with which impulses in common.
 
-Measure the distance between runs of one motion at the same instants: of their points, and of the angles that they
-count.
-
-The points are those of all bodies, relative to the scene's size. Angles over many turns are compared separately,
-because a small wheel's angle may err by far more than its points. The estimated error is twice the largest distance of
-the first run from any other (estimate.py), plus the rounding error of a position.
-
-Choose the instants at which a run is compared with its check run.
+The distance is that of points and of counted angles. The points are those of all bodies, relative to the scene's size.
+Angles over many turns are compared separately, because a small wheel's angle may err by far more than its points. The
+estimated error is twice the largest distance of the first run from any other (estimate.py), plus the rounding error of
+a position.
 
 An estimate must hold for every instant of the run, requested or not. So the runs are compared at the requested
 instants, at the ends of steps, and within steps where the method's interpolation errs most: up to fifty times the error
 at the ends.
 
-Match the impulses that runs of one motion share; each run reaches them at slightly different instants.
+Each run reaches an impulse that both share at a slightly different instant.
 """
 
 from __future__ import annotations

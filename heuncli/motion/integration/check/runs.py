@@ -1,11 +1,8 @@
 """Runs of one motion at several tolerances: the reported run A, its check runs B, and finer ones (estimate.py).
 
-Explain why a run in fixed steps ended early: the step is too long, or no method can pass.
-
-A method with automatic steps is tried: if it passes the instant, the step was too long. The fastest rate of the
-linearised motion at the start tells how long the step may be, where that rate is too fast for it.
-
-Try a method of fewer stages for a run that events interrupt at nearly every step.
+Where a run in fixed steps ended early, the step is too long, or no method can pass. A method with automatic steps is
+tried: if it passes the instant, the step was too long. The fastest rate of the linearised motion at the start tells how
+long the step may be, where that rate is too fast for it.
 """
 
 from __future__ import annotations

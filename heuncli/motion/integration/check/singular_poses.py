@@ -20,7 +20,8 @@ from heuncli.motion.integration.diagnosis.ambiguous_laws import (
 )
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.multibody.mechanism.model import BushingLoad, Mechanism, PairLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, PairLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 
 # Singular poses

@@ -1,6 +1,6 @@
 """Decide which of the touching contacts are held from an instant on, and which let go: a complementarity problem.
 
-Solve linear complementarity problems with a symmetric positive semidefinite A by principal pivoting.
+With a symmetric positive semidefinite A it is solved by principal pivoting:
 
     w = q + A z,   z >= 0,   w >= 0,   z . w = 0
 

@@ -1,21 +1,15 @@
 """Explain where a law has no unique value: points that coincide, half turns, jamming friction, drives that contradict.
 
-Find loads along the line between two points that coincide, so that the load has no direction.
+A load along the line between two points has no direction where they coincide. A spring without free length has a force
+proportional to its length, so it needs no direction. If it is damped and its points separate, the damping force does.
 
-A spring without free length has a force proportional to its length, so it needs no direction. If it is damped and its
-points separate, the damping force does.
+The moment of a bushing has two values at half a turn, where the global chart of Rodrigues parameters ends, too:
 
-Find bushings that come to half a turn, where their moment has two values.
+    cos(theta / 2) = w,  2 wdot = -sigma . v        of the quaternion (w, v): the time left until w = 0
 
-Explain the end of a run in the global chart of Rodrigues parameters, at a half turn.
+Drives may require of coupled joints what the couplings do not allow:
 
-cos(theta / 2) = w,  2 wdot = -sigma . v        of the quaternion (w, v): the time left until w = 0
-
-Explain where load-dependent joint friction has no unique solution: which, when, why.
-
-Find drives that require of coupled joints what the couplings do not allow.
-
-sum of factor q' = 0    and the same of q'', for each sum of couplings' conditions whose coordinates are all driven
+    sum of factor q' = 0    and the same of q'', for each sum of couplings' conditions whose coordinates are all driven
 """
 
 from __future__ import annotations
@@ -31,7 +25,8 @@ from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import IntegratedScene
 from heuncli.multibody.mechanism.couplings import Coordinate, Coupling
-from heuncli.multibody.mechanism.model import BushingLoad, JointLoad, Mechanism, PairLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, JointLoad, PairLoad, ThreadLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import Workspace
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array

@@ -12,12 +12,13 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem
-from heuncli.base.number_range import range_error
 from heuncli.base.records import replace
+from heuncli.base.units import range_error
 from heuncli.motion.integration.conditions import point_motion
 from heuncli.motion.integration.diagnosis.guide_departures import Moving, cut_path_coordinates, find_left_paths
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad, RopeLoad
+from heuncli.multibody.mechanism.loads import GROUND, BushingLoad, Load, PairLoad, RopeLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array

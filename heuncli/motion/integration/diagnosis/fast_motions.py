@@ -1,16 +1,12 @@
 """Explain why steps are short or a run cannot continue: what moves, decays or grows fastest.
 
-Find which body keeps the steps of a run short, and why: the fastest motion of the linearised equations there.
+Steps are as short as the fastest motion of the linearised equations requires:
 
     d/dt dy = A dy,   A v = l v,  |l| the largest          A: the tangent at the state
 
 The body that moves most along v is reported, with the inertia that resists v. For a motion x of all bodies, scaled so
 that this body turns by 1 (or its centre shifts by 1), that is the sum of m x_c^2 + w I w. Near gimbal lock, or for a
 light body between springs, it is the light body's own inertia, and tiny compared with the loads.
-
-Find what grows out of all proportion where a run cannot continue.
-
-Find what in a scene decays or swings so fast that explicit steps are short, from the tangent's largest eigenvalue.
 """
 
 from __future__ import annotations
@@ -26,7 +22,8 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record
 from heuncli.motion.integration.diagnosis.domains import evaluate_coordinates, find_grown
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import compute_motions, make_workspace, settle_state, tangent
 from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.tables import Table

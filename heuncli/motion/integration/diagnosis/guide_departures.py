@@ -1,10 +1,7 @@
 """Find where something leaves what guides it: a rope its sheave, a point its path, a cam's disc its lift.
 
-Check that ropes stay on their sheaves: that none lifts off one, and none leaves its plane too far.
-
-This is checked where loads are reported and compared, including the ends of all steps; a slack rope is on no sheave.
-
-Find where a point runs off its path, or a cam's disc turns off its lift.
+No rope may lift off a sheave or leave its plane too far. This is checked where loads are reported and compared,
+including the ends of all steps; a slack rope is on no sheave.
 """
 
 from __future__ import annotations
@@ -20,7 +17,8 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.couplings import Coupling, CouplingPart
-from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.expressions.paths import Path

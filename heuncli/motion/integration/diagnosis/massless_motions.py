@@ -18,7 +18,7 @@ from heuncli.base.linear_algebra import count_rank, null_space
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.mechanism.model import GROUND, PointLoad, RopeLoad
+from heuncli.multibody.mechanism.loads import GROUND, PointLoad, RopeLoad
 from heuncli.multibody.tree.idle_spins import find_massless_axes
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, find_missing_inertia

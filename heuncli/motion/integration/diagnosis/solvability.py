@@ -6,10 +6,10 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
-from heuncli.base.number_range import range_error
 from heuncli.base.records import record
+from heuncli.base.units import range_error
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, PairLoad
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 

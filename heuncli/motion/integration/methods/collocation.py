@@ -8,11 +8,9 @@ fractions, whose digits are the same on every machine. A^-1 = T L T^-1: `back` i
 `real` and `pairs` are L. Hairer, Wanner, Solving ODEs II (1996), IV.5 and IV.8; Hairer, Lubich, Wanner, Geometric
 Numerical Integration (2006), II.1.
 
-SciPy's stiff and switching integrators as independent checks (motion/integration/run/scipy_loop.py); their orders
-vary.
-
-They see loads only at their stages and may miss a pulse between two of them; so may a finer run of the same method.
-Therefore the check run is the kernel's, which bounds the loads within a step.
+SciPy's stiff and switching integrators are independent checks (motion/integration/run/scipy_loop.py); their orders
+vary. They see loads only at their stages and may miss a pulse between two of them; so may a finer run of the same
+method. Therefore the check run is the kernel's, which bounds the loads within a step.
 """
 
 from __future__ import annotations

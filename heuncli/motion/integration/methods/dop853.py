@@ -2,10 +2,9 @@
 
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.10, and their code DOP853.
 
-DOP853 with attitudes represented by Rodrigues parameters within a step (kernel/attitudes.py).
-
-Global: kappa and its rate, counted from the attitude as drawn: Heun's no. 20, in Lagrange's form. Re-centred: kappa
-from the start of each step, and the angular velocity.
+Attitudes may be represented by Rodrigues parameters within a step (kernel/attitudes.py). Global: kappa and its rate,
+counted from the attitude as drawn: Heun's no. 20, in Lagrange's form. Re-centred: kappa from the start of each step,
+and the angular velocity.
 
 The chart, not the tolerance, bounds the rotation in a step: for fast rotations a finer run takes the same steps and has
 the same error. So the check run uses quaternions.

@@ -1,12 +1,8 @@
 """An integration method as data: rows of (stage, coefficient) without zeros, and the arrays that the kernel takes.
 
-Load methods by name; the coefficients of each are loaded on demand.
-
-The rows are in heuncli/base/method_rows.py, where the spec reads them, too.
-
-The method for a motion that its drives determine: nothing is integrated (kernel/following.py).
-
-Its interpolation has two rows more than the cubic's.
+Methods are loaded by name, the coefficients of each on demand; their rows are in heuncli/base/method_rows.py, where the
+spec reads them, too. For a motion that its drives determine nothing is integrated (kernel/following.py); the
+interpolation of that method has two rows more than the cubic's.
 """
 
 from __future__ import annotations

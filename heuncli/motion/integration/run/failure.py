@@ -15,7 +15,7 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.kernel_loop import CHATTERING, HALF_TURN
 from heuncli.motion.integration.run.progress import RunProgress
 from heuncli.motion.integration.run.request import KERNEL_ERRORS, ClosuresLost
-from heuncli.multibody.mechanism.model import BushingLoad
+from heuncli.multibody.mechanism.loads import BushingLoad
 from heuncli.scene.expressions.programs import Expression
 
 

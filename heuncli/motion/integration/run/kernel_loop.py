@@ -12,7 +12,7 @@ from heuncli.base.records import record
 from heuncli.kernel.choose import integration
 from heuncli.kernel.choose import steps as kernel
 from heuncli.motion.integration.methods.method import Method
-from heuncli.multibody.mechanism.model import Load
+from heuncli.multibody.mechanism.loads import Load
 from heuncli.multibody.response import Workspace
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array

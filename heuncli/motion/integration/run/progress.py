@@ -1,11 +1,10 @@
 """The progress of a run: the records of its steps, and its pace.
 
-Estimate whether a run will finish: how many steps the rest of it would take at the pace of those done.
-
-What grows without bound, or turns ever faster, takes ever shorter steps: no step is wrong, and the end is never
-reached. With t(n) the instant after n steps, the times of the steps n/4 -> n/2 and n/2 -> n have a ratio r. r = 2 is a
-steady pace, √2 a rate in proportion to the time, 1 an exponential growth, less than 1 one that ends at a finite
-instant. Every further doubling of n is assumed to last r times the one before:
+The pace of the steps done tells how many steps the rest would take, if the run finishes at all. What grows without
+bound, or turns ever faster, takes ever shorter steps: no step is wrong, and the end is never reached. With t(n) the
+instant after n steps, the times of the steps n/4 -> n/2 and n/2 -> n have a ratio r. r = 2 is a steady pace, √2 a rate
+in proportion to the time, 1 an exponential growth, less than 1 one that ends at a finite instant. Every further
+doubling of n is assumed to last r times the one before:
 
     last - t = d (r + r^2 + ... + r^k),  d of the last doubling,  n 2^k steps
 

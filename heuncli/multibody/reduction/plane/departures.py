@@ -14,7 +14,8 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import ABOUT_AXIS, JOINTS, NO_ROTATION
-from heuncli.multibody.mechanism.model import BushingLoad, Joint, JointLoad, PairLoad, PointLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import BushingLoad, JointLoad, PairLoad, PointLoad, ThreadLoad
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.reduction.plane.view import Departure, PlaneView, height_departures
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression

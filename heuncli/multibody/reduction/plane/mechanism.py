@@ -16,20 +16,8 @@ from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.model import (
-    GROUND,
-    Assembly,
-    Blow,
-    Body,
-    Joint,
-    JointLoad,
-    Load,
-    Mechanism,
-    NamedPoint,
-    Placement,
-    PointLoad,
-    TwoPointLoad,
-)
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad, Load, Placement, PointLoad, TwoPointLoad
+from heuncli.multibody.mechanism.model import Assembly, Blow, Body, Joint, Mechanism, NamedPoint
 from heuncli.multibody.reduction.plane.view import PlaneView
 from heuncli.multibody.tree.idle_spins import IdleSpin
 from heuncli.multibody.tree.layout import Layout

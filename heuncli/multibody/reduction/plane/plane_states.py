@@ -12,7 +12,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.kernel.choose import scene as kernel
-from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.reduction.plane.view import PlaneView
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene

@@ -3,13 +3,11 @@
 A body is upright if it is connected to the ground by joints that only turn about the normal or slide across it, or hold
 it as two hinges hold a door. It moves along the plane at any height, and its joints carry all loads out of the plane.
 
-The axes of a plane, and the directions that may be its normal.
+A plane has axes, and each of some directions may be its normal:
 
     E = [e1; e2; n]      x' = E x: components along the plane's axes, the third across it
 
 For a coordinate plane the axes are the world's in another order, and components are only permuted.
-
-A departure: one thing of a scene that leaves a plane.
 """
 
 from __future__ import annotations
@@ -23,7 +21,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import ABOUT_AXIS, ABOUT_TWO, ABOUT_Z, FLAT, JOINTS, LINE, NO_ROTATION, POINT, JointKind
 from heuncli.base.records import record
-from heuncli.multibody.mechanism.model import GROUND, Joint
+from heuncli.multibody.mechanism.loads import GROUND
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.starts import body_state
 from heuncli.results.results import Array

@@ -10,20 +10,18 @@ from heuncli.base.errors import Finding
 from heuncli.base.joint_kinds import RATES, TYPES
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar, list_words, suggest
-from heuncli.results.path_words import NO_RUN, find_position_word, is_cut_word, split_path
-from heuncli.results.results_schema import (
-    CUT,
-    IMPULSES,
-    INSTANT,
+from heuncli.results.path_words import (  # fmt: skip
     NAMES,
+    NO_RUN,
     TREE,
     Node,
-    Quantity,
-    Shape,
     find_child,
-    parse_index,
+    find_position_word,
+    is_cut_word,
     split_leading_key,
-)  # fmt: skip
+    split_path,
+)
+from heuncli.results.results_schema import CUT, IMPULSES, INSTANT, Quantity, Shape, parse_index
 from heuncli.scene.file_format.names import GROUND, SceneNames
 from heuncli.scene.file_format.rules.registry import DraftDocument
 from heuncli.scene.file_format.rules.sections import is_run

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.base.number_range import is_in_range, range_error
+from heuncli.base.units import is_in_range, range_error
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule

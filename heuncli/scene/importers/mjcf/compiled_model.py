@@ -5,12 +5,10 @@ would read another machine. Its errors are reported as heun's. The compiled mode
 one row for each joint. Impure: reads the file and the files it names, and sets MuJoCo's handler of warnings, which
 would otherwise write a file into the working folder.
 
-Check the files that a model names, and the counts in it, before MuJoCo acts on them.
-
-Included or attached models are read here, by the same XML parser as the model itself, and passed on as text. MuJoCo
-itself opens meshes, height fields and textures, after this module has checked that they are regular files of acceptable
-size. Anything else (a pipe, a device) is refused, as it may have no end. So are counts that would make millions of
-parts. Impure: reads files.
+The files that a model names, and the counts in it, are checked before MuJoCo acts on them. Included or attached models
+are read here, by the same XML parser as the model itself, and passed on as text. MuJoCo itself opens meshes, height
+fields and textures, after this module has checked that they are regular files of acceptable size. Anything else (a
+pipe, a device) is refused, as it may have no end. So are counts that would make millions of parts. Impure: reads files.
 """
 
 from __future__ import annotations

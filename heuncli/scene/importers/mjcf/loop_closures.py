@@ -19,7 +19,8 @@ import numpy as np
 
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.models import Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import Vec
 from heuncli.scene.importers.attitudes import compose_rotations
 from heuncli.scene.importers.description import LEFT_OUT_CODE, DescribedEntry
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel

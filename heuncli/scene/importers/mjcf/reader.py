@@ -11,7 +11,8 @@ import numpy as np
 
 from heuncli.base.errors import Problem, SourceLocation, SpecError
 from heuncli.base.spelling import suggest
-from heuncli.scene.file_format.models import ZERO, Matrix
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import ZERO
 from heuncli.scene.importers.description import (
     DescribedBody,
     DescribedEntry,

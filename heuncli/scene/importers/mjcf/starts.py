@@ -1,9 +1,7 @@
 """Where bodies start: which joints drives hold, the poses at given coordinates, and start poses for the rest.
 
-Give start poses to the bodies whose pose no drive and no law sets: free ones, those on balls, those placed by a
-loop.
-
-Compute the poses and rates of all bodies at given MuJoCo coordinates: at their zero, or in a keyframe.
+Start poses are given to the bodies whose pose no drive and no law sets: free ones, those on balls, those placed by a
+loop. Poses and rates follow from MuJoCo's coordinates, at their zero or in a keyframe:
 
 S_B   attitude of a body against that at the zero: R_WB at the coordinates, times R_WB^T at the zero
 S_C = S_P Rot(a, q - q0)         a hinge, a along the world's axes at the zero
@@ -11,10 +9,9 @@ S_C = S_P R_C0 R(q) R_C0^T       a ball, whose coordinates are a quaternion in t
 S_C = R(q) R_C0^T                a free body
 sigma_C = sigma_P + S_C a q'     and likewise with the axes of a ball; of a free body in its own axes
 
-Choose the joints that drives hold, so that no coordinate stays free and none is held twice.
-
-In a tree these are all hinges and slides. Where equalities close loops, some coordinates follow from others. Then a
-joint is held if the equalities and the joints chosen before it leave its rate free,
+Drives hold joints so that no coordinate stays free and none is held twice. In a tree these are all hinges and slides.
+Where equalities close loops, some coordinates follow from others. Then a joint is held if the equalities and the joints
+chosen before it leave its rate free,
 
     rank [J; e_1; ...; e_k; e] > rank [J; e_1; ...; e_k]      J: rows of the equalities, e_i q' the rate of joint i
 

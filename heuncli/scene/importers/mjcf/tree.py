@@ -1,22 +1,17 @@
 """The bodies, joints and named points of a spec, of those of MuJoCo's tree.
 
-Turn MuJoCo's tree into joints of a spec, in order; each carries one body of the spec on another.
-
 MuJoCo stacks several joints on one body, such as a hip of three hinges. A spec has a body between any two joints, so a
 carrier is put there: a point mass of CARRIER times the mass that it carries. That is below the rounding of any sum it
 enters, so results are those without it, and the joints in between can have drives, springs and stops. A body with a
 free joint (`freejoint`) has no joint in the spec, and one without joints has a weld.
 
-Merge MuJoCo's bodies into bodies of a spec, and place them with every joint at zero.
-
-A body without joints is fixed to its parent. If it has a mass, it stays a body of its own on a weld, so that the load
-there is reported. If it has none, it is a frame, and its points belong to its parent. A moving body without mass, which
-MuJoCo accepts if bodies fixed to it have some, is merged with them. What does not move belongs to the ground.
+Bodies are placed with every joint at zero. A body without joints is fixed to its parent. If it has a mass, it stays a
+body of its own on a weld, so that the load there is reported. If it has none, it is a frame, and its points belong to
+its parent. A moving body without mass, which MuJoCo accepts if bodies fixed to it have some, is merged with them. What
+does not move belongs to the ground.
 
     R_WB  attitude of a body at the zero: R_WP R(body_quat), P its parent
     p_OB  from the origin of the body that it is part of (O), to its own, in axes along the world's
-
-Collect the named points of all bodies of a spec; names are unique within a body.
 """
 
 from __future__ import annotations
@@ -26,7 +21,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.models import Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import Vec
 from heuncli.scene.file_format.rotations import IDENTITY, rotation_from_quaternion
 from heuncli.scene.importers.attitudes import add_vectors, compose_rotations, rotate_tensor, rotate_vector
 from heuncli.scene.importers.description import DescribedPoint, Namer, assign_names

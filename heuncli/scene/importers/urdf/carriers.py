@@ -1,7 +1,5 @@
 """The bodies that carry links, their named points, and the joints between them.
 
-Find the body that carries each link, and where. A link without mass is a point of the body to which it is fixed.
-
 Links joined by fixed joints form one rigid group. In it, every link with mass is a body. A link without mass is carried
 by the nearest body above it; if there is none, by the ground if the group is grounded, else by the first body of the
 group below it. With every joint at 0, R_WL is the attitude of a link and x_HL its origin from that of its carrier, both
@@ -9,13 +7,10 @@ along the world's axes:
 
     R_WL = R_WP R_PL,   x_HL = x_HP + R_WP p_PL      P the parent of L, p_PL, R_PL the pose of its joint
 
-Collect the named points of bodies and of the ground, and name them at the end; names are unique within a body.
-
-Make the joints of the spec: pins, slides, planes and welds, in the order of the tree.
-
-A planar joint holds three points of its child in the plane through its origin. Together they prevent it from tilting,
-and let it shift and turn in the plane. A floating joint makes no joint. A fixed joint is a weld between bodies with
-mass; a link without mass is a point of the body to which it is fixed.
+Joints are pins, slides, planes and welds, in the order of the tree. A planar joint holds three points of its child in
+the plane through its origin. Together they prevent it from tilting, and let it shift and turn in the plane. A floating
+joint makes no joint. A fixed joint is a weld between bodies with mass; a link without mass is a point of the body to
+which it is fixed.
 """
 
 from __future__ import annotations
@@ -25,7 +20,8 @@ from itertools import islice
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.models import ZERO, Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import ZERO, Vec
 from heuncli.scene.file_format.rotations import IDENTITY, cross_product, unit_vector, vector_length
 from heuncli.scene.importers.attitudes import (
     add_vectors,

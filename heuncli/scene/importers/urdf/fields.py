@@ -7,8 +7,8 @@ import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 
 from heuncli.base.errors import Problem, SourceLocation
-from heuncli.base.number_range import is_in_range, range_error
 from heuncli.base.spelling import suggest
+from heuncli.base.units import is_in_range, range_error
 from heuncli.scene.file_format.models import Vec
 from heuncli.scene.importers.attitudes import RIGHT_ANGLE_ERROR
 from heuncli.scene.importers.xml_elements import XACRO_HINT, XmlElement

@@ -1,6 +1,6 @@
 """The mass of a link: its properties, validated and repaired, or its shapes with their density.
 
-Validate the mass properties of links as those of rigid bodies, and repair those faults that --repair names.
+Mass properties must be those of rigid bodies; --repair names the faults that are repaired:
 
     A1 <= A2 <= A3, principal moments:    0 <= A1,  A3 <= A1 + A2
 
@@ -12,10 +12,8 @@ Without repair, the moments may violate this by what heun accepts as rounding. A
     massless    a link without mass that moves gets a point mass of REPAIRED_MASS at its origin; a mass of 0
                 loses its inertia
 
-Turn the collision or visual elements of a link without inertia into shapes with the density of --density.
-
-The collision elements are used if all of them are boxes, cylinders and spheres, otherwise the visual ones. A URDF
-cylinder is centred at the origin, with its axis along z.
+A link without inertia has shapes of the density of --density. The collision elements are used if all of them are boxes,
+cylinders and spheres, otherwise the visual ones. A URDF cylinder is centred at the origin, with its axis along z.
 """
 
 from __future__ import annotations
@@ -24,7 +22,8 @@ from typing import Any
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.models import ZERO, Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import ZERO, Vec
 from heuncli.scene.file_format.rotations import symmetric_eigenvalues
 from heuncli.scene.importers.attitudes import (
     add_vectors,

@@ -1,7 +1,6 @@
 """Read a URDF into a described machine: read all elements, validate them as a whole, then translate them to a spec.
 
-Translate a validated robot to a spec: links become bodies and points, joints are held by drives at their
-parameters.
+Links become bodies and points; joints are held by drives at their parameters.
 """
 
 from __future__ import annotations
@@ -12,7 +11,8 @@ from typing import Any
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.records import record
 from heuncli.base.spelling import list_words
-from heuncli.scene.file_format.models import Matrix, Vec
+from heuncli.scene.file_format.loads import Matrix
+from heuncli.scene.file_format.models import Vec
 from heuncli.scene.importers.attitudes import (
     add_vectors,
     compose_rotations,

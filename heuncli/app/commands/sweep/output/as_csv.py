@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from heuncli.analyses.sweep_store.columns import make_columns
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow, make_columns
 from heuncli.output.documents.as_csv import format_line
 
 

@@ -6,18 +6,18 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from heuncli.analyses.sweep_store.columns import (
+from heuncli.analyses.sweep_rows import (
     ParameterColumn,
     SweepColumns,
+    SweepHead,
+    SweptRow,
     explain_missing,
     make_columns,
     to_cell,
     to_finite,
 )
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
-from heuncli.analyses.variants.indices import SobolIndices
 from heuncli.analyses.variants.measures import NO_VALUE
-from heuncli.analyses.variants.sampling import CONFIDENCE
+from heuncli.analyses.variants.sample_statistics import CONFIDENCE, SobolIndices
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.app.commands.sweep.output.statistics import MeasureStatistics, iter_statistics
 from heuncli.base.text_safety import escape

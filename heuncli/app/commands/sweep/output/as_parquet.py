@@ -13,8 +13,7 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import Any
 
-from heuncli.analyses.sweep_store.columns import SweepColumns, make_columns
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import SweepColumns, SweepHead, SweptRow, make_columns
 from heuncli.base.errors import Problem, SpecError
 
 GROUP = 50_000  # rows that are written together

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.rows import SweptRow
+from heuncli.analyses.sweep_rows import SweptRow
 from heuncli.results.results import Array
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow
 from heuncli.app.commands.sweep.output.shown_rows import make_row_table
 from heuncli.app.commands.sweep.output.statistics import iter_statistics
 from heuncli.app.commands.sweep.output.statistics_tables import make_statistics_tables

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.columns import ParameterColumn, make_parameter_columns, to_cell
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, SweptRow, make_parameter_columns, to_cell
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.app.commands.sweep.output.extremes import MeasureExtremes
 from heuncli.app.commands.sweep.output.top_k import ShownRows

@@ -11,10 +11,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.rows import SweepHead
-from heuncli.analyses.variants.indices import SobolIndices, compute_sobol_indices
+from heuncli.analyses.sweep_rows import SweepHead
 from heuncli.analyses.variants.plans import Plan
-from heuncli.analyses.variants.sampling import SampleStatistics, compute_statistics
+from heuncli.analyses.variants.sample_statistics import (
+    SampleStatistics,
+    SobolIndices,
+    compute_sobol_indices,
+    compute_statistics,
+)
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array

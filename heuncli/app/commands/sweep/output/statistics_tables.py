@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.analyses.sweep_store.columns import make_parameter_columns
-from heuncli.analyses.sweep_store.rows import SweepHead
-from heuncli.analyses.variants.indices import MIN_BOUNDED
+from heuncli.analyses.sweep_rows import SweepHead, make_parameter_columns
 from heuncli.analyses.variants.parameters import RandomVariable
-from heuncli.analyses.variants.sampling import CONFIDENCE, BoundedEstimate
+from heuncli.analyses.variants.sample_statistics import CONFIDENCE, MIN_INDEX_BOUNDED, BoundedEstimate
 from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, format_variant_count
 from heuncli.app.commands.sweep.output.statistics import MeasureStatistics
 from heuncli.output.documents.document import OutputColumn, OutputTable
@@ -26,7 +24,7 @@ SPOILT = "{}: errors of the runs, up to {}, are not small compared with these in
 ERROR_SHARE = 0.1  # share of an interval; larger errors of the runs get a note
 NO_INDICES = "{}: no Sobol indices: "
 FLAT = "it varies by no more than the errors of its runs"
-UNBOUNDED = "{}: no intervals for {} samples: " + f"{MIN_BOUNDED} or more needed (--samples {MIN_BOUNDED})"
+UNBOUNDED = "{}: no intervals for {} samples: " + f"{MIN_INDEX_BOUNDED} or more needed (--samples {MIN_INDEX_BOUNDED})"
 FEW = "all {} variants of a sample are known for {} samples only"
 
 
@@ -125,6 +123,6 @@ def _make_index_table(
             rows.append(
                 (law.name, *("-" if end is None else f"{end:.3f}" for estimated in index_pair for end in estimated))
             )
-        if one.samples < MIN_BOUNDED:
+        if one.samples < MIN_INDEX_BOUNDED:
             notes.append(UNBOUNDED.format(format_label(head, one), one.samples))
     return OutputTable(INDICES, columns, tuple(rows), tuple(notes))

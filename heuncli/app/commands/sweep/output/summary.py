@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.sweep_store.columns import ParameterColumn, make_parameter_columns
-from heuncli.analyses.sweep_store.rows import SweepHead
+from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, make_parameter_columns
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, pad_words
 from heuncli.app.commands.sweep.output.top_k import ShownRows

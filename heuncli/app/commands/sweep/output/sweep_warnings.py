@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow
 from heuncli.analyses.variants.evaluation import strip_numbers
 from heuncli.app.cli.output import print_stderr
 from heuncli.base.named_tuples import NamedTuple

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator
 
-from heuncli.analyses.sweep_store.rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow
 from heuncli.app.cli import terminal
 from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError

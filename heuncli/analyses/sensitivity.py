@@ -1,0 +1,352 @@
+"""Derivatives of measures by numbers of a spec, where a measure is known only within an error: by finite differences.
+
+The step is chosen so that the difference of two steps is about the noise: it begins at the cube root of the stated
+error and changes by factors of four. Where m has a kink or a jump, smaller steps show whether it is at the value or
+near it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+from heuncli.analyses.variants.measures import NoisyValue, Reason
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.tolerances import EPS
+
+DerivativeKind = Literal["", "nothing", "one-sided", "kink", "refused"]
+
+
+class NoisyDerivative(NamedTuple):
+    """dm/dp within an error, in units of m and p.
+
+    kind: "nothing" if m does not depend on p; "one-sided"; "kink", with the derivatives `left` and `right` of it and
+    their errors; "refused", with the reason in `why`
+    step: half the distance of the variants used; at a kink, how far from the number it may be
+    """
+
+    value: float | None
+    error: float = 0.0
+    kind: DerivativeKind = ""
+    why: Reason = Reason()
+    left: tuple[float, float] | None = None
+    right: tuple[float, float] | None = None
+    step: float = 0.0
+
+
+class Contribution(NamedTuple):
+    """Effect of one number's tolerance on a measure: by the derivative, and by the variants within it.
+
+    size: largest known change, within an error; None if unknown
+    linear: change predicted by the derivative; below, above: changes at the ends, None if unsolved
+    bent: the variants do not lie on the derivative's line; the tolerance was then searched with `variants` variants,
+    `least` and `greatest` give distance and change of the extremes
+    why: the reason if a part of the tolerance range cannot be solved
+    """
+
+    name: str
+    spread: float
+    unit: str
+    size: float | None
+    error: float
+    linear: float | None
+    below: float | None
+    above: float | None
+    bent: bool = False
+    least: tuple[float, float] | None = None
+    greatest: tuple[float, float] | None = None
+    variants: int = 0
+    why: Reason = Reason()
+
+
+class SpreadSum(NamedTuple):
+    """Combined effect of all tolerances on a measure, each way: worst case and root sum of squares, with errors; None
+    if unknown.
+
+    corners: the measure with every number where it lowers it most, and where it raises it most
+    by_variant: the worst case comes from a variant, as that exceeds the sum
+    largest: the largest change of a variant of several numbers, with its error
+    """
+
+    contributions: tuple[Contribution, ...]
+    worst: tuple[float, float] | None
+    square: tuple[float, float] | None
+    corners: tuple[NoisyValue, NoisyValue]
+    by_variant: bool = False
+    largest: tuple[float, float] | None = None
+
+
+FIRST_STEP, MAX_STEP, MIN_STEP = 2.0**-8, 2.0**-4, 2.0**-24  # steps, of the number's size
+SUFFICIENT_ERROR = 1e-6  # of the derivative: an error small enough to keep the step
+IMBALANCE = 4.0  # ratio of noise and difference of two steps above which the step is changed
+MAX_STEP_CHANGES = 5
+KINK_RATIO, JUMP_RATIO = 0.75, 1.5  # K(h/2) / K(h): between 1/2 and 1, between 1 and 2
+MAX_DISAGREEMENT = 0.1  # of a one-sided derivative: if two steps differ by more, far above the noise, there is none
+SIGNIFICANCE = 4.0  # times its noise: size of K or X that shows a kink
+THIRD_STEP = 0.37  # of a step: the third one
+MAX_DEVIATION = 0.3  # of the difference of two steps: permitted deviation of the third from h^2 between them
+STEP_REDUCTION = 1.0 / 16.0  # of a step: the next one towards a kink or a jump
+NOISE_FACTOR = 3.0 + 8.0  # times e/h: the noise of R and of X
+NOT_SMOOTH_CODE = "not-smooth"
+
+
+class StepPair(NamedTuple):
+    """Differences at a step and its half: the derivative, the difference between the two, the noise, and |X|
+    (excess).
+    """
+
+    step: float
+    value: float
+    difference: float
+    noise: float
+    excess: float = 0.0
+
+    @property
+    def error(self) -> float:
+        """The error bound of the derivative."""
+        return self.difference + self.noise + self.excess
+
+
+class Differences:
+    """Finite differences of a measure about a number.
+
+    evaluate: function that gives the measure at a distance from the number
+    """
+
+    def __init__(self, evaluate: Callable[[float], NoisyValue], number: float) -> None:
+        """number: the centre, whose rounding limits the distances"""
+        self.evaluate, self.rounding = evaluate, 4.0 * EPS * abs(number)
+        self.base = evaluate(0.0)
+
+    def has_values(self, *distances: float) -> bool:
+        """Return whether the measure exists at all these distances."""
+        return all(self.evaluate(distance).value is not None for distance in distances)
+
+    def get_value(self, distance: float) -> float:
+        """Return the measure at a distance; it must exist."""
+        value = self.evaluate(distance).value
+        assert value is not None
+        return value
+
+    def get_largest_error(self, *distances: float) -> float:
+        """Return the largest error at these distances."""
+        return max(self.evaluate(distance).error for distance in distances)
+
+    def central_difference(self, h: float) -> float:
+        """Return D at a step."""
+        return (self.get_value(h) - self.get_value(-h)) / (2.0 * h)
+
+    def curvature(self, h: float) -> float:
+        """Return K at a step, with its sign."""
+        return (self.get_value(h) - 2.0 * self.get_value(0.0) + self.get_value(-h)) / h
+
+    def compute_pair(self, h: float) -> StepPair:
+        """Return the central differences at a step and its half."""
+        full_step, half_step = self.central_difference(h), self.central_difference(0.5 * h)
+        value = (4.0 * half_step - full_step) / 3.0
+        error = self.get_largest_error(0.0, h, -h, 0.5 * h, -0.5 * h) + 0.25 * abs(value) * self.rounding
+        excess = abs(self.curvature(0.5 * h) - 0.5 * self.curvature(h))
+        return StepPair(h, value, abs(half_step - full_step), NOISE_FACTOR * error / h, excess)
+
+    def is_quadratic(self, pair: StepPair) -> bool:
+        """Return whether D is quadratic in the step at a third one, within the error."""
+        third_step = THIRD_STEP * pair.step
+        if not self.has_values(third_step, -third_step):
+            return False
+        expected = pair.value + THIRD_STEP**2 * (self.central_difference(pair.step) - pair.value)
+        deviation = abs(self.central_difference(third_step) - expected)
+        return deviation <= MAX_DEVIATION * pair.difference + pair.excess + pair.noise
+
+    def compute_side_pair(self, h: float, sign: int, start: float = 0.0) -> StepPair:
+        """Return one-sided differences, extrapolated from a start distance to the number: at a step, its half, its
+        quarter.
+        """
+        base = self.get_value(sign * start)
+        ends = [sign * (start + x) for x in (h, 0.5 * h, 0.25 * h)]
+        first, second, third = (
+            (self.get_value(x) - base) / (sign * step) for x, step in zip(ends, (h, 0.5 * h, 0.25 * h), strict=True)
+        )
+        value, coarser = 2.0 * third - second, 2.0 * second - first
+        noise = 20.0 * self.get_largest_error(sign * start, *ends) / h + 4.0 * abs(value) * self.rounding / h
+        shift = start * 8.0 * abs(third - second) / h  # the second derivative, over the distance
+        return StepPair(h, value, abs(value - coarser) + shift, noise)
+
+    def measure_kink(self, h: float) -> tuple[float, float]:
+        """Return |K| at a step, and its noise."""
+        return abs(self.curvature(h)), 4.0 * self.get_largest_error(0.0, h, -h) / h
+
+
+def compute_derivative(evaluate: Callable[[float], NoisyValue], number: float, size: float) -> NoisyDerivative:
+    """Compute dm/dp at a number.
+
+    evaluate: function that gives m at a distance from the number
+    size: range over which the number is expected to matter
+    """
+    differences = Differences(evaluate, number)
+    if differences.base.value is None:
+        return NoisyDerivative(None, kind="refused", why=differences.base.why)
+    h = choose_first_step(differences.base, size)
+    for _ in range(2):
+        has_below, has_above = differences.has_values(-h, -0.5 * h), differences.has_values(h, 0.5 * h)
+        if has_below and has_above:
+            return compute_central(differences, h, size)
+        if (has_below or has_above) and differences.has_values(
+            *(0.25 * h * (1 if has_above else -1) * k for k in (1, 2, 4))
+        ):
+            return compute_one_sided(differences, h, 1 if has_above else -1, size)
+        h /= 64.0
+    return NoisyDerivative(None, kind="refused", why=evaluate(64.0 * h).why)
+
+
+def choose_first_step(base: NoisyValue, size: float) -> float:
+    """Return the step, `size` times a power of two, at which the run's error balances a third derivative of the
+    measure's own size.
+    """
+    relative = base.error / abs(base.value) if base.value else 0.0
+    step = FIRST_STEP
+    while step**3 > 8.0 * NOISE_FACTOR * relative and step > 2.0**-12:
+        step *= 0.5
+    return step * size
+
+
+def compute_central(differences: Differences, h: float, size: float) -> NoisyDerivative:
+    """Compute the derivative by differences on both sides."""
+    if all(differences.get_value(x) == differences.get_value(0.0) for x in (h, -h, 0.5 * h, -0.5 * h)):
+        return NoisyDerivative(0.0, kind="nothing", step=h)
+    pairs = [
+        find_best_pair(differences.compute_pair, lambda x: differences.has_values(x, -x, 0.5 * x, -0.5 * x), h, size)
+    ]
+    quadratic = [each for each in pairs if differences.is_quadratic(each)]
+    if (
+        not quadratic
+        or pairs[0].excess > max(pairs[0].noise, pairs[0].difference)
+        or has_kink(differences, pairs[0], 1.0)
+    ):
+        pairs += compute_smaller_steps(differences, pairs[0], size)
+        quadratic = [each for each in pairs if differences.is_quadratic(each)]
+    best = min(quadratic, key=lambda each: each.error, default=None)
+    if best is None or (
+        best.excess > SIGNIFICANCE * best.noise and any(has_kink(differences, each, SIGNIFICANCE) for each in pairs)
+    ):
+        return describe_kink_or_jump(differences, pairs, size)
+    return NoisyDerivative(best.value, best.error, step=best.step)
+
+
+def has_kink(differences: Differences, pair: StepPair, significance: float) -> bool:
+    """Return whether K stays or grows from a step to its half, by more than `significance` times its noise."""
+    (full_step, _), (half_step, noise) = differences.measure_kink(pair.step), differences.measure_kink(0.5 * pair.step)
+    return pair.excess > significance * pair.noise and half_step > max(significance * noise, KINK_RATIO * full_step)
+
+
+def compute_smaller_steps(differences: Differences, first_pair: StepPair, size: float) -> list[StepPair]:
+    """Compute differences at smaller steps, until the noise exceeds all else."""
+    pairs: list[StepPair] = []
+    h = STEP_REDUCTION * first_pair.step
+    while h >= MIN_STEP * size and differences.has_values(h, -h, 0.5 * h, -0.5 * h):
+        pairs.append(differences.compute_pair(h))
+        if pairs[-1].noise > max(pairs[-1].difference, pairs[-1].excess):
+            break
+        h *= STEP_REDUCTION
+    return pairs
+
+
+def compute_one_sided(differences: Differences, h: float, sign: int, size: float) -> NoisyDerivative:
+    """Compute the derivative on the side that has values, at smaller steps if these give another derivative.
+
+    From one side, a kink at c does not show at steps much larger than c: they give the derivative beyond it. So smaller
+    steps are tried until noise dominates; their disagreement, as far as it is significant, is part of the error.
+    """
+
+    def has_step(x: float) -> bool:
+        return differences.has_values(*(0.25 * x * sign * k for k in (1, 2, 4)))
+
+    best = find_best_pair(lambda x: differences.compute_side_pair(x, sign), has_step, h, size)
+    largest, disagreement, h = abs(best.value), 0.0, 0.25 * best.step
+    while h >= MIN_STEP * size and has_step(h):
+        pair = differences.compute_side_pair(h, sign)
+        largest = max(largest, abs(pair.value))
+        if pair.noise > largest:
+            break
+        difference = abs(pair.value - best.value)
+        if difference > pair.error + best.error or pair.error < best.error:
+            best, disagreement = pair, 0.0
+        elif pair.error <= IMBALANCE * best.error:
+            disagreement = max(disagreement, difference)
+        h *= 0.25
+    why = differences.evaluate(-sign * best.step).why
+    if best.difference > SIGNIFICANCE * best.noise and best.difference > MAX_DISAGREEMENT * abs(best.value):
+        return NoisyDerivative(None, kind="refused", why=why, step=best.step)
+    return NoisyDerivative(best.value, best.error + disagreement, "one-sided", why, step=best.step)
+
+
+def find_best_pair(
+    compute_pair: Callable[[float], StepPair], has_step: Callable[[float], bool], h: float, size: float
+) -> StepPair:
+    """Find the differences with the least error, changing the step so that the larger part of the error decreases."""
+    best = compute_pair(h)
+    for _ in range(MAX_STEP_CHANGES):
+        if best.error <= SUFFICIENT_ERROR * abs(best.value):
+            break
+        if best.difference + best.excess > IMBALANCE * best.noise:
+            h *= 0.25
+        elif best.noise > IMBALANCE * best.difference:
+            h *= 4.0
+        else:
+            break
+        if not MIN_STEP * size <= h <= MAX_STEP * size or not has_step(h):
+            break
+        next_pair = compute_pair(h)
+        if next_pair.error >= best.error:
+            break
+        best = next_pair
+    return best
+
+
+def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size: float) -> NoisyDerivative:
+    """Return the result for a measure with a kink or a jump within the steps that were tried, the largest first."""
+    kinked = [each for each in pairs if has_kink(differences, each, SIGNIFICANCE)]
+    step = min(kinked or pairs, key=lambda each: each.step).step
+    distance = 0.5 * step
+    (full_step, _), (half_step, _) = differences.measure_kink(step), differences.measure_kink(distance)
+    if kinked and half_step > JUMP_RATIO * full_step:
+        return make_refusal(f"jump of {half_step * distance:.3g} within {distance:.2g} of the value", step)
+    sides = [compute_outside(differences, sign, distance, pairs[0].step, size) for sign in (-1, 1)]
+    largest = max((abs(each.value) for each in sides if each), default=0.0)
+    side_derivatives = [(each.value, each.error) for each in sides if each and is_determined(each, largest)]
+    if not kinked or len(side_derivatives) < 2:
+        difference_text = f"two step sizes differ by {pairs[0].difference:.2g} of {pairs[0].value:.3g}"
+        return make_refusal(f"{difference_text}: jump, kink or oscillation within {step:.2g} of the value", step)
+    reason = f"kink within {distance:.2g} of the value: the derivatives on its two sides differ"
+    return NoisyDerivative(
+        None,
+        kind="kink",
+        why=Reason("kink", reason),
+        left=side_derivatives[0],
+        right=side_derivatives[1],
+        step=distance,
+    )
+
+
+def compute_outside(differences: Differences, sign: int, distance: float, h: float, size: float) -> StepPair | None:
+    """Return the derivative on one side, outside of a distance within which the measure has a kink; None if it has no
+    values there.
+    """
+
+    def has_step(x: float) -> bool:
+        return differences.has_values(*(sign * (distance + x * part) for part in (0.0, 0.25, 0.5, 1.0)))
+
+    return (
+        find_best_pair(lambda x: differences.compute_side_pair(x, sign, distance), has_step, h, size)
+        if has_step(h)
+        else None
+    )
+
+
+def is_determined(pair: StepPair, largest: float) -> bool:
+    """Return whether two steps on a side agree on a derivative; largest: the largest on both sides."""
+    return pair.difference <= max(SIGNIFICANCE * pair.noise, MAX_DISAGREEMENT * largest)
+
+
+def make_refusal(reason: str, step: float) -> NoisyDerivative:
+    """Return a result without a derivative, with the reason."""
+    return NoisyDerivative(None, kind="refused", why=Reason(NOT_SMOOTH_CODE, reason), step=step)

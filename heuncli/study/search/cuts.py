@@ -1,0 +1,168 @@
+"""Search along cuts: extremes over the length of a series of cuts, and instants at which a joint passes a cut.
+
+For a search, the runs of a scene are replaced by stretches between their corners (loads/kinetostatics/stretch.py). The
+highest and the lowest of each quantity along a stretch are then two numbers over the instants, smooth but for kinks
+where their place leaps, which are never extremes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from heuncli.base import tolerances
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
+from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
+from heuncli.loads.kinetostatics.couplings import list_coupling_actions
+from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts, list_attachment_points, list_distributed_loads
+from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, find_peaks, make_cuts_at, make_stretch
+from heuncli.results.results import Array, Block, CutPosition, Extremes
+from heuncli.results.results_schema import RESULTANTS
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.model.setup import Setup
+from heuncli.study.search.extremes import sort_distinct
+
+HALVINGS = 2  # times that pieces are halved for kinks where loads change their sign: stresses, reduction lines
+
+
+def replace_runs(setup: Setup, bent: bool) -> Setup:
+    """Return the setup with its series of cuts as whole stretches; bent: for quantities that are no polynomial of
+    loads.
+    """
+    mechanism, halved = setup.scene.mechanism, HALVINGS if bent else 0
+
+    def whole(cuts: Cuts) -> Cuts | Stretch:
+        if cuts.s is None or cuts.form is None:
+            return cuts
+        points = [point for _, point in list_attachment_points(mechanism, cuts.body)]
+        return make_stretch(
+            cuts, points, [line for _, line in list_distributed_loads(mechanism, cuts.body)], min_halvings=halved
+        )
+
+    return replace(setup, cuts=tuple(map(whole, setup.cuts)))
+
+
+def find_stretch(setup: Setup, name: str) -> Stretch:
+    """Return the stretch of the series of cuts with that name."""
+    cuts_and_stretches: tuple[Cuts | Stretch, ...] = setup.cuts
+    return next(cuts for cuts in cuts_and_stretches if isinstance(cuts, Stretch) and cuts.name == name)
+
+
+def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setup:
+    """Return the setup with a stretch as cuts at distances (k,) [m] between the ends of one of its pieces."""
+    return replace(setup, cuts=(make_cuts_at(find_stretch(setup, name).cuts, s, find_sides(s, ends)),))
+
+
+def cut_at_places(setup: Setup, name: str, places: Sequence[CutPosition]) -> Setup:
+    """Return the setup with only one series of cuts, cut at these places, on the sides that they name."""
+    run = next(cuts for cuts in setup.cuts if cuts.name == name)
+    side = np.array([{"before": BEFORE, "beyond": BEYOND}.get(place.side or "", 0.0) for place in places])
+    return replace(setup, cuts=(make_cuts_at(run, np.array([place.s for place in places]), side),))
+
+
+def find_sides(s: Array, ends: tuple[float, float]) -> Array:
+    """Return on which side of what acts at the ends of a piece cuts there lie."""
+    return np.where(s <= ends[0], BEYOND, np.where(s >= ends[1], BEFORE, 0.0))
+
+
+def compute_envelope(values: Array) -> Array:
+    """Return the lowest and the highest along a stretch, (n_t, 2), from the values at its nodes, (n_t, 9 m)."""
+    low, high = find_peaks(values)
+    return np.stack([-low.height, high.height], axis=1)
+
+
+def find_impulse_extremes(setup: Setup, impulse: Block) -> dict[str, Extremes]:
+    """Return the lowest and the highest of the section forces along each stretch, at an impulse that was solved with
+    these cuts.
+    """
+    found: dict[str, Extremes] = {}
+    for cuts in setup.cuts:
+        if isinstance(cuts, Stretch):
+            section = impulse["sections"][cuts.name]
+            summits_of_quantities = [find_cut_extremes(cuts, section["s"], section[name]) for name in RESULTANTS]
+            low, high = (np.array([one[side].value for one in summits_of_quantities]) for side in (0, 1))
+            times, column = (
+                np.full(len(summits_of_quantities), float(impulse["time"])),
+                np.zeros(len(summits_of_quantities), dtype=np.intp),
+            )
+            places = tuple((low.place, high.place) for low, high in summits_of_quantities)
+            paths = tuple(f"sections.{cuts.name}.{name}" for name in RESULTANTS)
+            found[cuts.name] = Extremes(low, times, column, high, times, column, True, True, places, paths)
+    return found
+
+
+class CutExtreme(NamedTuple):
+    """An extreme along a series of cuts, and its place."""
+
+    value: float
+    place: CutPosition
+
+
+def find_cut_extremes(stretch: Stretch, s: Array, values: Array) -> tuple[CutExtreme, CutExtreme]:
+    """Return the lowest and the highest value along a series of cuts, from the values (9 m,) at the nodes s of its m
+    pieces.
+    """
+    low, high = compute_envelope(values[None])[0].tolist()
+    places = [stretch.make_place(*locate_summit(s, values, side)[:2]) for side in (-1.0, 1.0)]
+    return CutExtreme(low + 0.0, places[0]), CutExtreme(high + 0.0, places[1])
+
+
+def locate_summit(s: Array, values: Array, side: float) -> tuple[float, float, tuple[float, float]]:
+    """Locate the highest (side 1) or lowest (-1) of values at nodes (9 m,): distance, side, ends of its piece."""
+    top = find_peaks(values[None])[side > 0.0]
+    k, x = int(top.piece[0]) * (DEGREE + 1), float(top.position[0])
+    a, b = float(s[k]), float(s[k + DEGREE])
+    if x in (-1.0, 1.0):
+        return (b, BEFORE, (a, b)) if x > 0.0 else (a, BEYOND, (a, b))
+    return a + 0.5 * (b - a) * (x + 1.0), 0.0, (a, b)
+
+
+PARTS = 16  # into which a span with a passage is divided
+ROUNDS = 14  # 16^14: down to neighbouring doubles
+
+
+def has_moving_joints(setup: Setup) -> bool:
+    """Whether any joint moves over a body that has a single cut; series of cuts are searched with the moving joint."""
+    cut = {cuts.body for cuts in setup.cuts if cuts.s is None}
+    return any(joint.a in cut and JOINTS[joint.kind].has_moving_contact for joint in setup.scene.mechanism.joints)
+
+
+def find_passages(recover: Callable[[Array], Recovery], grid: Array) -> Array:
+    """Return the last instants before passages and the first after them, as far as a grid shows them, ascending."""
+    is_on_piece = find_points_on_pieces(recover(grid))
+    k, j = np.nonzero(np.diff(is_on_piece, axis=0))
+    a, b = grid[k], grid[k + 1]
+    before_passage = is_on_piece[k, j]
+    rows = np.arange(len(k))
+    for _ in range(ROUNDS if len(k) else 0):
+        probes = a[:, None] + (b - a)[:, None] * (np.arange(PARTS + 1) / PARTS)
+        probes[:, -1] = b
+        instants = sort_distinct(probes)
+        probe_values = find_points_on_pieces(recover(instants))[np.searchsorted(instants, probes), j[:, None]]
+        first = np.argmax(probe_values != before_passage[:, None], axis=1)
+        a, b = probes[rows, np.maximum(first - 1, 0)], probes[rows, first]
+        if (b - a <= 2.0 * tolerances.EPS * np.abs(b)).all():
+            break
+    return np.sort(np.concatenate([a, b]))
+
+
+def find_points_on_pieces(recovery: Recovery) -> Array:
+    """Return 1 where a point that moves over a body lies on the piece of a single cut of it, else 0, (n_t, m)."""
+    from heuncli.loads.kinetostatics.sections import find_attachments, mark_points_on_pieces
+
+    actions = [
+        *list_whole_joint_actions(recovery.joints),
+        *recovery.applied_actions,
+        *list_coupling_actions(recovery.couplings),
+    ]
+    columns = [
+        mark_points_on_pieces(cuts, a.point)[:, 0]
+        for cuts in recovery.setup.cuts
+        if cuts.s is None
+        for a in find_attachments(cuts.body, recovery.states, actions)
+        if a.point.ndim == 2
+    ]
+    return np.stack(columns, axis=1) if columns else np.zeros((len(recovery.states.x), 0))
