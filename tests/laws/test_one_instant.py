@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
 
+from heuncli.results.results import Results
+from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.sharing import is_same
 from heuncli.scene.file_format.source import read_source
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.options import Options
-from heuncli.study.queries.measure import find_peak, search_peaks
+from heuncli.study.quantities.channels import Channel, make_path_channel
+from heuncli.study.queries.measure import find_peak, find_reports
+from heuncli.study.search.columns import ChannelSearch
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT, SPECS
 
@@ -46,16 +51,14 @@ def test_states_that_were_compared_are_those_found_afresh(path: Path) -> None:
 @pytest.mark.parametrize("path", ["joints.end.force", "joints.end.force.y", "sections.lower.N", "joints.low.moment"])
 def test_the_extreme_of_one_instant_is_what_a_search_finds(path: str, how: str) -> None:
     study = solve(load(str(ROOT / "heuncli" / "starters" / "truss.yaml")), Options())
-    of_vectors = study.find_numbers(path).is_vector
 
-    def columns(results: object) -> object:
-        values = study.find_numbers(path).values
-        return ((values**2).sum(axis=-1) if of_vectors else values).reshape(1, -1)
+    def collect(results: Results) -> list[Channel]:
+        return [make_path_channel(find_values(results, path))]
 
-    low, high = search_peaks(study, path, columns, (-1.0, 1.0), None)  # type: ignore[arg-type]
+    bounds = study.search_extremes(ChannelSearch(collect, lambda _: math.nan, (-1.0, 1.0)), find_reports(path))
+    low, high = float(bounds.low[0]), float(bounds.high[0])
     found = find_peak(study, path, how)
-    lower = how == "min" or (how == "abs" and abs(low.value) > abs(high.value))
-    value = (low if lower else high).value
-    wanted = abs(value) ** 0.5 if of_vectors else abs(value) if how == "abs" else value
-    assert found.time == low.time == high.time == 0.0
+    value = low if how == "min" or (how == "abs" and abs(low) > abs(high)) else high
+    wanted = abs(value) if how == "abs" else value
+    assert found.time == bounds.low_at[0] == bounds.high_at[0] == 0.0
     assert abs(found.value - wanted) <= 1e-15 * abs(wanted)

@@ -53,7 +53,7 @@ def across(x: float) -> str:
     """A vector of 1 N in the plane and x N across it."""
     vectors = np.array([[1.0, 0.0, x], [0.0, 0.5, 0.0]])
     whole = TurningRun(np.array([0.0, 2.0]), "", np.zeros(0), 0)
-    curve = TipCurve("F", "foundation.force", "N", 0, turned(), whole, vectors, make_axis_plane("z"))
+    curve = TipCurve("F", "foundation.force", "N", 0, turned(), whole, vectors, make_axis_plane("z"), "F")
     notes = make_notes(curve, LargestVector(1.0, 0.0, 1.0, 0.0, 0.0, is_constant=False), Units())
     return "told" if any("normal to the plane" in note for note in notes) else "silent"
 
