@@ -12,7 +12,6 @@ import pytest
 from heuncli.loads.kinetostatics import sections
 from heuncli.loads.redundancy import self_stress
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.output.snapshots.searches import search_page
 from heuncli.output.tables.page import TABLE_DEFAULT, make_page
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
@@ -55,7 +54,8 @@ def counts_of(text: str, *, table: bool = False) -> Counts:
     with counted() as found:
         study = solve(spec, Options(requested_reports=TABLE_DEFAULT if table else None))
         if table:
-            search_page(make_page(study.results, make_labels(study.spec), study.magnitudes), study, TABLE_DEFAULT)
+            page = make_page(study.results, make_labels(study.spec), study.magnitudes)
+            study.search_extremes(page.make_search(), TABLE_DEFAULT, whole=True)
     found["evaluations"] = study.results.work["evaluations"]
     found["steps"] = study.results.work["steps"]
     return found
