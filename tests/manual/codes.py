@@ -17,7 +17,7 @@ PAGE = ROOT / "heuncli" / "manual" / "codes.md"
 GENERATED = "Each with its cause, the remedy, and a spec's lines before (-) and after (+) the cure.\n"
 WIDEST = 120
 NEAR = 8  # characters that are shown before what changes in a line
-LONGEST = 40  # characters of a line that is shown whole
+LONGEST = 48  # characters of a line that is shown whole
 SPECIFIC = (
     "did you mean",
     "for '",
