@@ -12,7 +12,7 @@ from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_
 from heuncli.output.machine_geometry.machine import Machine, make_machine
 from heuncli.output.machine_geometry.poses import Poses, extract_poses
 from heuncli.output.machine_geometry.ropes import iter_rope_lines
-from heuncli.output.web_page.moving_page import make_page_data
+from heuncli.output.web_page.moving_page import render_moving_page
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
@@ -20,7 +20,7 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
-from tests.shared.moving_pages import places
+from tests.shared.moving_pages import data_of, places
 
 HOIST = """heun: 1
 gravity: [0, 0, -10]
@@ -157,7 +157,7 @@ def test_both_strands_of_a_belt_pull_what_its_bearing_holds() -> None:
 
 def test_a_page_holds_the_ends_of_ropes_at_each_frame_and_what_stands_still_once() -> None:
     study = of_spec("tower_crane")
-    data = make_page_data(study, Units())
+    data = data_of(render_moving_page({"": study}, Units()))
     scene, count = data["scene"], data["count"]
     (rope,) = scene["ropes"]
     ends = places(rope["ends"]).reshape(count, rope["count"], 2, 3)
@@ -166,6 +166,7 @@ def test_a_page_holds_the_ends_of_ropes_at_each_frame_and_what_stands_still_once
     assert falls.mean(axis=1) == pytest.approx(trolley[:, 0], abs=1e-5) and np.ptp(trolley[:, 0]) > 1.0
     assert {pull["on"] for pull in scene["pulls"]} == {"trolley", "hook", "ground"}
     assert [(own["joint"], own["symbols"], own["slides"]) for own in scene["acting"]] == [(0, ("sliding",) * 2, True)]
-    stopped = make_page_data(solve(load("stops.yaml", STOPPED), Options(requested_reports=REPORTS)), Units())["scene"]
+    stopping = solve(load("stops.yaml", STOPPED), Options(requested_reports=REPORTS))
+    stopped = data_of(render_moving_page({"": stopping}, Units()))["scene"]
     assert [len(places(mark["places"])) for mark in stopped["marks"]] == [3] * 7
     assert set(stopped["symbols"]) == {"stop", "latch"}

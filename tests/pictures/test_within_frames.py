@@ -10,7 +10,7 @@ import pytest
 
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
-from tests.shared.plotted import panels_of
+from tests.shared.plotted import views_of
 
 SCENES = [
     ("flywheel", "scene", "--view", "x"),  # its joint and its centre are one point but for rounding
@@ -32,5 +32,7 @@ def test_all_that_is_drawn_lies_in_the_picture(heun: Heun, folder: Path, words: 
 def test_what_is_one_point_but_for_rounding_is_no_size(heun: Heun, folder: Path) -> None:
     spec = str(ROOT / "specs" / "flywheel.yaml")
     assert heun("plot", spec, "scene", "--view", "x", "-o", "drawn.svg").returncode == 0
-    (panel,) = panels_of((folder / "drawn.svg").read_text(), equal=True)
-    assert panel.pixel * (panel.right - panel.left) > 0.6  # twice the wheel's radius
+    text = (folder / "drawn.svg").read_text()
+    (view,) = views_of(text)
+    (width,) = map(float, re.findall(r'viewBox="0 0 ([\d.]+) ', text))
+    assert 0.6 < view.x.step * width < 1.8  # metres: twice the wheel's radius, and some room

@@ -85,7 +85,7 @@ def test_a_diagram_and_its_files(study: heuncli.Solved, tmp_path: Path) -> None:
     assert diagram.svg.startswith("<?xml") and diagram._repr_svg_().startswith("<svg") and "[kN]" in diagram.svg
     diagram.save(tmp_path / "a.svg")
     assert (tmp_path / "a.svg").read_text(encoding="utf-8") == diagram.svg
-    assert "coordinates.pivot.angle" in study.plot("coordinates.pivot.rate", over="coordinates.pivot.angle").svg
+    assert "pivot, angle" in study.plot("coordinates.pivot.rate", over="coordinates.pivot.angle").svg.lower()
     with pytest.raises(heuncli.UsageError, match=r"accepted file extensions: .svg, .png, .pdf"):
         diagram.save(tmp_path / "a.gif")
 

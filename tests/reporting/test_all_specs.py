@@ -21,7 +21,7 @@ from tests.shared.page_reader import OURS, PageReader
 FOLDER = Path(__file__).parents[2] / "specs"
 NAMES = [pytest.param(path.stem, marks=pytest.mark.heavy) for path in sorted(FOLDER.glob("*.yaml"))]
 NO_NUMBER = re.compile(r"\b(nan|NaN|inf|Infinity|None)\b")
-UNIT = re.compile(r"\[[^\]]+\]")
+UNIT = re.compile(r"\[[^\]]+\]|\b[\d.]+ (mm|m|km|in|N|kN|MN|N·m|kN·m)\b")  # of an axis, a ring, a scale bar
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -12,11 +12,10 @@ from heuncli.base.errors import Problem, UsageError
 from heuncli.base.records import replace
 from heuncli.output.documents.as_html import escape_text, make_element, render_table
 from heuncli.output.documents.as_text import render_text
-from heuncli.output.documents.document import OutputDocument, OutputTable
 from heuncli.output.snapshots.display_units import read_display_units
 from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
-from heuncli.output.snapshots.tables import TablesQuery, make_tables
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.snapshots.tables import TablesQuery
+from heuncli.output.summary.run_document import RunParts, make_run_parts
 from heuncli.results.results import Array
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.model.selection import Selection
@@ -37,7 +36,7 @@ STYLE = (
 
 
 def format_text(study: Study, instants: Array | None, units: str | None, selection: str | Sequence[str] | None) -> str:
-    """Return heading and tables as `heun run --full` writes them, without its summary.
+    """Return heading, summary and tables as `heun run` writes them; of requested reports the tables alone.
 
     instants: (n,) [s], or None for the extremes
     selection: reports or entries, as in `solve`, or None
@@ -47,15 +46,13 @@ def format_text(study: Study, instants: Array | None, units: str | None, selecti
         parsed = parse_choice(
             selection.split(",") if isinstance(selection, str) else selection, "only", "study.measure"
         )
-    tables = _make_tables(study, instants, read_display_units("units", units), parsed)
-    return render_text(OutputDocument(study.results.title, make_heading(study.results), tables))
+    parts = _make_parts(study, instants, read_display_units("units", units), parsed)
+    return render_text(parts.make_document())
 
 
-def _make_tables(
-    study: Study, instants: Array | None, units: Units, requested: ReportChoice | None = None
-) -> list[OutputTable]:
-    """Make the tables of the reports that are shown by default, or of those requested, as far as they were solved
-    for.
+def _make_parts(study: Study, instants: Array | None, units: Units, requested: ReportChoice | None = None) -> RunParts:
+    """Make heading, summary and tables of the reports that are shown by default, or the tables of those requested, as
+    far as they were solved for.
     """
     solved = study.options.selection
     spec = study.spec
@@ -67,11 +64,10 @@ def _make_tables(
     what = replace(what, reports=what.reports & solved.reports or solved.reports)
     is_explicit = (requested is not None or spec.report.results is not None) and "foundation" in what.reports
     narrowed = _narrow_study(study, what)
-    tables = make_tables(
-        narrowed, replace(make_labels(spec), units=units), TablesQuery(what, instants, details=is_explicit)
-    )
+    query = TablesQuery(what, instants, details=is_explicit, full=False)
+    parts = make_run_parts(narrowed, replace(make_labels(spec), units=units), query, has_summary=requested is None)
     study.later_warnings.update(narrowed.later_warnings)
-    return tables
+    return parts
 
 
 def _narrow_study(study: Study, what: Selection) -> Study:
@@ -87,12 +83,10 @@ def _narrow_study(study: Study, what: Selection) -> Study:
 
 def render_html(study: Study, instants: Array | None) -> str:
     """Render heading and tables as an HTML fragment without scripts; all text from the spec is escaped."""
-    body = [make_element("style", STYLE), make_element("h3", escape_text(study.results.title))]
-    body += [
-        make_element("p", escape_text(f"{label}: {text}" if label else text))
-        for label, text in make_heading(study.results)
-    ]
-    body += [render_table(table) for table in _make_tables(study, instants, Units())]
+    parts = _make_parts(study, instants, Units())
+    body = [make_element("style", STYLE), make_element("h3", escape_text(parts.title))]
+    body += [make_element("p", escape_text(f"{label}: {text}" if label else text)) for label, text in parts.facts]
+    body += [render_table(table) for table in parts.collect_tables()]
     return make_element("div", "\n".join(body), class_="heun-run")
 
 

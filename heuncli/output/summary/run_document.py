@@ -31,9 +31,13 @@ class RunParts(NamedTuple):
 
     def make_document(self, *, full: bool = False) -> OutputDocument:
         """Make the document; full: with every row of the summary."""
-        is_shown = self.summary is not None and not self.summary.is_empty
-        lead = [make_summary_table(self.summary, full=full)] if is_shown and self.summary is not None else []
-        return OutputDocument(self.title, self.facts, [*lead, *self.tables])
+        return OutputDocument(self.title, self.facts, self.collect_tables(full=full))
+
+    def collect_tables(self, *, full: bool = False) -> list[OutputTable]:
+        """Return the table of the summary, if there is one, and the others."""
+        if self.summary is None or self.summary.is_empty:
+            return [*self.tables]
+        return [make_summary_table(self.summary, full=full), *self.tables]
 
 
 def make_run_parts(

@@ -178,7 +178,8 @@ class Channel(NamedTuple):
 
 def make_path_channel(numbers: PathValues) -> Channel:
     """Make the channel of the numbers at a path that change over the instants; its unit is not needed to search it."""
-    block, *names, quantity = numbers.keys
+    block, *words = numbers.keys
+    *names, quantity = words or [""]  # `time` is one word
     values = numbers.values.reshape(len(numbers.values), -1)
     components = make_component_names(numbers.axes, numbers.values.shape[1:])
     return Channel(block, ".".join(names), quantity, "", components, values, numbers.axes)
