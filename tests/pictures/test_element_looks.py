@@ -165,7 +165,7 @@ def test_a_page_holds_the_ends_of_ropes_at_each_frame_and_what_stands_still_once
     falls = ends[:, 1:3, :, 0].min(axis=2)  # hang on the trolley's sheaves, a diameter apart
     assert falls.mean(axis=1) == pytest.approx(trolley[:, 0], abs=1e-5) and np.ptp(trolley[:, 0]) > 1.0
     assert {pull["row"].split(".")[3] for pull in scene["pulls"]} == {"trolley", "hook", "ground"}
-    assert [(own["joint"], own["symbols"], own["slides"]) for own in scene["acting"]] == [(0, ("sliding",) * 2, True)]
+    assert [(own["joint"], own["symbols"], own["slides"]) for own in scene["acting"]] == [(0, ["sliding"] * 2, True)]
     stopping = solve(load("stops.yaml", STOPPED), Options(requested_reports=REPORTS))
     stopped = data_of(render_moving_page({"": stopping}, Units()))["scene"]
     assert [len(places(mark["places"])) for mark in stopped["marks"]] == [3] * 7
