@@ -17,6 +17,7 @@ from heuncli.output.machine_geometry.poses import Poses, extract_poses
 from heuncli.output.tables.plurals import format_count
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
+from heuncli.scene.file_format.couplings import End
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 
@@ -108,7 +109,7 @@ def _iter_loads(data: ReportData) -> Iterator[Sequence[str]]:
         yield "gravity", append_unit(direction, "m/s²"), "all bodies"
     for name, force in spec.forces.items():
         ends = [getattr(force, key, None) for key in ("from_", "to")]
-        bodies = [describe_object("bodies", end.body, data.labels) for end in ends if end is not None]
+        bodies = [describe_object("bodies", end.body, data.labels) for end in ends if isinstance(end, End)]
         joint, body = getattr(force, "joint", None), getattr(force, "body", None)
         place = " and ".join(bodies) or (joint and f"joint {joint}") or (body if isinstance(body, str) else "")
         yield describe_object("forces", name, data.labels), LOAD_KINDS[force.type].display_name, str(place)
