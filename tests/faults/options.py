@@ -36,6 +36,9 @@ CODES = (0, 1, 2, 3, 4)  # manual/commands.md, "Exit codes": the others are a bu
 LINES: Mapping[str, Sequence[str]] = {
     "run": (
         "{spec} --format json --by-cause",
+        "{spec} --summary --title T --label {path}=Words",
+        "{spec} --full",
+        "{spec} --hardpoints --format json",
         "{spec} --format csv --by-cause -q",
         "{spec} --format markdown -v",
         "{spec} --format table --units kN,mm,deg,rpm --all",
@@ -181,6 +184,7 @@ LINES: Mapping[str, Sequence[str]] = {
         "{spec} {path} -o {out}/a.svg",
         "{spec} {path} --width 60 --units kN,mm,deg,rpm",
         "{spec} scene -o {out}/scene.svg",
+        "{spec} {path} --title T --label {path}=Words -o {out}/named.svg",
         "{spec} scene --at last --view 30,20 --width 60",
         "{spec} {path} --x {x} -o {out}/x.svg",
         "{spec} {section} -o {out}/b.svg",
@@ -195,7 +199,8 @@ LINES: Mapping[str, Sequence[str]] = {
         "{spec} {path} --tolerance 1e-6 --no-reduce --least-norm --time-limit 2",
     ),
     "show": (
-        "{spec} -o {out}/show.html --time-limit {limit}",
+        "{spec} -o {out}/show.html --title T --label {path}=Words --time-limit {limit}",
+        "{spec} -o {out}/show.html --at 0 --time-limit {limit}",
         "{spec} -o {out}/f.html --glb {out}/scene.glb --frames 5 --time-limit {limit}",
         "{spec} -o {out}/a.html --units kN,mm,deg,rpm --set {setting} -q --time-limit {limit}",
         "{spec} -o {out}/c.html --case {case} --time-limit {limit}",
@@ -203,7 +208,7 @@ LINES: Mapping[str, Sequence[str]] = {
         "{spec} -o {out}/e.html --tolerance 1e-6 --no-reduce --least-norm --time-limit {limit}",
     ),
     "report": (
-        "{spec} -o {out}/report.html --time-limit {limit}",
+        "{spec} -o {out}/report.html --title T --label {path}=Words --time-limit {limit}",
         "{spec} --format md -o - --time-limit {limit}",
         "{spec} -o {out}/r.md --date today --author me --project p --units kN,mm,deg,rpm -q --time-limit {limit}",
         "{spec} -o {out}/c.html --case {case} --set {setting} --time-limit {limit}",
@@ -213,7 +218,7 @@ LINES: Mapping[str, Sequence[str]] = {
         "{spec} -o {out}/n.md --tolerance 1e-6 --no-reduce --least-norm --time-limit {limit}",
     ),
     "export": (
-        "loads {spec} --body {body} --at first --format csv",
+        "loads {spec} --body {body} --at first --format csv --title T --label {path}=Words",
         "loads {spec} --body {body} --at first,last --format json",
         "loads {spec} --body {body} --at first --format ansys -o {out}/a.dat",
         "loads {spec} --body {body} --at first --format nastran --units N,mm,t",

@@ -124,7 +124,7 @@ def is_monotone(f: Function) -> bool:
 
 
 def test_one_crossing_of_a_smooth_rise_takes_few_runs() -> None:
-    """Half of them no more than 10, nine of ten no more than 12: the aim, over all such functions drawn here."""
+    """Half of them no more than 12, nine of ten no more than 14: the gaps at both ends are looked into as well."""
     runs = []
     for seed in range(100):
         rng = np.random.default_rng([7, seed])
@@ -132,7 +132,7 @@ def test_one_crossing_of_a_smooth_rise_takes_few_runs() -> None:
         if is_monotone(f) and len(crossings_of(f)) == 1:
             runs.append(len(looked(f, 10.0 ** rng.uniform(-12.0, -8.0), seed).samples))
     assert len(runs) > 25
-    assert np.median(runs) <= 10 and np.quantile(runs, 0.9) <= 12, sorted(runs)
+    assert np.median(runs) <= 12 and np.quantile(runs, 0.9) <= 14, sorted(runs)
 
 
 @pytest.mark.parametrize("relation", ["<", ">="])
