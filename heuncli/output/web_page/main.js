@@ -69,13 +69,16 @@ function tellCurve(course, frame, over) {
   by("curve").setAttribute("aria-label", `${course.label} over ${over}; now ${value} ${course.unit}`);
 }
 
+/** Call `follow` with the colours whenever the page turns dark or light. */
+function listenToColours(follow) {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => follow(coloursNow()));
+}
+
 /** Begin with the data of a load case. */
 function begin({ data, cases }, run) {
   data.scene.cloud = cloudOf(data.scene, data.count);
   data.scene.cover = coverOf(data.scene);
-  let waiting = false;
-  let last = 0;
-  let panel = null;
+  let [waiting, last, panel] = [false, 0, null];
   const colours = { now: coloursNow() };
   const labels = { machine: new LabelList(), curve: new LabelList() };
   const changed = () => {
@@ -124,8 +127,8 @@ function begin({ data, cases }, run) {
   listenToSections(chosen, changed);
   listenToTabs(table, changed);
   show = listenToCurve(chosen, player, changed, () => panel);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    colours.now = coloursNow();
+  listenToColours((now) => {
+    colours.now = now;
     changed();
   });
   new ResizeObserver(changed).observe(by("machine"));

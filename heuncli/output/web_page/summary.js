@@ -58,7 +58,7 @@ function grouped(list) {
   return [...groups.values()].map((group) => {
     const most = group.reduce((a, b) => (b.size > a.size ? b : a));
     const others = new Set(group.map(({ caption }) => caption)).size;
-    return others > 1 ? { ...most, caption: `${most.caption} (greatest of ${others})` } : most;
+    return others > 1 ? Object.assign({}, most, { caption: `${most.caption} (greatest of ${others})` }) : most;
   });
 }
 

@@ -134,10 +134,10 @@ function halfThickness(body) {
   if (body.thickness === undefined) {
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     for (const { corners, ball } of body.surfaces) {
-      const points = ball ? [-1, 1].flatMap((s) => ball.center.map((c) => c + s * ball.radius)) : corners;
-      for (let i = 0; i < points.length; i += 1) {
-        low[i % 3] = Math.min(low[i % 3], points[i]);
-        high[i % 3] = Math.max(high[i % 3], points[i]);
+      const edges = ball ? [-1, 1].flatMap((s) => ball.center.map((c) => c + s * ball.radius)) : corners;
+      for (let i = 0; i < edges.length; i += 1) {
+        low[i % 3] = Math.min(low[i % 3], edges[i]);
+        high[i % 3] = Math.max(high[i % 3], edges[i]);
       }
     }
     body.thickness = body.surfaces.length ? Math.min(...high.map((h, i) => h - low[i])) / 2 : 0;
