@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import stat
 import sys
 import time
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.commands.report import printing
+from heuncli.base.programs import BROWSERS
 from tests.shared.command import Heun
 
 PRINTS = """\
@@ -51,14 +53,14 @@ def test_each_program_prints_the_page(name: str, programs: Path, heun: Heun, fol
     words = seen.read_text().splitlines()
     page = next(Path(word.removeprefix("file://")) for word in words if word.endswith("report.html"))
     assert not page.parent.exists()  # its folder is gone
-    if name in printing.BROWSERS:
+    if name in BROWSERS:
         assert "--host-resolver-rules=MAP * ~NOTFOUND" in words
 
 
 def test_no_sandbox_for_root_alone(programs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(programs, "chromium", PRINTS)
     for user, is_given in ((0, True), (1000, False)):
-        monkeypatch.setattr(printing.os, "geteuid", lambda user=user: user)
+        monkeypatch.setattr(os, "geteuid", lambda user=user: user)
         assert ("--no-sandbox" in printing.find_printer().options) is is_given
 
 

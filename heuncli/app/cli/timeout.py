@@ -146,6 +146,12 @@ def remaining_time() -> float | None:
     return None if _Clock.deadline is None else max(_Clock.deadline - time.monotonic(), 1e-9)
 
 
+def limit_seconds(longest: float) -> float:
+    """Return how long another program may run [s]: `longest`, or what is left until the limit."""
+    remaining = remaining_time()
+    return longest if remaining is None else min(longest, remaining)
+
+
 def disarm(*, late: bool = False) -> None:
     """End the time limit, so that output is not interrupted. Raises LimitError if the limit has passed, unless
     `late`.

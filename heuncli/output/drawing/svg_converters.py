@@ -6,28 +6,17 @@ The program gets a file in a temporary folder; a Chromium resolves no names. Imp
 from __future__ import annotations
 
 import math
-import os
-import shutil
-import subprocess
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.output.drawing.shapes import VectorDrawing, to_svg
 
 ZOOM = 2  # PNG pixels for a pixel of the drawing
 MAX_SECONDS = 60.0
 MAGIC = {"png": b"\x89PNG", "pdf": b"%PDF"}  # how a file of a form begins
-BROWSERS = (
-    "chromium", "chromium-browser", "chromium-headless-shell", "google-chrome", "google-chrome-stable", "chrome",
-    "msedge", "microsoft-edge",
-)  # fmt: skip
-BROWSER_OPTIONS = (
-    "--headless", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-background-networking",
-    "--disable-sync", "--disable-component-update", "--disable-dev-shm-usage", "--hide-scrollbars",
-    "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9", "--user-data-dir={folder}/profile",
-)  # fmt: skip
 PAGE = """<!doctype html><meta charset="utf-8"><style>@page{{size:{width}px {height}px;margin:0}}
 html,body{{margin:0}}svg{{display:block}}</style>{svg}"""
 
@@ -52,10 +41,10 @@ CONVERTERS = (
         BROWSERS,
         {
             "png": (
-                *BROWSER_OPTIONS, f"--force-device-scale-factor={ZOOM}", "--window-size={width},{height}",
+                f"--force-device-scale-factor={ZOOM}", "--window-size={width},{height}",
                 "--screenshot={out}", "{page}",
             ),
-            "pdf": (*BROWSER_OPTIONS, "--no-pdf-header-footer", "--print-to-pdf={out}", "{page}"),
+            "pdf": ("--no-pdf-header-footer", "--print-to-pdf={out}", "{page}"),
         },
     ),
 )  # fmt: skip
@@ -64,11 +53,9 @@ CONVERTERS = (
 def find_converters(form: str) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Yield the programs on PATH that write a form, the best first, each with its options."""
     for converter in CONVERTERS:
-        for name in converter.names if form in converter.options else ():
-            path = shutil.which(name)
-            if path is not None:
-                is_root = name in BROWSERS and hasattr(os, "geteuid") and os.geteuid() == 0
-                yield path, (("--no-sandbox",) if is_root else ()) + converter.options[form]
+        path = find_program(converter.names) if form in converter.options else None
+        if path is not None:
+            yield path, (list_browser_options() if converter.names is BROWSERS else ()) + converter.options[form]
 
 
 def convert(drawing: VectorDrawing, form: str) -> bytes | None:
@@ -84,11 +71,8 @@ def convert(drawing: VectorDrawing, form: str) -> bytes | None:
             page.write_text(PAGE.format(width=width, height=height, svg=body), encoding="utf-8")
             values = {"svg": source, "page": page.as_uri(), "out": target, "folder": folder}
             words = [option.format(**values, width=width, height=height) for option in options]
-            try:
-                subprocess.run([path, *words], check=True, capture_output=True, timeout=MAX_SECONDS)
-                content = target.read_bytes()
-            except (OSError, subprocess.SubprocessError):
-                continue
+            _, failure = run_program([path, *words], folder, MAX_SECONDS)
+            content = target.read_bytes() if target.is_file() and not failure else b""
         if content.startswith(MAGIC[form]):
             return content
     return None

@@ -7,32 +7,20 @@ from __future__ import annotations
 
 import base64
 import binascii
-import os
 import re
-import shutil
-import signal
-import subprocess
-import sys
 import tempfile
 from pathlib import Path, PurePath
 
 from heuncli.app.cli import timeout
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.output.web_page.moving_page import Film
 
 MAX_SECONDS = 300.0  # of a program, unless --time-limit leaves less
-MAX_MESSAGE = 300  # characters of what a program says
 DRAW_BUDGET = 600_000  # ms of the browser's own time until it must have drawn all pictures
-BROWSERS = (
-    "chromium", "chromium-browser", "chromium-headless-shell", "google-chrome", "google-chrome-stable", "chrome",
-    "msedge", "microsoft-edge",
-)  # fmt: skip
-BROWSER_OPTIONS = (
-    "--headless", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-background-networking",
-    "--disable-sync", "--disable-component-update", "--disable-dev-shm-usage", "--hide-scrollbars",
-    "--force-color-profile=srgb", "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9",
-    f"--virtual-time-budget={DRAW_BUDGET}", "--blink-settings=preferredColorScheme=1",
+DRAWING_OPTIONS = (  # of the browser
+    "--force-color-profile=srgb", f"--virtual-time-budget={DRAW_BUDGET}", "--blink-settings=preferredColorScheme=1",
 )  # fmt: skip
 ENCODER_OPTIONS = ("-y", "-loglevel", "error", "-i", "%05d.png", "-pix_fmt", "yuv420p", "-movflags", "+faststart")
 HINT = "install Chromium or Chrome, and have it on PATH; or write -o machine.html, which needs no program"
@@ -76,10 +64,10 @@ def find_format(output: str | None) -> FilmFormat | None:
 
 def find_programs(form: FilmFormat) -> FilmPrograms:
     """Find the programs that a format needs. Raises OutputError."""
-    browser = next((path for path in map(shutil.which, BROWSERS) if path is not None), None)
+    browser = find_program(BROWSERS)
     if browser is None:
         raise OutputError(Problem("no-film-program", "no Chromium or Chrome was found on PATH", hint=HINT))
-    encoder = shutil.which("ffmpeg") if form.is_encoded else ""
+    encoder = find_program(("ffmpeg",)) if form.is_encoded else ""
     if encoder is None:
         raise OutputError(Problem("no-film-program", "no ffmpeg was found on PATH", hint=ENCODER_HINT))
     return FilmPrograms(browser, encoder)
@@ -101,7 +89,7 @@ def draw_film(page: str, form: FilmFormat, programs: FilmPrograms, ending: str) 
             (folder / f"{number:05d}.png").write_bytes(picture)
         target = folder / f"film{ending}"
         words = [programs.encoder, "-framerate", f"{form.rate:g}", *ENCODER_OPTIONS, str(target)]
-        _, message = _run_program(words, folder)
+        _, message = run_program(words, name, timeout.limit_seconds(MAX_SECONDS))
         if not target.is_file() or not target.stat().st_size:
             raise OutputError(
                 Problem("no-film-program", f"{programs.encoder} has written no video: {message}", hint=ENCODER_HINT)
@@ -113,13 +101,12 @@ def _draw_pictures(page: str, form: FilmFormat, browser: str, folder: Path) -> l
     """Let the browser draw, and read the pictures from the document that it prints."""
     source = folder / "film.html"
     source.write_text(page, encoding="utf-8")
-    is_root = hasattr(os, "geteuid") and os.geteuid() == 0
     words = [
-        browser, *(("--no-sandbox",) if is_root else ()), *BROWSER_OPTIONS, f"--user-data-dir={folder / 'profile'}",
+        browser, *(option.format(folder=folder) for option in list_browser_options()), *DRAWING_OPTIONS,
         f"--force-device-scale-factor={form.scale}", f"--window-size={form.width + 100},{form.height + 100}",
         "--dump-dom", source.as_uri(),
     ]  # fmt: skip
-    printed, message = _run_program(words, folder)
+    printed, message = run_program(words, str(folder), timeout.limit_seconds(MAX_SECONDS))
     found = DRAWN.search(printed)
     try:
         pictures = [base64.b64decode(word, validate=True) for word in found[1].split()] if found else []
@@ -129,27 +116,3 @@ def _draw_pictures(page: str, form: FilmFormat, browser: str, folder: Path) -> l
         text = f"{browser} has drawn nothing{f': {message}' if message else ''}"
         raise OutputError(Problem("no-film-program", text, hint=HINT))
     return pictures
-
-
-def _run_program(command: list[str], folder: Path) -> tuple[bytes, str]:
-    """Run a program to its end, or end it with all that it began; returns what it prints, and what it says at last."""
-    remaining = timeout.remaining_time()
-    limit = MAX_SECONDS if remaining is None else min(MAX_SECONDS, remaining)
-    has_group = sys.platform != "win32"
-    try:
-        process = subprocess.Popen(
-            command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            env={**os.environ, "HOME": str(folder)}, start_new_session=has_group,
-        )  # fmt: skip
-    except OSError as reason:
-        return b"", str(reason)
-    try:
-        printed, said = process.communicate(timeout=limit)
-    except subprocess.TimeoutExpired:
-        return b"", f"it took longer than {limit:.3g} s"
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL) if has_group else process.kill()
-            process.communicate()
-    lines = said.decode("utf-8", "replace").strip().splitlines() if process.returncode else []
-    return printed, lines[-1][:MAX_MESSAGE] if lines else ""
