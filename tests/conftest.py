@@ -60,7 +60,7 @@ def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--all-seeds", action="store_true", help="all random cases, not those of every day alone")
+    parser.addoption("--all-cases", action="store_true", help="all cases, not those of every day alone")
 
 
 def pytest_configure() -> None:
@@ -99,7 +99,7 @@ def pytest_ignore_collect(collection_path: Path) -> bool | None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     named = any("[" in argument for argument in config.args)  # a case that is named runs
-    long = set() if named or config.getoption("all_seeds") else list_long_cases(items)
+    long = set() if named or config.getoption("all_cases") else list_long_cases(items)
     keep(config, items, {item for item in items if item not in long})
     if KERNEL == "compiled":
         return

@@ -66,6 +66,7 @@ HELD_REPORTS = [row for row in REPORTS if any("report" in held for held in MENDE
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("row", HELD_PAGES, ids=lambda row: row.name)
+@pytest.mark.third
 def test_faults_that_were_mended_stay_away_from_pages(row: Page, browser: Chromium, tmp_path: Path) -> None:
     held = {fault for fault, where in MENDED.items() if "page" in where}
     assert [str(f) for f in draw_page(row, tmp_path, browser).findings if f.kind in held] == []

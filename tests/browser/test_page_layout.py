@@ -31,6 +31,7 @@ GIF = """(async () => {
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("spec", sorted({row.spec for row in PAGES} - {"crane_ropes"}))
+@pytest.mark.third
 def test_the_page_of_a_usual_machine_is_small(spec: str, page: Pages) -> None:
     assert page(find_spec(spec)).stat().st_size <= MOST_BYTES
 

@@ -56,6 +56,7 @@ def print_on_paper(tab: Tab) -> None:
     tab.sized(round(PRINTED[0] * PIXEL), round(PRINTED[1] * PIXEL))
 
 
+@pytest.mark.third
 def test_sheets_and_boxes(browser: Chromium, report: Report) -> None:
     with browser.open(report.path) as tab:
         assert tab.faults == []

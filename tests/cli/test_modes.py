@@ -161,6 +161,7 @@ def test_without_what_excites(heun: Heun, folder: Path) -> None:
     ],
 )
 @pytest.mark.parametrize("analysis", ["analysis: {type: rest}\n", "analysis: {duration: 1}\n"])
+@pytest.mark.third
 def test_a_drive_is_held_where_it_starts(heun: Heun, folder: Path, drive: str, rests: str, analysis: str) -> None:
     """A pendulum on a driven cart in a spring to the ground: that of a cart that stands there."""
     head = f"{SCENE}forces: {{k: {{type: spring, from: ground.W, to: bob.b, stiffness: 9, length: 1.5}}}}\n{analysis}"
@@ -211,6 +212,7 @@ def test_no_false_digits_beside_what_is_stiff(heun: Heun, folder: Path, stiffnes
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_every_spec_has_modes_or_a_reason(heun: Heun, path: Path) -> None:
     done = heun("modes", str(path))
     assert done.returncode == 0 or (done.returncode == 3 and "[no" in done.stderr and not done.stdout)

@@ -44,6 +44,7 @@ def test_a_full_disk_is_5(folder: Path, words: str) -> None:
         ("ulimit -f 1; heun run swinging.yaml --format json > kept", 5, None),
     ],
 )
+@pytest.mark.third
 def test_wherever_it_is_told_to_go(folder: Path, line: str, code: int, kept: bool | None) -> None:
     """None: what a shell has opened may hold a part."""
     names = {path.name for path in folder.iterdir()}

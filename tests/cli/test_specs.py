@@ -86,6 +86,7 @@ def test_it_is_as_accurate_as_asked(name: str) -> None:
 
 
 @each
+@pytest.mark.third
 def test_its_tables_print(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", path_of(name)]) == 0
     printed = capsys.readouterr()
@@ -100,6 +101,7 @@ def test_its_tables_print(name: str, capsys: pytest.CaptureFixture[str]) -> None
 
 
 @each
+@pytest.mark.third
 def test_its_json_says_the_same(name: str) -> None:
     results = study_of(name).results
     parsed = json.loads(to_json(results))
@@ -125,6 +127,7 @@ def same(read: Any, written: Any, where: str) -> None:
 
 
 @each
+@pytest.mark.third
 def test_its_csv_says_the_same(name: str) -> None:
     study = study_of(name)
     rows = list(csv.DictReader(io.StringIO(to_csv(study.results, make_labels(study.spec)))))
@@ -139,6 +142,7 @@ def test_its_csv_says_the_same(name: str) -> None:
 
 
 @each
+@pytest.mark.third
 def test_every_result_may_be_expected(name: str) -> None:
     """When a spec is read every path into the results is known, with the shape and the dimension that are found."""
     results = study_of(name).results

@@ -147,6 +147,7 @@ def test_what_is_done_stands_when_the_scheduler_goes(tmp_path: Path, recipe: Rec
     assert str(gone.value).splitlines()[0] == f"--dask {dask.address}: the scheduler was lost [cluster-gone]"
 
 
+@pytest.mark.long
 def test_workers_without_this_heun_are_named_and_not_used(dask: DaskCluster, recipe: Recipe) -> None:
     [good] = dask.with_workers(1)
     others = [
@@ -274,6 +275,7 @@ def test_without_dask_the_extra_is_named(heun: Heun, monkeypatch: pytest.MonkeyP
     ]
 
 
+@pytest.mark.long
 def test_who_cannot_be_reached_for_long_is_given_up(
     dask: DaskCluster, recipe: Recipe, monkeypatch: pytest.MonkeyPatch
 ) -> None:

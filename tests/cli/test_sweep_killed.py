@@ -104,6 +104,7 @@ def test_an_interrupt_keeps_what_is_done(
         assert set(out.splitlines()) < set(undisturbed.rows.splitlines())
 
 
+@pytest.mark.long
 def test_two_sweeps_at_once_on_one_store(swinging: Path) -> None:
     undisturbed = rows(swinging)
     with (

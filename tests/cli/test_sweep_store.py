@@ -253,6 +253,7 @@ def full(folder: Path, more: str) -> Done:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_a_full_disk_is_5_and_what_is_done_is_kept(heun: Heun, folder: Path) -> None:
     done = full(folder, "--store s.sqlite --format csv")
     assert (done.returncode, done.stdout) == (5, "")
@@ -277,6 +278,7 @@ def test_without_a_store_the_folder_of_temporary_files_may_be_full() -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_a_store_that_many_begin_at_once_is_made_once(tmp_path: Path) -> None:
     """Some look at it while others make it."""
     context = multiprocessing.get_context("fork")

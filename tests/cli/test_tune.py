@@ -91,6 +91,7 @@ def test_json(heun: Heun) -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_the_history_as_a_file(heun: Heun, folder: Path) -> None:
     words = ["gable.yaml", "b=0.5:1.9m", "--maximise", "joints.k.force", "--history", "tried.csv"]
     told = found_by(heun, *words, "--subject-to", "joints.k.force<50", "--evaluations", "60")
@@ -104,6 +105,7 @@ def test_the_history_as_a_file(heun: Heun, folder: Path) -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_half_of_the_box_does_not_close(heun: Heun) -> None:
     """Counted by its code; the best lies in the other half."""
     told = found_by(heun, "gable.yaml", "b=0.8:1.8m", "--minimise", "joints.k.force", "--evaluations", "200")
@@ -172,6 +174,7 @@ def test_units_of_the_table(heun: Heun) -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_what_is_set_for_all_variants(heun: Heun, folder: Path) -> None:
     """Load case, overrides and tolerance hold in all of them, and stand in the line that is told."""
     cases = HANGING.replace("-9.81]", "-g]").replace("{m: 1.0}", "{m: 1.0, g: 10}")

@@ -114,6 +114,7 @@ def test_a_jump_is_no_crossing(heun: Heun) -> None:
     assert jump["from"]["x"] <= 1.2 <= jump["to"]["x"] <= jump["from"]["x"] + 1e-8
 
 
+@pytest.mark.long
 def test_what_cannot_be_solved_holds_no_crossing(heun: Heun) -> None:
     """The bars close for b from 0.5 to 1.5 m; towards both ends their forces grow beyond all bounds."""
     told = found(heun, TWO_BARS, "b=0.2:2", f"{IN_BAR} = 40 N")
@@ -140,6 +141,7 @@ def test_the_sides_of_an_unsolvable_stretch_are_no_crossing(heun: Heun) -> None:
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.third
 def test_stated_errors_cover_random_pendulums(heun: Heun, seed: int) -> None:
     rng = np.random.default_rng(seed)
     m, g, length = rng.uniform(0.2, 5.0), rng.uniform(2.0, 20.0), rng.uniform(0.2, 0.6)

@@ -66,6 +66,7 @@ CASES = [(m, law) for n, m in enumerate(MACHINES) for law in (LAWS if n < 2 else
 
 
 @pytest.mark.parametrize(("machine", "law"), CASES)
+@pytest.mark.third
 def test_as_if_the_coordinate_were_given(machine: str, law: str) -> None:
     """All numbers of a run are those of the same drive by its integral, blows at jumps of the rate included."""
     *_, joint, key, rate, start = MACHINES[machine]

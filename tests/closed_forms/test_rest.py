@@ -78,6 +78,7 @@ def ridge(beside: float) -> Results:
 
 
 @pytest.mark.parametrize("beside", [0.1, -0.1, 1e-3, -1e-3, 1e-4, -1e-4])
+@pytest.mark.third
 def test_beside_a_ridge_the_way_goes_to_its_side(beside: float) -> None:
     results = ridge(beside)
     near(results.coordinates["ux"]["travel"][0], math.copysign(1.0, beside), 1.0, 1e-12)
@@ -339,6 +340,7 @@ def tree(rng: np.random.Generator) -> str:
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.third
 def test_what_rests_stays(seed: int) -> None:
     run = study(tree(np.random.default_rng(seed)))
     assert not unstable(run.results)

@@ -77,6 +77,7 @@ def test_a_bearing(heun: Heun) -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
+@pytest.mark.third
 def test_exact_derivatives_of_a_triangle_of_forces(heun: Heun, seed: int) -> None:
     """Of a state: the load of the second bar, its formula differentiated by a computer algebra."""
     rng = np.random.default_rng(seed)

@@ -56,6 +56,7 @@ def told(found: Results) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize("mu", [0.99 * SLOPE, 1.01 * SLOPE, 0.3])
 @pytest.mark.parametrize("sides", [*itertools.product((1, -1), repeat=2)])
+@pytest.mark.third
 def test_a_jack_up_and_down(mu: float, sides: tuple[int, int]) -> None:
     """F r tan(lambda +- rho) on whichever side, of either hand; below the slope the load drives, above it holds."""
     slope, rho = math.atan(SLOPE), math.atan(mu)

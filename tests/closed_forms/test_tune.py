@@ -77,6 +77,7 @@ def tuned(heun: Heun, *words: str) -> dict[str, Any]:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_counterweight_of_an_engine(heun: Heun, folder: Path) -> None:
     """The least largest shaking force, and its weight, against a dense scan of the closed form."""
     (folder / "engine.yaml").write_text(ENGINE)
@@ -102,6 +103,7 @@ def test_half_of_what_goes_to_and_fro(heun: Heun, folder: Path) -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_a_four_bar_balanced_in_force(heun: Heun) -> None:
     """Berkof and Lowen's weights are found from others: 8 and 20 kg mm leave no force, over any part of a turn."""
     spec = str(ROOT / "specs" / "four_bar_balanced.yaml")
@@ -157,6 +159,7 @@ def test_the_lightest_bracket_for_a_moment(heun: Heun, folder: Path) -> None:
     assert moment["best"]["value"] >= 10.0
 
 
+@pytest.mark.long
 def test_the_greatest_moment_of_a_weight(heun: Heun, folder: Path) -> None:
     """g m L is greatest with g (m + ρ L) <= 80 N at m = 4 kg, L = 1 m: 40 N m; a bound on L = 0.8 m makes it 38.4."""
     (folder / "bracket.yaml").write_text(BRACKET)

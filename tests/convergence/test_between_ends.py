@@ -60,6 +60,7 @@ TOLERANCES = 10.0 ** np.arange(-11.5, -7.5, 0.3)
 
 @pytest.mark.parametrize("samples", [2, 101, 201])
 @pytest.mark.parametrize("name", ["DOP853", "DOP853-recentred"])
+@pytest.mark.third
 def test_what_is_told_holds_between_the_asked_instants(name: str, samples: int) -> None:
     """Several instants asked for in each step need not lie where it errs most: it is told."""
     text = double(f"{{duration: 1.5, samples: {samples}}}")

@@ -159,6 +159,7 @@ class Later:
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-9, 1e-11])
 @pytest.mark.parametrize("name", MAKERS)
+@pytest.mark.third
 def test_the_estimate_covers_what_comes_behind_a_blow(name: str, tolerance: float) -> None:
     run = run_of(name, tolerance)
     found = run.resample(np.array([(AT + END) / 2, END]))
@@ -257,6 +258,7 @@ def numbers(block: dict[str, Any], names: tuple[str, ...]) -> Array:
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
 @pytest.mark.parametrize("name", MAKERS)
+@pytest.mark.third
 def test_impulses_are_as_exact_as_is_said(name: str, tolerance: float) -> None:
     """The errors that decide the digits of the tables, by kind and unit, against a run at 1e-13."""
     run, fine = run_of(name, tolerance), run_of(name, 1e-13)

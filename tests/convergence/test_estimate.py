@@ -109,6 +109,7 @@ def test_the_exact_run_is(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.third
 def test_never_below_the_true_error(name: str) -> None:
     for tolerance in TOLERANCES:
         estimate, error, sure = measured(name, tolerance)

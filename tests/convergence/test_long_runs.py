@@ -35,6 +35,7 @@ def test_bricard_for_twenty_seconds() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", [1, 6, 9, 13, 21, 25, 41, 61])
+@pytest.mark.third
 def test_random_loops_for_three_seconds(seed: int) -> None:
     """All closures of all joints, by the oracle, at every instant."""
     scene, _ = loop_scene(seed)

@@ -127,6 +127,7 @@ KEEPING_FEW = [(name, 500) for name in SCENES if name in LONG or name in WRITTEN
     [pytest.param(*case, marks=pytest.mark.heavy) if case[0] in LONG else case
      for case in [*((name, 20_000_000) for name in SCENES if is_moving(name)), *KEEPING_FEW]],
 )  # fmt: skip
+@pytest.mark.third
 def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """States at other instants are those of a run that was asked for them; which are asked changes no step."""
     monkeypatch.setattr(progress, "MAX_RECORD_NUMBERS", kept)

@@ -33,6 +33,7 @@ def test_every_option_has_a_line() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("command", LINES)
+@pytest.mark.third
 def test_a_command_with_all_its_options(command: str, tmp_path: Path) -> None:
     still, _ = texts()
     names = sorted(still)

@@ -137,6 +137,7 @@ def test_step_by_step(windows_: int) -> None:
 
 
 @pytest.mark.parametrize("seed", KEPT)
+@pytest.mark.third
 def test_of_random_scenes(seed: int) -> None:
     """Every kind and place; what is only partly told is partly so."""
     tried(to_yaml(redundant_scene(seed)[1]))

@@ -148,6 +148,7 @@ LENGTHS = np.random.default_rng(12).uniform(0.8, 2.0, (12, 3)).round(2).tolist()
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("lengths", LENGTHS, ids=str)
+@pytest.mark.third
 def test_bars_of_any_length_through_a_flat_pose(lengths: list[float]) -> None:
     """Loads may grow there without bound: those that are told agree with a run a thousand times as fine."""
     text = folding(*lengths, 0.9, 4.0)

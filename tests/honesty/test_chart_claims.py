@@ -8,6 +8,7 @@ from tests.honesty.chart_claims import errors, is_right
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.third
 def test_the_errors_of_a_chain(seed: int) -> None:
     count = 0
     for name, told, right, doubt in errors(seed):

@@ -103,6 +103,7 @@ def crossings_of(f: Function) -> list[float]:
 
 @pytest.mark.parametrize("seed", range(60))
 @pytest.mark.parametrize("family", FAMILIES, ids=[family.name for family in FAMILIES])
+@pytest.mark.third
 def test_all_crossings_are_found_within_their_errors(family: Family, seed: int) -> None:
     rng = np.random.default_rng([seed, FAMILIES.index(family)])
     f, error = family.make(rng), 10.0 ** rng.uniform(-12.0, -5.0)

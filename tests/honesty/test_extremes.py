@@ -46,6 +46,7 @@ def short_by(run: Study, samples: int, slack: float = 0.0) -> list[tuple[str, fl
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_of_every_spec(path: Path) -> None:
     spec = load(str(path))
     if spec.analysis.type != "motion":
@@ -55,6 +56,7 @@ def test_of_every_spec(path: Path) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 29])
+@pytest.mark.third
 def test_of_random_scenes(seed: int) -> None:
     """Trees and loops, drives, loads in time; at 29 a joint slides past a cut twice within one step."""
     try:

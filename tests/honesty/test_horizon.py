@@ -16,6 +16,7 @@ from tests.shared.truth import KNOWN, SECOND, TRUTH, off
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_right_before_the_horizon_and_told_where_it_is(seed: int) -> None:
     run = run_of(seed)
     times = grid(run)

@@ -44,6 +44,7 @@ def told(bench: Bench) -> tuple[bool, bool, int]:
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(SCENES))
 @pytest.mark.parametrize("way", WAYS)
+@pytest.mark.third
 def test_the_null_space_is_told(way: str, seed: int) -> None:
     bench = Bench(seed, **WAYS[way])
     pool = TYPED if way == "three digits" else PARTS

@@ -107,12 +107,14 @@ def require_honest(row: MethodRow, scene: int | str, *, reduce: bool) -> None:
 
 @pytest.mark.parametrize("seed", TREES_AND_LOOPS)
 @pytest.mark.parametrize("row", OWN, ids=lambda row: row.name)
+@pytest.mark.third
 def test_trees_and_loops(row: MethodRow, seed: int) -> None:
     require_honest(row, seed, reduce=True)
 
 
 @pytest.mark.parametrize("seed", TREES_AND_LOOPS[1:3])
 @pytest.mark.parametrize("row", OWN, ids=lambda row: row.name)
+@pytest.mark.third
 def test_the_whole_of_the_scene(row: MethodRow, seed: int) -> None:
     """Nothing left out, nothing moved in the plane alone."""
     require_honest(row, seed, reduce=False)
@@ -126,6 +128,7 @@ def test_independent_checks(row: MethodRow, seed: int) -> None:
 
 @pytest.mark.parametrize("scene", WRITTEN)
 @pytest.mark.parametrize("row", [*OWN, FOREIGN[0]], ids=lambda row: row.name)
+@pytest.mark.third
 def test_contacts_blows_and_conditions(row: MethodRow, scene: str) -> None:
     require_honest(row, scene, reduce=True)
 

@@ -18,6 +18,7 @@ CASES = [(kind, seed, WAYS[(seed + EACH * k) % len(WAYS)]) for k, kind in enumer
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "seed", "way"), [*CASES, *ALONG_THE_WAY])
+@pytest.mark.third
 def test_it_swings_as_told_before(kind: str, seed: int, way: str) -> None:
     """As many of each kind, frequencies and growths within what both tellings state; refused where the first is."""
     found, *_ = judged(kind, seed, way)

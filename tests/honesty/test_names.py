@@ -17,6 +17,7 @@ QUICKEST = ("door", "overhang", "punch", "screw_press", "axle_loads", "slider_cr
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("stem", QUICKEST)
+@pytest.mark.third
 def test_words_of_heun_are_names_like_others(stem: str) -> None:
     forms = [form for form in QUICK if form.form != "text" or form.words == ("--by-cause",)]
     assert case(QUICKEST.index(stem), stem, forms) == []

@@ -45,6 +45,7 @@ analysis: {{duration: 0.5, samples: 6}}
 
 
 @pytest.mark.parametrize("seed", range(10))
+@pytest.mark.third
 def test_extremes_are_those_of_either_side(seed: int) -> None:
     run = solve(load("beam.yaml", scene(seed)), Options(requested_reports=frozenset({"sections", "motion", "joints"})))
     places = {action.name: action.to_end.position for action in run.recovery.actions}

@@ -22,6 +22,7 @@ WAYS = ("drawn", "welded", "declared")
 
 @pytest.mark.heavy  # families at random: with the compiled kernel, which has the same bits
 @pytest.mark.parametrize("kind", ELEMENTS)
+@pytest.mark.third
 def test_in_a_plane(kind: str) -> None:
     """Every kind, on what cannot leave the plane and on what could, between bodies that are one, declared planar."""
     at = list(ELEMENTS).index(kind)
@@ -35,6 +36,7 @@ def test_in_a_plane(kind: str) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("kind", IN_SPACE)
+@pytest.mark.third
 def test_between_bodies_that_are_one(kind: str) -> None:
     """In space, every kind: what a coupling looks at is a part of what moves."""
     seed = 40 + list(IN_SPACE).index(kind)

@@ -47,6 +47,7 @@ FAMILIES: dict[str, tuple[Callable[[int], dict[str, Any]], range, int]] = {
 
 
 @pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.third
 def test_random(family: str) -> None:
     make, seeds, least = FAMILIES[family]
     fewer = 0

@@ -13,6 +13,7 @@ SOME = [3, 17, 31]
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_between_the_samples_it_is_the_same_run(seed: int) -> None:
     """An instant by itself, among others, and as asked for: the same bits; and the energy of the start throughout."""
     run = run_of(seed)

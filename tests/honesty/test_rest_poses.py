@@ -25,6 +25,7 @@ SPECIAL = [*FAR_OPEN, *CREEPING, *CARRIED, *NEARLY_DEAD, *TURN_ABOUT, *ALIKE]
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "seed"), [*((kind, seed) for kind in KINDS for seed in range(4)), *SPECIAL])
+@pytest.mark.third
 def test_the_damped_motion_comes_to_it(kind: str, seed: int) -> None:
     """The same pose within what is stated of it, stable where that says so; no rest where it comes to none."""
     scene = drawn(kind, seed)

@@ -16,6 +16,7 @@ WAYS = list(TELLINGS)
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(EACH))
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.third
 def test_it_rests_as_told_before(kind: str, seed: int) -> None:
     """Pose, verdicts and loads within what both tellings state; refused where the first is."""
     way = WAYS[(seed + EACH * list(KINDS).index(kind)) % len(WAYS)]

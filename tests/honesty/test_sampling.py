@@ -55,6 +55,7 @@ def shares(law: Law, n: int) -> tuple[float, float, list[float]]:
 
 @pytest.mark.parametrize("n", [20, 100, 400])
 @pytest.mark.parametrize("law", ["normal", "uniform"])
+@pytest.mark.third
 def test_intervals_hold_the_truth_as_often_as_they_say(law: str, n: int) -> None:
     of_mean, of_deviation, of_percentiles = shares(LAWS[law], n)
     assert min(of_mean, *of_percentiles) >= LEAST_SEEN
@@ -86,6 +87,7 @@ OF_ISHIGAMI = (np.array([0.313905, 0.442411, 0.0]), np.array([0.557589, 0.442411
 @pytest.mark.heavy
 @pytest.mark.parametrize(("law", "n"), [("uniform", 64), ("lhs", 64), ("sobol", 64), ("sobol", 256)])
 @pytest.mark.parametrize(("f", "truths"), [(product, OF_PRODUCT), (ishigami, OF_ISHIGAMI)], ids=["product", "ishigami"])
+@pytest.mark.third
 def test_intervals_of_indices_hold_the_truth_as_often_as_they_say(
     f: Callable[[Array], Array], truths: tuple[Array, Array], law: str, n: int
 ) -> None:

@@ -9,5 +9,6 @@ from tests.shared.folders import SPECS
 
 
 @pytest.mark.parametrize("name", ["crane", "engine", "bricard", "press", "top", "lamp"])
+@pytest.mark.third
 def test_every_form_tells_the_same(name: str) -> None:
     assert compared(SPECS / f"{name}.yaml") > 60

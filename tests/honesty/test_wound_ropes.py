@@ -56,6 +56,7 @@ def test_a_rope_that_is_wound_up_is_refused_at_its_instant(seed: int, more: str,
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.third
 def test_an_arc_of_more_than_315_degrees_is_refused_at_its_instant(seed: int, more: str) -> None:
     """From a quarter of a turn on, l0 - l = R 225 deg more; a rope that vibrates may be slack there."""
     rng = np.random.default_rng([seed, 2017])

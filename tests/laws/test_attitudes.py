@@ -44,6 +44,7 @@ def test_rodrigues_numbers_as_typed() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_they_are_the_rotations_and_go_on(path: Path) -> None:
     study = solve(load(str(path)), MOTION)
     results = study.resample(study.search_times) if len(study.results.time) > 1 else study.results

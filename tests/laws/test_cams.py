@@ -76,6 +76,7 @@ def bare(seed: int) -> dict[str, Any]:
 @pytest.mark.heavy
 @pytest.mark.parametrize("way", ["turned", "mirrored", "inches, pounds", "faster", "renamed", "other origins"])
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.third
 def test_a_cam_told_otherwise(seed: int, way: str) -> None:
     """A random scene with each kind of cam: all numbers are those of the other telling, contact and angle, too."""
     scene = bare(seed)

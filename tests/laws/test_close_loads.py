@@ -29,6 +29,7 @@ sections: {{beam: {{body: beam, from: A, to: B, count: 11}}}}
 
 @pytest.mark.parametrize("first", [2e-12, 0.1, 0.37, 0.4])
 @pytest.mark.parametrize("apart", CLOSE)
+@pytest.mark.third
 def test_no_shear_is_larger_than_the_load(first: float, apart: float) -> None:
     """They are a couple P d, which the supports take by P d / L: Q1 = -P d outside, P - P d between them."""
     solved = study(BEAM.replace("FIRST", repr(first)).replace("SECOND", repr(first + apart)))

@@ -42,6 +42,7 @@ def kinds() -> list[Any]:
 
 
 @pytest.mark.parametrize("kind", kinds())
+@pytest.mark.third
 def test_told_otherwise(kind: str) -> None:
     """The world turned, other units, another order, members exchanged; everything faster, and nothing left out."""
     seed = list(ELEMENTS).index(kind)

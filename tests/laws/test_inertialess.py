@@ -61,12 +61,14 @@ def as_the_oracle(scene: dict[str, Any], found: Study, tolerance: float) -> None
 
 
 @pytest.mark.parametrize("seed", range(40))
+@pytest.mark.third
 def test_random_loops(seed: int) -> None:
     scene, _ = lacking(seed)
     as_the_oracle(scene, study(scene), 1e-9)
 
 
 @pytest.mark.parametrize("seed", (0, 3, 4, 7, 9, 10))
+@pytest.mark.third
 def test_they_move(seed: int) -> None:
     """What is lent has no energy: kinetic and potential energy less the work stay what they are."""
     scene, _ = lacking(seed)

@@ -46,6 +46,7 @@ def looked_at(kind: str, seed: int, **asked: Any) -> tuple[Instant, LagrangeResu
 
 
 @pytest.mark.parametrize(("kind", "seed"), SCENES)
+@pytest.mark.third
 def test_the_equations_are_those_of_the_run(kind: str, seed: int) -> None:
     """e is symmetric and positive, E that of the energy, q'' and the drives those of the run, F = E."""
     _, found = looked_at(kind, seed)

@@ -17,6 +17,7 @@ pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, 
 
 
 @pytest.mark.parametrize("seed", range(500))
+@pytest.mark.third
 def test_loops_close_near_their_drawing(seed: int) -> None:
     """Off by up to 3 %, in every way of drawing by turns; the closed pose is known by construction."""
     d = drawn(known(seed), 0.03, MODES[seed % 5 % len(MODES)])

@@ -68,6 +68,7 @@ def compare(scene: PreparedScene, found: Reduction, seed: int) -> None:
 @pytest.mark.parametrize("upright", [False, True])
 @pytest.mark.parametrize("name", PLANES)
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.third
 def test_accelerations(name: str, upright: bool, own_axes: bool, seed: int) -> None:
     """Upright ones whatever acts on them, and those that are their own mirror image; states there and back."""
     scene = prepared(flat(seed, name, upright, own_axes))

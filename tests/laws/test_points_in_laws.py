@@ -91,6 +91,7 @@ def with_law(family: str, seed: int) -> tuple[Scene, Law]:
 
 
 @pytest.mark.parametrize(("family", "seed"), CASES)
+@pytest.mark.third
 def test_a_law_is_that_of_the_points_told(family: str, seed: int) -> None:
     scene, law = with_law(family, seed)
     full, small = (study(scene, reduce=reduce) for reduce in (False, True))

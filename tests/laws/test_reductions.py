@@ -159,6 +159,7 @@ def at(found: Evaluation, layout: Layout, body: int, point: Array) -> tuple[Arra
 
 
 @pytest.mark.parametrize(("name", "seed"), CASES[::3])
+@pytest.mark.third
 def test_all_that_is_told_is_the_same(name: str, seed: int) -> None:
     """Motion, reactions, foundation and blows of both runs, and which components are open."""
     make = partial(wires, kind=Rods) if name == "spins" else FAMILIES[name][0]

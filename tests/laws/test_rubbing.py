@@ -55,6 +55,7 @@ def pendulum_by_scipy(times: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("method", ["DOP853", "Radau5", "Radau9", "DOPRI5"])
 @pytest.mark.parametrize("space", ["planar", "spatial"])
+@pytest.mark.third
 def test_a_pendulum_in_its_journal(method: str, space: str) -> None:
     """By an equation solved for at every evaluation (Brent), and SciPy's integration; in the plane and in space."""
     r = solved(PENDULUM.replace("planar", space), method=method, tolerance=1e-9)

@@ -118,6 +118,7 @@ def alone(scene: dict[str, Any], found: Results, cause: str) -> dict[str, Any] |
 
 
 @pytest.mark.parametrize(("kind", "seed"), CASES)
+@pytest.mark.third
 def test_a_share_is_what_its_cause_does_alone(kind: str, seed: int) -> None:
     """Another run, of a scene at rest without weight and with this load only, and so on."""
     scene, found = scene_of(kind, seed), run(kind, seed)
@@ -289,6 +290,7 @@ def blocks_of_blow(block: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]
 
 
 @pytest.mark.parametrize(("kind", "seed"), CASES)
+@pytest.mark.third
 def test_a_blow_s_share_is_what_it_does_alone(kind: str, seed: int) -> None:
     """Of several at one instant; together they are the whole."""
     scene = struck(kind, seed)

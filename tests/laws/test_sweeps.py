@@ -92,6 +92,7 @@ def in_words(value: float | str, unit: str | None) -> str:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("one", SWEPT, ids=lambda one: one.path.stem)
+@pytest.mark.third
 def test_rows_are_single_runs_to_the_bit(heun: Heun, one: Swept) -> None:
     measures = [word for measure in one.measures for word in ("--measure", measure)]
     rows = swept(heun, str(one.path), *one.axes, *measures, *one.short, "--jobs", "2")
@@ -117,6 +118,7 @@ def test_load_cases_are_those_of_a_run(heun: Heun, folder: Path, words: tuple[st
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("form", ["table", "json", "csv"])
+@pytest.mark.long
 def test_what_is_told_does_not_depend_on_who_solves(heun: Heun, form: str) -> None:
     words = ("sweep", str(SPECS / "rotor.yaml"), "n=1000:3000/9rpm", "m=10,20,30g", "--format", form)
     words += ("--measure", "max joints.right.force", "--set", "turn=0.01")

@@ -177,6 +177,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("kind", "which"), CASES, ids=lambda x: str(x).strip()[:18])
+@pytest.mark.third
 def test_as_dual_numbers_tell(kind: str, which: Any) -> None:
     """At the start, and beside it with everything in motion; off what the closures admit, too."""
     layout = scene_of(kind, which)

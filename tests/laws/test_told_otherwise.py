@@ -68,6 +68,7 @@ def tree(seed: int, **more: Any) -> tuple[dict[str, Any], Results]:
 
 @pytest.mark.heavy
 @each(("turned", "mirrored", "inches, pounds", "faster", "renamed", "other origins"), TREES)
+@pytest.mark.third
 def test_a_tree(seed: int, way: str) -> None:
     scene, first = tree(seed)
     other = told(scene, way, seed)
@@ -95,6 +96,7 @@ def loop(seed: int) -> tuple[dict[str, Any], Results]:
 
 @pytest.mark.heavy
 @each(("turned", "mirrored", "mm, t, ms", "renamed", "renamed again", "other origins", "other ends"), LOOPS)
+@pytest.mark.third
 def test_a_loop(seed: int, way: str) -> None:
     scene, first = loop(seed)
     other = told(scene, way, seed)

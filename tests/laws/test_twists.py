@@ -67,6 +67,7 @@ def test_closure_rows_are_the_kernels(name: str) -> None:
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.third
 def test_closure_rows_annul_the_velocities(seed: int) -> None:
     """Of gears, belts, screws, ropes, cams and joints along a motion, without open stops and driven lengths."""
     found = study(to_yaml({**coupled_scene(seed), "analysis": {"times": [0, 0.02, 0.05]}}), reduce=False)

@@ -51,6 +51,7 @@ WARNED = ("flat_four_bar.yaml: singular positions at t = ", "rigid bodies do not
 @pytest.mark.heavy
 @pytest.mark.usefixtures("beside_specs")
 @pytest.mark.parametrize("words", TYPED.values(), ids=TYPED)
+@pytest.mark.third
 def test_commands_run(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     """Each once, however often it stands there; not those whose output is shown, which run below.
 
@@ -71,6 +72,7 @@ def test_no_command_is_missed() -> None:
 @pytest.mark.heavy
 @pytest.mark.usefixtures("beside_specs")
 @pytest.mark.parametrize("shown", SHOWN.values(), ids=SHOWN)
+@pytest.mark.third
 def test_shown_output_is_the_output(shown: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     command, *lines = shown
     assert command.startswith("$ heun ")
@@ -112,12 +114,14 @@ PARTS = [(name, block) for name in TEXTS for block in blocks(name, "yaml") if no
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("text", WHOLE.values(), ids=WHOLE)
+@pytest.mark.third
 def test_scenes_run_and_are_as_they_expect(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run_and_check(text, tmp_path, capsys)
 
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("name", "text"), PARTS, ids=[f"{name}: {part.splitlines()[1]}" for name, part in PARTS])
+@pytest.mark.third
 def test_parts_of_scenes_belong_to_the_first_one_of_their_page(
     name: str, text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -59,6 +59,7 @@ NAMED = pytest.mark.parametrize(("make", "name"), CASES, ids=[f"{m.__name__} {n}
 
 
 @NAMED
+@pytest.mark.third
 def test_jumps_and_impulses(make: type, name: str) -> None:
     """Verdicts, certain numbers, parts, supports, elements and totals."""
     c = make(name)
@@ -150,6 +151,7 @@ def sawn(kind: str, seed: int) -> Blown:
 
 
 @pytest.mark.parametrize(("kind", "seed"), SAWN)
+@pytest.mark.third
 def test_a_cut_carries_what_its_weld_would(kind: str, seed: int) -> None:
     """The impulse of the piece on the remainder: the body sawn and welded; open where its weld is; both sides."""
     c = sawn(kind, seed)

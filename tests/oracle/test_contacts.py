@@ -55,6 +55,7 @@ def dense(seed: int) -> tuple[Study, list[dict[str, Placed]]]:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_no_gap_is_negative(seed: int) -> None:
     """At no instant does a coordinate pass its limit, or a rope its length."""
     run = run_of(seed)

@@ -12,6 +12,7 @@ ALL = spared([*SEEDS, *DRIVEN], QUICK)
 
 
 @pytest.mark.parametrize("seed", ALL)
+@pytest.mark.third
 def test_accelerations(seed: int) -> None:
     checks.same_accelerations(loop(seed))
 

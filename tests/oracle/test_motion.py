@@ -14,6 +14,7 @@ TIMES = (0.0, 0.15, 0.4)
 
 
 @pytest.mark.parametrize("seed", seeds(9))
+@pytest.mark.third
 def test_motion(seed: int) -> None:
     """Places, attitudes and rates after 0.4 s: the oracle's own tolerance is 1e-13, its gaps are not corrected."""
     scene, state = tree_scene(seed, n_bodies=1 + seed % 3)

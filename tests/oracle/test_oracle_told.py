@@ -49,6 +49,7 @@ WAYS = [way for way in TELLINGS if way != "other ends"]
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("way", WAYS)
+@pytest.mark.third
 def test_told_otherwise(way: str, seed: int) -> None:
     scene, _ = some_scene(seed)
     told = TELLINGS[way](scene, np.random.default_rng(seed))

@@ -38,6 +38,7 @@ def welds(seed: int) -> dict[tuple[int, str], Section]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", THESE)
+@pytest.mark.third
 def test_cut_bodies(seed: int) -> None:
     c = sawn(seed)
     assert c.study.results.sections

@@ -52,6 +52,7 @@ def sizes(c: Case, k: int) -> tuple[float, float]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_a_cut_carries_what_its_weld_would(seed: int) -> None:
     """s' and M' about the cut's point, its place and frame, and the six resultants in that frame."""
     c = sawn(seed)
@@ -89,6 +90,7 @@ def test_both_sides_add_to_nothing(seed: int) -> None:
 
 @pytest.mark.parametrize("side", ["before", "beyond"])
 @pytest.mark.parametrize("seed", seeds(6))
+@pytest.mark.third
 def test_what_lies_in_the_plane_goes_to_its_side(seed: int, side: str) -> None:
     """A cut through the very place of a joint or load; the oracle puts it on the side asked for."""
     scene, _ = tree_scene(seed, masses="shapes", kinds=("ball", "pin", "weld", "universal"))

@@ -107,6 +107,7 @@ def test_trees(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", LOOPS)
+@pytest.mark.third
 def test_closed_chains(seed: int) -> None:
     compared("loop", seed)
 
@@ -129,6 +130,7 @@ def test_a_split_by_least_norm(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", CUT)
+@pytest.mark.third
 def test_sections(seed: int) -> None:
     """The weld between the two parts of every body, cause by cause; what stands on the piece is told apart."""
     scene = scene_of("cut", seed)

@@ -20,6 +20,7 @@ KEYS = ("center", "rotation", "center_velocity", "angular_velocity", "center_acc
 
 
 @pytest.mark.parametrize("seed", SPARED)
+@pytest.mark.third
 def test_verdicts(seed: int) -> None:
     """Open exactly where the oracle says, certain numbers equal to its, in joints, supports, parts and totals."""
     c = redundant(seed)
@@ -65,6 +66,7 @@ def test_scenes_are_far_from_the_thresholds(seed: int) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS[::3])
+@pytest.mark.third
 def test_doubles_do_not_change_the_motion(seed: int) -> None:
     """To 1e-12: poses, rates and accelerations of the scene without what holds twice."""
     plain, doubled = redundant_scene(seed)

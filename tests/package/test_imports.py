@@ -44,6 +44,7 @@ def imported(names: list[str]) -> set[str]:
 
 
 @pytest.mark.parametrize("name", NUMERIC)
+@pytest.mark.third
 def test_the_numeric_part_stands_alone(name: str) -> None:
     found = modules(name)
     assert found

@@ -102,6 +102,7 @@ def test_a_plain_run_loads_what_it_needs() -> None:
         (("run", "--help"), "", {"heuncli.app.cli.app", "typer"}),
     ],
 )
+@pytest.mark.third
 def test_what_is_left_out_is_loaded_where_it_is_wanted(words: tuple[str, ...], text: str, more: set[str]) -> None:
     assert more <= loaded(*words, text=text)
 

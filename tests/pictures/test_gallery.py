@@ -37,6 +37,7 @@ def test_every_row_has_a_spec_and_a_file_of_its_own() -> None:
 @pytest.mark.heavy
 @pytest.mark.skipif(not HELD, reason="no fault is mended in all pictures of a kind")
 @pytest.mark.parametrize("row", HELD, ids=lambda row: row.name)
+@pytest.mark.third
 def test_faults_that_were_mended_stay_away(row: Picture, tmp_path: Path) -> None:
     held = {fault for fault, kinds in MENDED.items() if row.kind in kinds}
     assert [str(f) for f in draw_picture(row, tmp_path, None).findings if f.kind in held] == []

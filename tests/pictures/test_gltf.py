@@ -55,6 +55,7 @@ def matrices(xyzw: Array) -> Array:
 
 
 @pytest.mark.parametrize("name", FILES)
+@pytest.mark.third
 def test_bodies_stand_where_the_run_has_them(name: str) -> None:
     """At every instant, those on both sides of a jump too, which are one instant in the file."""
     _, machine, poses, content = drawn(name)

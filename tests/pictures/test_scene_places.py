@@ -58,6 +58,7 @@ def middle(panel: PlottedPanel, name: str) -> Array:
 
 
 @pytest.mark.parametrize(("spec", "view", "at"), CASES)
+@pytest.mark.third
 def test_joints_their_forces_and_centres_of_mass(heun: Heun, spec: str, view: str, at: float) -> None:
     results, seen = run(heun, spec), seen_from(spec, view)
     k = int(np.argmin(np.abs(np.array(results["time"]) - at)))
@@ -85,6 +86,7 @@ def test_joints_their_forces_and_centres_of_mass(heun: Heun, spec: str, view: st
 
 
 @pytest.mark.parametrize(("spec", "view", "at"), CASES)
+@pytest.mark.third
 def test_values_at_arrows_are_those_of_the_json(heun: Heun, spec: str, view: str, at: float) -> None:
     results = run(heun, spec)
     k = int(np.argmin(np.abs(np.array(results["time"]) - at)))

@@ -51,6 +51,7 @@ def box(text: Text) -> WordBox:
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize(("spots", "uprights"), [(4, 3), (40, 20), (300, 80)])
+@pytest.mark.third
 def test_words_stand_over_no_words_and_no_marks(seed: int, spots: int, uprights: int) -> None:
     shapes = lay_out(figure(seed, spots, uprights)).shapes
     words = [box(shape) for shape in shapes if isinstance(shape, Text) and shape.has_halo]

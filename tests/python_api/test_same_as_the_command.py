@@ -42,6 +42,7 @@ def leaves(node: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, .
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", EVERY, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_numbers_are_those_of_the_json(heun: Heun, path: Path) -> None:
     written = json.loads(heun("run", str(path), "--format", "json", "-q").stdout)
     study = solved(path)
@@ -64,6 +65,7 @@ def test_numbers_are_those_of_the_json(heun: Heun, path: Path) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", TABLES)
+@pytest.mark.third
 def test_tables_are_those_of_the_command(heun: Heun, name: str) -> None:
     path = SPECS / f"{name}.yaml"
     printed = heun("run", str(path)).stdout
@@ -117,6 +119,7 @@ def test_collectives_and_load_cases_are_those_of_the_command(heun: Heun) -> None
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_errors_are_those_of_the_command(heun: Heun, path: Path) -> None:
     kind, code, _, _, _, name, value = head(path).groups()
     written = heun("run", str(path), *(["--set", f"{name}={value}"] if name else []))

@@ -90,6 +90,7 @@ TURNING = (0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("time", TURNING)
+@pytest.mark.third
 def test_bricard_set_by_its_crank(time: float) -> None:
     """The crank angle that brings the hinge's x where it was printed brings y and z there too; rates fit."""
     printed = printed_values("bricard")

@@ -28,6 +28,7 @@ SCHEMA = ROOT / "tests" / "cli" / "junit.xsd"
 
 
 @pytest.mark.parametrize("name", list_names())
+@pytest.mark.third
 def test_every_number_agrees(name: str) -> None:
     """And none is told so loosely that it says nothing."""
     numbers = [one for table in compared_case(name) for one in table.numbers]

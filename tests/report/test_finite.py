@@ -133,6 +133,7 @@ def put(found: Results, keys: tuple[str, ...], value: Any, owner: Any, bad: floa
 
 
 @pytest.mark.parametrize("name", SCENES)
+@pytest.mark.third
 def test_what_is_infinite_is_refused_by_its_path(name: str) -> None:
     found = require_finite(results(name))
     for keys, value, owner in of_every_kind(found):

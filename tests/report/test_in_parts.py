@@ -73,6 +73,7 @@ def both(spec: Spec) -> tuple[Study, Study]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", [*TREES, *WHOLE])
+@pytest.mark.third
 def test_parts_are_written_as_the_whole_is(name: str, small: None, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = load(str(SPECS / f"{name}.yaml"))
     whole, divided = both(spec)

@@ -1,8 +1,9 @@
-"""Seeds of random scenes as parameters of tests: which of them run every time, which the plain kernel is spared."""
+"""Which cases run every time: of random scenes, of costly families; and which the plain kernel is spared."""
 
 from __future__ import annotations
 
 import re
+import zlib
 from collections import defaultdict
 from collections.abc import Container, Hashable, Iterable
 from itertools import pairwise
@@ -22,10 +23,26 @@ SHARE = 4  # one seed of so many runs every time
 LEAST, LEAST_OF_A_WAY = 13, 6
 
 
-def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
-    """The cases that only a long run takes: of each row of consecutive seeds all but the first.
+THIRD = 3  # of a family marked so, one case of so many runs every time
 
-    They are those with a parameter called `seed`, or called `name` with a seed behind a word: `tree 17`. A seed that
+
+def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
+    """The cases that only a long run takes: tests marked long, most seeds, two of three cases of a costly family."""
+    long = {item for item in items if item.get_closest_marker("long")} | list_long_seeds(items)
+    families: defaultdict[str, list[pytest.Item]] = defaultdict(list)
+    for item in items:
+        if item not in long and item.get_closest_marker("third"):
+            families[item.nodeid.split("[")[0]].append(item)
+    for family, cases in families.items():  # another third for each family: what they share is met in one of them
+        first = zlib.crc32(family.encode()) % THIRD
+        long.update(case for index, case in enumerate(cases) if index % THIRD != first)
+    return long
+
+
+def list_long_seeds(items: Iterable[pytest.Item]) -> set[pytest.Item]:
+    """Of each row of consecutive seeds all but the first.
+
+    They are cases with a parameter called `seed`, or called `name` with a seed behind a word: `tree 17`. A seed that
     stands alone was chosen for what it showed, and stays.
     """
     families: defaultdict[str, defaultdict[Hashable, dict[int, list[pytest.Item]]]]

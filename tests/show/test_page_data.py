@@ -70,6 +70,7 @@ def assert_same(column: Array, found: Array, wanted: Array, path: str) -> None:
 
 
 @ANY
+@pytest.mark.third
 def test_the_numbers_are_those_of_the_json(file: Path) -> None:
     study, page = shown(file)
     data, document = data_of(page), json.loads(to_json(study.results))

@@ -93,6 +93,7 @@ def outcome(judge: Any) -> Any:
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_as_models_of_pydantic_do(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     draw = random.Random(path.stem)
     for model, data, context in reads(path, monkeypatch)[:40]:

@@ -43,6 +43,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("code", WRONG)
+@pytest.mark.third
 def test_thousands_of_problems_are_all_told_in_time(code: str) -> None:
     begun = time.process_time()
     with pytest.raises(SpecError) as caught:
