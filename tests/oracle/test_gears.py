@@ -79,6 +79,7 @@ def test_trains_with_more_meshes_than_hold_them(seed: int) -> None:
     certain_sums_are_certain(c)
 
 
+@pytest.mark.heavy
 def test_trains_hold_much_twice() -> None:
     """So that what is said of them is not said of nothing."""
     found = [train(seed).found for seed in range(14)]
