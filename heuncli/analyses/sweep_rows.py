@@ -31,7 +31,7 @@ class SweptRow(NamedTuple):
 
     number: int
     values: Values
-    answer: VariantResult
+    result: VariantResult
 
 
 NUMBER = "number"
@@ -86,13 +86,13 @@ class SweepColumns(NamedTuple):
     def make_cells(self, row: SweptRow) -> list[Cell]:
         """Return the cells of a variant; None where there is no value."""
         measures: list[Cell] = [None] * (3 * len(self.measures))
-        for place, one in enumerate(row.answer.measures):
+        for place, one in enumerate(row.result.measures):
             measures[3 * place : 3 * place + 3] = (to_finite(number) for number in (one.value, one.error, one.time))
         return [
             row.number,
             *(to_cell(row.values[one.name]) for one in self.parameters),
             *measures,
-            row.answer.code,
+            row.result.code,
             explain_missing(row, self.measures),
         ]
 
@@ -110,9 +110,9 @@ def to_finite(number: float | None) -> float | None:
 
 def explain_missing(row: SweptRow, measures: Sequence[str]) -> str:
     """Say why a variant, or a measure of it, has no value; empty if all have one."""
-    if row.answer.code:
-        return row.answer.reason
-    missing = [(text, one.word) for text, one in zip(measures, row.answer.measures, strict=True) if one.word]
+    if row.result.code:
+        return row.result.reason
+    missing = [(text, one.word) for text, one in zip(measures, row.result.measures, strict=True) if one.word]
     return SEPARATOR.join(f"{text}: {MISSING_KINDS[word].sentence} [{word}]" for text, word in missing)
 
 

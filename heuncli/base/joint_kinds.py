@@ -208,7 +208,7 @@ class JointKind(NamedTuple):
     def motions_for_load(self, load: str) -> tuple[Motion, ...]:
         """Return the motions on which a load of this kind acts: one row of the kernel's table of loads each."""
         known: tuple[Motion, ...] = ("turning", "sliding")
-        return tuple(x for x, _ in zip(known, LOAD_KINDS[load].laws, strict=False) if x in self.motions)
+        return tuple(x for x, _ in zip(known, LOAD_KINDS[load].kernel_laws, strict=False) if x in self.motions)
 
     def accepts_load(self, load: str) -> bool:
         """Whether a load of this kind may act in it."""

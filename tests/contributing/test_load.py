@@ -132,7 +132,7 @@ def test_one_in_a_joint(monkeypatch: pytest.MonkeyPatch) -> None:
         assert bound is not None
         return loads.Torque(load.joint, bound, load.type)
 
-    row = LOAD_KINDS["motor"]._replace(name="detent", does="holds in four places", not_negative=("hold",))
+    row = LOAD_KINDS["motor"]._replace(name="detent", description="holds in four places", not_negative=("hold",))
     monkeypatch.setitem(LOAD_KINDS, "detent", row)
     monkeypatch.setitem(f.LOADS, "detent", DetentEntry)
     monkeypatch.setitem(resolve_loads.MEANINGS, "detent", resolve_detent)
@@ -162,7 +162,7 @@ def test_in_random_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("kind", LOAD_KINDS.values(), ids=lambda kind: kind.name)
 def test_every_row(kind: LoadKind) -> None:
     """Each names laws of the kernel and symbols that are drawn, keys that there are, and has its entry and meaning."""
-    assert all(isinstance(getattr(kernel, law), int) for law in kind.laws)
+    assert all(isinstance(getattr(kernel, law), int) for law in kind.kernel_laws)
     if kind.place == "points":
         assert {*kind.symbols} <= {*LINKS} and re.search(rf"^  {kind.symbols[0]}: \(pen", PAGE_SYMBOLS, re.MULTILINE)
     elif kind.is_in_joint:

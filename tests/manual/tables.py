@@ -199,7 +199,7 @@ def pages() -> Iterator[tuple[str, str]]:
 
 def loads() -> Iterator[tuple[str, str]]:
     """The kinds of loads that users write."""
-    return ((f"`{name}`", LOAD_KINDS[name].does) for name in f.LOADS)
+    return ((f"`{name}`", LOAD_KINDS[name].description) for name in f.LOADS)
 
 
 def groups_of_equations() -> Iterator[tuple[str, str, str]]:

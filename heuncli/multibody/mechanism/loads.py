@@ -111,7 +111,7 @@ class AnyLoad:
 
     def count_rows(self, joints: Sequence[Joint]) -> int:
         """Return the number of its rows in the kernel's table of loads: one for each of its laws."""
-        return len(self.row.laws)
+        return len(self.row.kernel_laws)
 
 
 @record

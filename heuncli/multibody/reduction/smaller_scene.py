@@ -164,7 +164,7 @@ def restate_load(load: Load, parts: BodyParts, number: dict[int, int], joint_num
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     zero = Expression.from_number(0.0)
-    value = load.value if not load.row.resists and load.value is not None else zero
+    value = load.value if not load.row.opposed_motion and load.value is not None else zero
     return PointLoad(load.name, "couple", GROUND, None, (value, zero, zero), False)
 
 

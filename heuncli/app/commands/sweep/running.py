@@ -202,5 +202,5 @@ def _raise_common_error(sweep: SweepTask, rows: StoredRows) -> None:
     try:
         sweep.evaluator.load(first.values)
     except SpecError as error:
-        if error.problems[0].code == first.answer.code:
+        if error.problems[0].code == first.result.code:
             raise

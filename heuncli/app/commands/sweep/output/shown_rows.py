@@ -35,10 +35,10 @@ def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> Outpu
         columns += measure_columns
         for line, measure_cells in zip(cells, texts, strict=True):
             line += measure_cells
-    if any(row.answer.code for row in selection.rows.values()):
+    if any(row.result.code for row in selection.rows.values()):
         columns.append(OutputColumn("not solved", "text"))
         for line, row in zip(cells, selection.rows.values(), strict=True):
-            line.append(f"{row.answer.code}: {row.answer.reason}" if row.answer.code else "")
+            line.append(f"{row.result.code}: {row.result.reason}" if row.result.code else "")
     notes = tuple(note for word, note in NOTES.items() if any(word in line for line in cells))
     size = (
         f"{selection.size:,} of {head.plan.size:,} variants"
@@ -90,7 +90,7 @@ def _make_measure_columns(
     unit, size = units.find(measure.unit)
     columns = [OutputColumn(f"{measure.text} [{unit}]" if unit else measure.text, vector=vector_name)]
     scale = size * largest_magnitude(selection.columns.values(k))
-    results = [row.answer.get_measure(k) for row in selection.rows.values()]
+    results = [row.result.get_measure(k) for row in selection.rows.values()]
     cells = [[text] for text in trim_zeros([format_measure(one, size, scale) for one in results])]
     instants = {one.time for one in results if one.time is not None}
     if len(instants) > 1:

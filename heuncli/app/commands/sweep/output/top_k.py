@@ -57,7 +57,7 @@ class ExtremeRows:
 
     def add(self, row: SweptRow, place: int) -> None:
         """Keep the row if it has an extreme."""
-        for k, one in enumerate(row.answer.measures):
+        for k, one in enumerate(row.result.measures):
             if one.value is None:
                 continue
             for best, sign in ((self._least, 1.0), (self._greatest, -1.0)):
