@@ -16,8 +16,9 @@ from heuncli.base.load_kinds import LOAD_KINDS, LoadKind
 from heuncli.kernel.choose import scene as kernel
 from heuncli.output.drawing import symbols
 from heuncli.output.drawing.symbols import LINKS
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import LOADS
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import loads, resolve_loads
 from heuncli.scene.file_format.entries import keys_of

@@ -14,8 +14,8 @@ from heuncli.base.errors import SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.scene.expressions.codegen import CalculationCache
-from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
+from heuncli.scene.expressions.scope import DimensionedParameter
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.document import DocumentReader
 from heuncli.scene.file_format.entries import Entry

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.records import record
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression, TableFunction
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format import loads
