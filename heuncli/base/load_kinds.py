@@ -1,8 +1,8 @@
 """The kinds of loads, one row each: all other code reads the rows, nothing branches on a kind's name.
 
 A row tells where a load acts, by which laws of the kernel, and how it is spoken of, drawn and checked. Three tables
-beside it have an entry of the same name for what users write: its keys (scene/file_format/format.py), what they mean
-(scene/file_format/resolve_loads.py), and for symbols of its own how they are drawn (output/drawing/symbols.py, and
+beside it have an entry of the same name for what users write: its keys (scene/file_format/format_loads.py), what these
+mean (scene/file_format/resolve_loads.py), and for symbols of its own how they are drawn (output/drawing/symbols.py, and
 output/web_page/symbols.js for the page). The spec depends on this module, so it does not import NumPy.
 """
 

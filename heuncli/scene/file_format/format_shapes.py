@@ -17,6 +17,8 @@ from heuncli.scene.file_format.fields import (
     Position,
 )
 
+Frame = Literal["world", "body"]
+
 
 class Orientation(Entry):
     """An attitude, in one of its forms."""
