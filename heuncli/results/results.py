@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, TypedDict
 
 import numpy as np
@@ -192,6 +193,12 @@ class Results:
         if self.horizon is not None and self.time[0] >= self.horizon:
             relative = math.inf
         return {("motion", "m"): relative * size, ("motion", "rad"): relative * max(largest_angle, 1.0)}
+
+
+# A cut in whose plane something acts is just before it, so that it is part of the piece, or just beyond it.
+BEFORE, BEYOND = 1.0, -1.0
+SIDE_WORDS: Mapping[float, str | None] = MappingProxyType({BEFORE: "before", BEYOND: "beyond", 0.0: None})
+SIDE_SIGNS: Mapping[str | None, float] = MappingProxyType({word: sign for sign, word in SIDE_WORDS.items()})
 
 
 class CutPosition(NamedTuple):

@@ -21,8 +21,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts
-from heuncli.results.results import Array, CutPosition, Indices, Mask
+from heuncli.loads.kinetostatics.cuts import Cuts
+from heuncli.results.results import BEFORE, BEYOND, SIDE_WORDS, Array, CutPosition, Indices, Mask
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.sections import AttachedLoad
@@ -140,9 +140,7 @@ class Stretch:
         side = side if jumps else 0.0
         is_close = np.abs(own_cuts.s - s) <= tolerances.SAME_CUT * own_cuts.s[-1]
         matching = np.flatnonzero(is_close & (own_cuts.side * side >= 0.0))
-        return CutPosition(
-            s, {BEFORE: "before", BEYOND: "beyond"}.get(side), int(matching[0]) if len(matching) else None
-        )
+        return CutPosition(s, SIDE_WORDS[side], int(matching[0]) if len(matching) else None)
 
 
 def find_middle_of_longest(corners: Array) -> Array:

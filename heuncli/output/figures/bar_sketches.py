@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.output.drawing.figure import Arrow, Item, Panel, PlaceLabel, Polygon, Scaling, Strokes, Symbol, Words
 from heuncli.output.drawing.ticks import format_short
-from heuncli.output.figures.bars import Attachment
+from heuncli.study.queries.bar_curves import BarAttachment
 
 HEIGHT = 104.0  # pixels; the axis of the sketch is in pixels, too, with the bar about 0
 UPPER, LOWER = 44.0, 60.0  # pixels above and below the bar's axis
@@ -20,7 +20,7 @@ DOWN = (0.0, -1.0)
 
 
 def make_sketch(
-    attachments: Sequence[Attachment], x: Scaling, length: float, size: float, unit: str, title: str = ""
+    attachments: Sequence[BarAttachment], x: Scaling, length: float, size: float, unit: str, title: str = ""
 ) -> Panel:
     """Make the sketch of a bar on the horizontal axis of its diagrams.
 
@@ -30,7 +30,7 @@ def make_sketch(
     return Panel(x._replace(hides_label=True), Scaling("", -LOWER, UPPER), items, HEIGHT, is_bare=True, title=title)
 
 
-def _iter_items(attachments: Sequence[Attachment], length: float, size: float, unit: str) -> Iterator[Item]:
+def _iter_items(attachments: Sequence[BarAttachment], length: float, size: float, unit: str) -> Iterator[Item]:
     """Yield the bar, what acts on it, and the dimension line."""
     end = size * length
     corners = np.array([[0.0, -HALF_DEPTH], [end, -HALF_DEPTH], [end, HALF_DEPTH], [0.0, HALF_DEPTH]])

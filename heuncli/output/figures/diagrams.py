@@ -21,8 +21,7 @@ import numpy as np
 from heuncli.output.drawing.figure import Blank, Figure, Panel, Scaling, VerticalMark
 from heuncli.output.drawing.ticks import choose_ends, format_short
 from heuncli.output.figures.bar_sketches import make_sketch
-from heuncli.output.figures.bars import Attachment, WholeBar
-from heuncli.output.figures.courses import FigureSource, make_title
+from heuncli.output.figures.courses import FigureSource, make_title, require_claimed
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.study.quantities.captions import WORDS, describe_object
@@ -30,6 +29,8 @@ from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, format_error
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.bar_curves import BarAttachment
+from heuncli.study.queries.bars import WholeBar
 
 INVERTED = frozenset({"M2"})  # on the tension side their ordinates point against e1
 TENSION_SIDES = {"M1": "e2", "M2": "e1"}  # the axis that points up
@@ -75,6 +76,8 @@ def _make_bars(sources: Sequence[FigureSource], name: str, given_times: Sequence
     number = 0
     for source in sources:
         bar = WholeBar(source.study, name)
+        if not bar.has_impulses:
+            require_claimed(source.study)
         times = bar.instants
         if given_times is None and len(times) > 1:
             ranges = bar.make_ranges()
@@ -197,7 +200,7 @@ def _list_distinct_bars(bars: Sequence[BarCurves]) -> dict[str, WholeBar]:
     return {name: first} if are_same else named
 
 
-def _are_same(first: Sequence[Attachment], other: Sequence[Attachment]) -> bool:
+def _are_same(first: Sequence[BarAttachment], other: Sequence[BarAttachment]) -> bool:
     """Return whether two lists have the same names at the same places."""
     if [attachment[1:] for attachment in first] != [attachment[1:] for attachment in other]:
         return False
