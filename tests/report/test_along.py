@@ -10,12 +10,12 @@ import pytest
 
 from heuncli.output.documents.document import OutputTable
 from heuncli.output.snapshots import searches
-from heuncli.output.tables.cut_runs import collect_runs, find_sample_extremes, merge_extremes
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
+from heuncli.study.quantities.cut_runs import collect_runs, find_sample_extremes, merge_extremes
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.measure import find_peak
 from heuncli.study.queries.study import Study

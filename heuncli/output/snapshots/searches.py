@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from heuncli.output.tables.cut_runs import CutRun, choose_cuts, collect_runs, split_into_cuts
 from heuncli.output.tables.page import Page
 from heuncli.results.results import Extremes, Results
 from heuncli.results.results_schema import RESULTANTS, SHARES
 from heuncli.study.quantities.channels import Channel, make_section_channels
+from heuncli.study.quantities.cut_runs import CutRun, choose_cuts, collect_runs, split_into_cuts
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch
