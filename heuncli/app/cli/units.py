@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from heuncli.app.cli.output import print_stderr
-from heuncli.output.snapshots.display_units import read_display_units
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.table_units import Units, read_display_units
 
 TABLES = ("table", "markdown")
 

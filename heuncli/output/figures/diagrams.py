@@ -18,9 +18,21 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.output.drawing.figure import Blank, Figure, Panel, Scaling, VerticalMark
+from heuncli.output.drawing.figure import (
+    Arrow,
+    Blank,
+    Figure,
+    Item,
+    Panel,
+    PlaceLabel,
+    Polygon,
+    Scaling,
+    Strokes,
+    Symbol,
+    VerticalMark,
+    Words,
+)
 from heuncli.output.drawing.ticks import choose_ends, format_short
-from heuncli.output.figures.bar_sketches import make_sketch
 from heuncli.output.figures.courses import FigureSource, make_title, require_claimed
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
@@ -37,6 +49,13 @@ TENSION_SIDES = {"M1": "e2", "M2": "e1"}  # the axis that points up
 INSTANT_SEPARATOR = ": t = "  # between the name of a run and an instant
 BAND_SENTENCE = "Thin lines: range over the run; thick line: at the instant of the greatest magnitude."
 TENSION_SENTENCE = "M1 and M2 are drawn on the tension side."
+HEIGHT = 104.0  # pixels; the axis of the sketch is in pixels, too, with the bar about 0
+UPPER, LOWER = 44.0, 60.0  # pixels above and below the bar's axis
+HALF_DEPTH = 5.0  # of the bar
+ARROW_LENGTH = 24.0
+DIMENSION, TICK = 48.0, 4.0  # of the dimension line below the axis, and half of its ticks
+SYMBOLS = {"support": "foot", "clamp": "clamp", "joint": "circle", "mass": "mass"}  # other kinds are arrows
+DOWN = (0.0, -1.0)
 
 
 def make_diagrams(
@@ -205,3 +224,42 @@ def _are_same(first: Sequence[BarAttachment], other: Sequence[BarAttachment]) ->
     if [attachment[1:] for attachment in first] != [attachment[1:] for attachment in other]:
         return False
     return bool(np.allclose([attachment.s for attachment in first], [attachment.s for attachment in other]))
+
+
+def make_sketch(
+    attachments: Sequence[BarAttachment], x: Scaling, length: float, size: float, unit: str, title: str = ""
+) -> Panel:
+    """Make the sketch of a bar on the horizontal axis of its diagrams.
+
+    length: of the bar [m]; size: display units in a metre
+    """
+    items = tuple(_iter_items(attachments, length, size, unit))
+    return Panel(x._replace(hides_label=True), Scaling("", -LOWER, UPPER), items, HEIGHT, is_bare=True, title=title)
+
+
+def _iter_items(attachments: Sequence[BarAttachment], length: float, size: float, unit: str) -> Iterator[Item]:
+    """Yield the bar, what acts on it, and the dimension line."""
+    end = size * length
+    corners = np.array([[0.0, -HALF_DEPTH], [end, -HALF_DEPTH], [end, HALF_DEPTH], [0.0, HALF_DEPTH]])
+    yield Polygon("bar", corners, is_filled=True)
+    for attachment in attachments:
+        s = size * attachment.s
+        symbol = SYMBOLS.get(attachment.kind)
+        if symbol is None:
+            yield Arrow(s, HALF_DEPTH + ARROW_LENGTH, 0.0, -ARROW_LENGTH, None)
+        elif symbol == "foot":
+            yield Symbol(s, -HALF_DEPTH, symbol, DOWN)
+        elif symbol == "clamp":  # outwards at the ends of the bar
+            yield Symbol(s, 0.0, symbol, (-1.0, 0.0) if attachment.s < 0.5 * length else (1.0, 0.0))
+        else:
+            yield Symbol(s, 0.0, symbol)
+    texts: dict[float, list[str]] = {}
+    for attachment in attachments:
+        texts.setdefault(attachment.s, []).append(attachment.name.replace("_", " "))
+    for s, names in texts.items():
+        yield PlaceLabel(size * s, HALF_DEPTH, ", ".join(names), ", ".join(names))
+    ticks = sorted({0.0, end, *(size * attachment.s for attachment in attachments)})
+    strokes = [[(0.0, -DIMENSION), (end, -DIMENSION)]]
+    strokes += [[(s, -DIMENSION - TICK), (s, -DIMENSION + TICK)] for s in ticks]
+    yield Strokes(np.array(strokes))
+    yield Words(0.5 * end, -DIMENSION + 9.0, f"{format_short(end, 4)} {unit}")

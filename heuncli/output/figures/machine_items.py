@@ -17,7 +17,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
 from heuncli.output.drawing.style import ARM_WIDTH, DASH_DOT, LINK_WIDTH, OUTLINE_WIDTH, RIM_WIDTH, THIN_WIDTH
-from heuncli.output.figures.letter_names import iter_letters
+from heuncli.output.figures.scene_labels import iter_letters
 from heuncli.output.machine_geometry.joint_symbols import (
     find_guided_actuators,
     find_scene_joint_kind,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import count, product
 
 import numpy as np
 
@@ -41,3 +42,10 @@ def _merge_places(labels: Sequence[PlaceLabel], tolerance: float) -> list[PlaceL
         elif label.text not in merged[k].text.split(SEPARATOR):
             merged[k] = merged[k]._replace(text=f"{merged[k].text}{SEPARATOR}{label.text}")
     return merged
+
+
+def iter_letters(first: str) -> Iterator[str]:
+    """Yield names without end from the first letter of the alphabet on, capital or small."""
+    alphabet = [chr(ord(first) + k) for k in range(26)]
+    for length in count(1):
+        yield from ("".join(word) for word in product(alphabet, repeat=length))

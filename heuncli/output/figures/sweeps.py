@@ -27,7 +27,7 @@ from heuncli.output.drawing.figure import (
 )
 from heuncli.output.drawing.style import PANEL_HEIGHT, PENS
 from heuncli.output.figures.contours import draw_contours
-from heuncli.output.figures.error_bands import is_visible
+from heuncli.output.figures.curve_points import is_visible
 from heuncli.output.figures.history_curves import format_number
 from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.sweep_tables import (

@@ -19,13 +19,12 @@ from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.cli.units import parse_units
-from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis
+from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis, parse_shard
 from heuncli.app.commands.sweep.checks import find_problems, find_warnings
 from heuncli.app.commands.sweep.output.writer import SweepOutput, require_writable_form
 from heuncli.app.commands.sweep.random_sampling import draw_samples
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep
-from heuncli.app.commands.sweep.shards import parse_shard
 from heuncli.app.commands.sweep.showing import show_stored
 from heuncli.app.commands.sweep.table import read_axes
 from heuncli.base.errors import Problem, SpecError

@@ -8,8 +8,7 @@ import numpy as np
 
 from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, SweptRow, make_parameter_columns, to_cell
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
-from heuncli.app.commands.sweep.output.extremes import MeasureExtremes
-from heuncli.app.commands.sweep.output.top_k import ShownRows
+from heuncli.app.commands.sweep.output.top_k import MeasureExtremes, ShownRows
 from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables.plurals import format_count
 from heuncli.scene.file_format.quantity import ParameterValue
