@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Arrow, Item, Polygon, Strokes
-from heuncli.output.figures.machine_items import PosedMachine
+from heuncli.output.figures.posed_machine import PosedMachine
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 
