@@ -54,7 +54,7 @@ ROW_CHANGE = 1e-6  # of the largest multiplier: indeterminate loads change by mo
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
 
-Quantity = tuple[
+Quantity = tuple[str, Array]  # of couplings: name, a key of error_estimates.UNITS; values (n, k, 3) or (n, k, 1)
     str, Array
 ]  # of couplings: the name, a key of error_estimates.UNITS, and values (n, k, 3) or (n, k, 1)
 
