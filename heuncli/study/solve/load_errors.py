@@ -55,8 +55,6 @@ CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared
 
 
 Quantity = tuple[str, Array]  # of couplings: name, a key of error_estimates.UNITS; values (n, k, 3) or (n, k, 1)
-    str, Array
-]  # of couplings: the name, a key of error_estimates.UNITS, and values (n, k, 3) or (n, k, 1)
 
 
 class ComparedInstants(NamedTuple):
