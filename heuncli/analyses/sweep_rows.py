@@ -47,10 +47,14 @@ class ParameterColumn(NamedTuple):
     unit: str | None
 
     @property
+    def label(self) -> str:
+        """The name; that of a parameter with the name of another column is marked."""
+        return f"{self.name} (parameter)" if self.name in (NUMBER, CODE, REASON) else self.name
+
+    @property
     def heading(self) -> str:
-        """The heading, such as `n [rpm]`; a parameter with the name of another column is marked."""
-        name = f"{self.name} (parameter)" if self.name in (NUMBER, CODE, REASON) else self.name
-        return f"{name} [{self.unit}]" if self.unit else name
+        """The label with the unit, such as `n [rpm]`."""
+        return f"{self.label} [{self.unit}]" if self.unit else self.label
 
     def make_value(self, cell: float | str) -> ParameterValue:
         """Return the value of a cell."""

@@ -221,10 +221,17 @@ def make_text_columns(heads: Iterable[str]) -> tuple[OutputColumn, ...]:
 
 def make_number_cells(values: Sequence[float], style: Style, error: float = 0.0) -> list[NumberCell]:
     """Make the cells of numbers of one family, without the zeros that they would all end in."""
-    texts = [style.write(value) for value in values]
-    spare = max((len(text) - len(short) for text, short in zip(texts, trim_zeros(texts), strict=True)), default=0)
-    write = style._replace(decimals=style.decimals - spare).write
-    return [NumberCell(value, error, write) for value in values]
+    return trim_cells([(value, error, style) for value in values])
+
+
+def trim_cells(numbers: Sequence[tuple[float, float, Style]]) -> list[NumberCell]:
+    """Make the cells of numbers, each with its error and style, without the zeros that they would all end in."""
+    texts = [style.write(value) for value, _, style in numbers]
+    spare_zeros = [len(text) - len(short) for text, short in zip(texts, trim_zeros(texts), strict=True)]
+    return [
+        NumberCell(value, error, style._replace(decimals=style.decimals - spare).write)
+        for (value, error, style), spare in zip(numbers, spare_zeros, strict=True)
+    ]
 
 
 def format_head(label: str, unit: str) -> str:

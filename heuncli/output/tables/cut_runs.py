@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_head
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell, make_number_cells
 from heuncli.results.results import Array, CutPosition, Extremes, Indices
 from heuncli.results.results_schema import STRESSES
 from heuncli.study.quantities.cut_runs import (
@@ -67,43 +67,43 @@ def _make_envelope(
     certain: StatedErrors,
 ) -> OutputTable:  # fmt: skip
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
-    columns, texts, left_out = list[OutputColumn](), list[list[str]](), False
+    columns, cells, left_out = list[OutputColumn](), list[Sequence[Cell]](), False
     for i, channel in enumerate(run.channels):
         unit, size = certain.units.find(channel.unit)
         words: Sequence[str] = BOUNDS.get(channel.quantity, BOTH_BOUNDS)
-        both = [write_numbers((size * bounds[word][i]).tolist(), styles[channel.unit]) for word in words]
-        if {text for column in both for text in column} == {"0"}:
+        error = size * certain.find_error(channel)
+        both = [make_number_cells((size * bounds[word][i]).tolist(), styles[channel.unit], error) for word in words]
+        texts = [[cell.text for cell in column] for column in both]
+        if {text for column in texts for text in column} == {"0"}:
             left_out = True
             continue
-        words = words if len(both) > 1 and both[0] != both[1] else ("",)  # a constant value has one column
-        texts += both[: len(words)]
-        columns += [
-            OutputColumn(format_head(f"{channel.label} {word}".rstrip(), unit), vector=channel.label) for word in words
-        ]
+        words = words if len(texts) > 1 and texts[0] != texts[1] else ("",)  # a constant value has one column
+        cells += both[: len(words)]
+        columns += [OutputColumn(f"{channel.label} {word}".rstrip(), unit=unit, vector=channel.label) for word in words]
     if not columns:
         return OutputTable("", notes=(*notes, "all values 0"))
-    shown = {text for column in texts for text in column}
-    all_notes = [*notes, *[ZERO_NOTE] * left_out]
-    all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    return _make_cuts_table(run, shown_cuts, columns, texts, all_notes)
+    return _make_cuts_table(run, shown_cuts, columns, cells, [*notes, *[ZERO_NOTE] * left_out])
 
 
 def _make_cuts_table(
     run: CutRun,
     shown_cuts: Indices,
     columns: Sequence[OutputColumn],
-    texts: Sequence[Sequence[str]],
+    cells: Sequence[Sequence[Cell]],
     notes: Sequence[str],
 ) -> OutputTable:
-    """Make a table with a row for each cut that begins with its position and side."""
-    positions = _format_positions(run)
+    """Make a table with a row for each cut that begins with its position and side; cells: by columns."""
+    unit, size = run.length
+    positions = make_number_cells((size * run.s).tolist(), choose_style(size * largest_magnitude(run.s), 0.0))
     sides = any(side is not None for side in run.side)
     rows = tuple(
-        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
+        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in cells))
         for j, cut in enumerate(shown_cuts)
     )
-    heads = [OutputColumn(f"s [{run.length[0]}]"), *([OutputColumn("side", "text")] if sides else [])]
-    return OutputTable("", (*heads, *columns), rows, tuple(notes))
+    heads = [OutputColumn("s", unit=unit), *([OutputColumn("side", "text")] if sides else [])]
+    shown = {format_cell(cell) for column in cells for cell in column}
+    word_notes = (note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
+    return OutputTable("", (*heads, *columns), rows, (*notes, *word_notes))
 
 
 def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors) -> OutputTable:
@@ -113,15 +113,16 @@ def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: 
     extremes = select_extremes(run, extremes)
     styles = _choose_styles(run, certain, extremes)
     span = float(np.ptp(times))
-    rows: list[tuple[str, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     channels = run.channels[: len(extremes.low)]
     for i, channel in enumerate(channels):
         unit, size = certain.units.find(channel.unit)
-        low, high = write_numbers([size * float(extremes.low[i]), size * float(extremes.high[i])], styles[channel.unit])
-        if low == high == "0":
+        ends = [size * float(extremes.low[i]), size * float(extremes.high[i])]
+        low, high = make_number_cells(ends, styles[channel.unit], size * certain.find_error(channel))
+        if low.text == high.text == "0":
             continue
         label, unit = channel.label, unit if unit != "1" else ""
-        if low == high:
+        if low.text == high.text:
             rows.append((label, unit, low, "", "", high, "", ""))
             continue
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
@@ -131,14 +132,18 @@ def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: 
         )
         where = [format_place(place, run) for place in extremes.places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
-    position_head = f"at s [{run.length[0]}]"
-    heads = ("min", position_head, "t [s]", "max", position_head, "t [s]")
-    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *(OutputColumn(head) for head in heads))
+    ends_columns = [
+        column
+        for word in ("min", "max")
+        for column in (OutputColumn(word), OutputColumn("at s", unit=run.length[0]), OutputColumn("t", "instant", "s"))
+    ]
+    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *ends_columns)
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
         return OutputTable(run.heading, notes=("all values 0",))
-    notes = (EXTREMES_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
+    is_open = any(format_cell(cell) == OPEN for row in rows for cell in row)
+    notes = (EXTREMES_NOTE, *[OPEN_NOTE] * is_open)
     return OutputTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(channels))))
 
 
@@ -183,29 +188,29 @@ def _make_diagram(
     is_beyond: bool = False,
 ) -> OutputTable:
     """Make the diagram at an instant, by its index, a row for each cut; is_beyond: whether it is beyond the horizon."""
-    texts = []
-    for channel in run.channels:
-        row, size = channel.values[instant, shown_cuts], certain.units.find(channel.unit)[1]
-        column = write_numbers((size * row).tolist(), styles[channel.unit])
-        if is_beyond:
-            column = [
-                format_unclaimed(value, channel.unit, certain, text)
-                for value, text in zip(row.tolist(), column, strict=True)
+    cells, columns = list[Sequence[Cell]](), list[OutputColumn]()
+    for i, channel in enumerate(run.channels):
+        row, (unit, size) = channel.values[instant, shown_cuts], certain.units.find(channel.unit)
+        columns.append(OutputColumn(channel.label, unit=unit, vector="loads" if i < len(run.loads) else ""))
+        numbers = make_number_cells((size * row).tolist(), styles[channel.unit], size * certain.find_error(channel))
+        cells.append(
+            [
+                format_unclaimed(value, channel.unit, certain, cell.text)
+                for value, cell in zip(row.tolist(), numbers, strict=True)
             ]
-        texts.append(column)
-    shown = {text for column in texts for text in column}
-    all_notes = [note for note in notes if note]
-    all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    heads = [format_head(channel.label, certain.units.find(channel.unit)[0]) for channel in run.channels]
-    columns = [OutputColumn(head, vector="loads" if i < len(run.loads) else "") for i, head in enumerate(heads)]
-    return _make_cuts_table(run, shown_cuts, columns, texts, all_notes)
+            if is_beyond
+            else numbers
+        )
+    return _make_cuts_table(run, shown_cuts, columns, cells, [note for note in notes if note])
 
 
 def _drop_zero_columns(run: CutRun, table: OutputTable) -> OutputTable:
     """Drop the quantities that are zero throughout, unless all of them are."""
     cells = [row for row in table.rows if not isinstance(row, str)]
     lead = len(table.columns) - len(run.channels)
-    shown_columns = [i for i in range(len(table.columns)) if i < lead or {row[i] for row in cells} != {"0"}]
+    shown_columns = [
+        i for i in range(len(table.columns)) if i < lead or {format_cell(row[i]) for row in cells} != {"0"}
+    ]
     if len(shown_columns) in (lead, len(table.columns)):
         return table
     rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
@@ -234,11 +239,6 @@ def format_place(place: CutPosition, run: CutRun) -> str:
     side = [place.side] if place.side and 0.0 < place.s < run.s[-1] else []
     size = run.length[1]
     return " ".join([*write_numbers([size * place.s], choose_style(size * largest_magnitude(run.s), 0.0)), *side])
-
-
-def _format_positions(run: CutRun) -> list[str]:
-    s = run.length[1] * run.s
-    return write_numbers(s.tolist(), choose_style(largest_magnitude(s), 0.0))
 
 
 def _format_hidden_cuts(run: CutRun, shown_cuts: Indices) -> str:
