@@ -253,7 +253,7 @@ class Extremes(NamedTuple):
         return self.select(np.array([index[path] for path in paths], dtype=np.intp))
 
     def join(self, other: Extremes) -> Extremes:
-        """Return these extremes and those of other channels."""
+        """Return the extremes of both, those of the other channels last."""
         low, low_at, low_column, high, high_at, high_column = (
             np.concatenate(both) for both in zip(self[:6], other[:6], strict=True)
         )

@@ -102,7 +102,7 @@ Values = Mapping[str, ParameterValue]  # of a variant: what is set in it, by nam
 
 
 class Recipe(NamedTuple):
-    """All that is needed to evaluate variants of a spec, in this process or another.
+    """The data from which any process can evaluate variants of a spec.
 
     text: the spec as it was read
     overrides: set in all variants

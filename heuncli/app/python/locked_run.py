@@ -35,7 +35,7 @@ class UnknownPath(SpecError, KeyError):
 
 
 class LockedRun:
-    """A study, and its results at its own instants or at others, behind a lock."""
+    """A study and its results at some instants; a lock admits one thread at a time."""
 
     def __init__(self, study: Study, results: Results | None = None, lock: RLock | None = None) -> None:
         """results: results at other instants than the study's

@@ -52,7 +52,7 @@ class AttachedLoad:
 
 
 def find_attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[AttachedLoad]:
-    """Return the loads of the actions on a body, each at its point of application."""
+    """Return the loads that actions exert on a body, each at its point of application."""
     R = states.R[:, body]
     result: list[AttachedLoad] = []
     for action in actions:

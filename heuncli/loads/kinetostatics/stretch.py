@@ -101,7 +101,7 @@ class Stretch:
         return np.asarray(float(self.cuts.points[0] @ self.cuts.n) + s)
 
     def place_for_loads(self, attached_loads: Sequence[AttachedLoad]) -> Cuts:
-        """Return the cuts at the nodes of all pieces, which move where a load does: s (k,), or (n_t, k)."""
+        """Return the cuts at the nodes of all pieces, s (k,), or (n_t, k) with loads that move over the body."""
         moving = [a.point @ self.cuts.n for a in attached_loads if a.point.ndim == 2]
         if not moving:
             return self.fixed_cuts

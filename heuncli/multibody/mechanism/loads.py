@@ -67,7 +67,7 @@ class Placement(NamedTuple):
 
 
 class AnyLoad:
-    """What all loads have, with what holds for most of them."""
+    """The interface of all loads, with defaults that hold for most of them."""
 
     kind: str
     name: str
@@ -157,7 +157,7 @@ class PointLoad(AnyLoad):
 
 
 class ValuedLoad(AnyLoad):
-    """A load with one value in time, None where it has a law of the kernel's own."""
+    """A load whose size is one value in time; None if a law of the kernel gives it."""
 
     value: Expression | None
 

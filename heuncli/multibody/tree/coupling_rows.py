@@ -84,7 +84,7 @@ def _part_gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[in
 
 
 def make_sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> ClosureRow:
-    """Make the row that is the sum of its parts, from the first one on; program: added to its length in time."""
+    """Make the row that sums its parts, the first of which has index `first`; program: added to its length in time."""
     return ClosureRow(
         kind=kernel.SUM,
         a=-1,

@@ -166,7 +166,7 @@ Part = Sentence | Facts | Brand | Listing | OutputTable | Drawing | Verbatim | C
 
 
 class OutputDocument(NamedTuple):
-    """A title, its parts, and the same as data.
+    """A title and its parts, and how the same content is written as JSON and CSV.
 
     title: None if the parts say all
     facts: label and text of the lines below the title

@@ -19,7 +19,7 @@ from heuncli.study.quantities.table_units import Units
 
 
 def describe_runs(sources: Sequence[FigureSource], curves: Sequence[TipCurve]) -> Iterator[str]:
-    """Yield what is shown of each run, and whose loads these are."""
+    """Yield a sentence for each run: the instants that are shown, and the angle that keeps turning."""
     for source in sources:
         curve = next(curve for curve in curves if curve.study is source.study)
         turning = curve.turning

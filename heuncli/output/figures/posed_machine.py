@@ -74,7 +74,7 @@ class PosedMachine:
 
     @cached_property
     def guided_actuators(self) -> frozenset[str]:
-        """The actuators that are drawn as what they exert."""
+        """The actuators that are drawn as arrows of their force."""
         return find_guided_actuators(self.spec)
 
     @cached_property

@@ -21,7 +21,7 @@ SAME_PLACE = 0.004  # of the figure's side: closer places are one
 def choose_labels(
     loads: Sequence[PlaceLabel], names: Sequence[PlaceLabel], side: float
 ) -> tuple[list[PlaceLabel], tuple[tuple[str, str], ...]]:
-    """Return the labels, and what the numbers stand for if there are any.
+    """Return the labels, and a legend (number, text) if numbers stand for the texts.
 
     loads: names with values, at the tips of arrows
     names: what else has a name; those at one place share a label

@@ -147,7 +147,7 @@ def _choose_x_variable(picked_table: SweepSelection) -> tuple[SweepVariable, lis
 
 
 def _group_rows(picked_table: SweepSelection, others: Sequence[SweepVariable]) -> list[tuple[str, Indices]]:
-    """Return the name and the rows of each combination of the others. Raises NotDrawable if there are too many."""
+    """Return names and rows of groups with equal other values. Raises NotDrawable if there are too many."""
     if not others:
         return [("", np.arange(picked_table.table.n_rows))]
     combinations = np.unique(np.column_stack([variable.values for variable in others]), axis=0)

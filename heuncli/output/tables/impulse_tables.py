@@ -58,7 +58,7 @@ class ImpactReport(NamedTuple):
 
 
 def make_impulse_tables(report: ImpactReport, *, show_all: bool = False) -> list[OutputTable]:
-    """Make the list of all impacts, if there are several, and the tables of each, or of the largest."""
+    """Make a list of the impacts if there are several, and tables of each, or only of the largest if there are many."""
     impulses = report.results.impulses
     if not impulses:
         return []

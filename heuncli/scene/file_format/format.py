@@ -234,7 +234,7 @@ class TableEntry(Entry):
 
 
 class ResultConditionEntry(Entry):
-    """A condition on a number of the results."""
+    """A condition that compares a number of the results with a bound."""
 
     of: str
     below: Either | None = None

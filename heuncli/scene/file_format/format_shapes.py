@@ -21,7 +21,7 @@ Frame = Literal["world", "body"]
 
 
 class Orientation(Entry):
-    """An attitude, in one of its forms."""
+    """An orientation in one of its five forms."""
 
     axis: Direction | None = None
     angle: Angle | None = None

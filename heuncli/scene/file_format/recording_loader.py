@@ -37,7 +37,7 @@ MAX_PLANS = 1024  # cached plans, by the set of differing lookups
 
 
 class EntryRecord(NamedTuple):
-    """An entry, the data it was read from, and the lookups made for it."""
+    """An entry with the data it was read from and the lookups that reading made."""
 
     entry: Any
     data: Any
@@ -79,7 +79,7 @@ class VerdictPlan(NamedTuple):
 
 
 class MeaningRecord(NamedTuple):
-    """The meaning of a part of the document, and the lookups made for it."""
+    """A resolved part of the document with the lookups that resolving it made."""
 
     value: Any
     lookups: frozenset[Lookup]

@@ -211,7 +211,7 @@ def run_duration(analysis: f.AnalysisEntry) -> float:
 
 
 def find_reduction_end(reduce_to: str | EndEntry) -> EndEntry | None:
-    """Return the point that a section is reduced to, if it is one."""
+    """Return the point about which a section's moments are taken; None for a word such as `centroid`."""
     if isinstance(reduce_to, EndEntry):
         return reduce_to
     body, dot, point = reduce_to.partition(".")

@@ -94,7 +94,7 @@ def _explain_path(topic: str) -> str | None:
 
 
 def _make_unknown_section(page: str, heading: str) -> Problem:
-    """Describe a section that a page does not have."""
+    """Make the problem for a section that does not exist on the page."""
     names = [section.heading.lower() for section in read_sections(page)[1:]]
     near = find_similar(heading.lower(), names)
     known = f"its sections: {list_words(names)}"

@@ -149,7 +149,7 @@ def make_contacts(evaluator: Evaluator, last: float) -> Contacts | None:
 
 @record
 class SingleInstant:
-    """The events at the only instant of a scene: the impulse, if there is one, and notes on the contacts."""
+    """The impulse at the only instant of a scene: the impulse, if there is one, and notes on the contacts."""
 
     events: tuple[ImpulseEvent, ...] = ()
     notes: tuple[str, ...] = ()

@@ -62,7 +62,7 @@ def format_course_head(plan: Plan) -> str:
 def _format_extreme(
     head: SweepHead, selection: ShownRows, k: int, place: int, candidates: Array, size: float
 ) -> tuple[str, str]:
-    """Return an extreme, and the variant that has it.
+    """Format an extreme, and name the variant in which it occurs.
 
     candidates: which variants may have it as well
     """
