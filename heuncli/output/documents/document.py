@@ -26,15 +26,19 @@ class NumberCell(NamedTuple):
     """A number in the unit of its column, with its error.
 
     write: prints it, such as `style.write` of its family; None: with the digits that its own error leaves
+    cached_text: it as it is printed, where that depends on other cells of its column
     """
 
     value: float
     error: float = 0.0
     write: Callable[[float], str] | None = None
+    cached_text: str = ""
 
     @property
     def text(self) -> str:
         """The number as it is printed."""
+        if self.cached_text:
+            return self.cached_text
         return format_with_error(self.value, self.error) if self.write is None else self.write(self.value)
 
 
@@ -226,12 +230,8 @@ def make_number_cells(values: Sequence[float], style: Style, error: float = 0.0)
 
 def trim_cells(numbers: Sequence[tuple[float, float, Style]]) -> list[NumberCell]:
     """Make the cells of numbers, each with its error and style, without the zeros that they would all end in."""
-    texts = [style.write(value) for value, _, style in numbers]
-    spare_zeros = [len(text) - len(short) for text, short in zip(texts, trim_zeros(texts), strict=True)]
-    return [
-        NumberCell(value, error, style._replace(decimals=style.decimals - spare).write)
-        for (value, error, style), spare in zip(numbers, spare_zeros, strict=True)
-    ]
+    texts = trim_zeros([style.write(value) for value, _, style in numbers])
+    return [NumberCell(value, error, None, text) for (value, error, _), text in zip(numbers, texts, strict=True)]
 
 
 def format_head(label: str, unit: str) -> str:
