@@ -102,7 +102,7 @@ Values = Mapping[str, ParameterValue]  # of a variant: what is set in it, by nam
 
 
 class Recipe(NamedTuple):
-    """The data from which any process can evaluate variants of a spec.
+    """All that is needed to evaluate variants of a spec, in this process or another.
 
     text: the spec as it was read
     overrides: set in all variants
