@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 
 from heuncli.app.cli.solving import collect_results
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_joint_paths, solve_source

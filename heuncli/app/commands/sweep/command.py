@@ -24,8 +24,7 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
-from heuncli.app.cli.target import choose_format, require_writable
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import choose_format, parse_units, require_writable
 from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis, parse_shard
 from heuncli.app.commands.sweep.checks import find_problems, find_warnings
 from heuncli.app.commands.sweep.output.writer import SweepOutput, require_writable_form
