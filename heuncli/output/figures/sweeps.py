@@ -26,10 +26,10 @@ from heuncli.output.drawing.figure import (
     share_x_axis,
 )
 from heuncli.output.drawing.style import PANEL_HEIGHT, PENS
-from heuncli.output.figures.contours import draw_contours
 from heuncli.output.figures.curve_points import is_visible
 from heuncli.output.figures.history_curves import format_number
 from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.sweep_axes import MAX_NAMES, draw_contours, find_cell_edges, make_axis, make_measure_axis
 from heuncli.output.figures.sweep_tables import (
     SweepNumbers,
     SweepSelection,
@@ -38,7 +38,6 @@ from heuncli.output.figures.sweep_tables import (
     make_example,
     select_sweep,
 )
-from heuncli.output.figures.variable_axes import MAX_NAMES, find_cell_edges, make_axis, make_measure_axis
 from heuncli.results.results import Array, Indices
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.labels import Labels
