@@ -31,7 +31,7 @@ class SweptRow(NamedTuple):
 
     number: int
     values: Values
-    answer: VariantResult
+    result: VariantResult
 
 
 NUMBER = "number"
@@ -47,10 +47,14 @@ class ParameterColumn(NamedTuple):
     unit: str | None
 
     @property
+    def label(self) -> str:
+        """The name; that of a parameter with the name of another column is marked."""
+        return f"{self.name} (parameter)" if self.name in (NUMBER, CODE, REASON) else self.name
+
+    @property
     def heading(self) -> str:
-        """The heading, such as `n [rpm]`; a parameter with the name of another column is marked."""
-        name = f"{self.name} (parameter)" if self.name in (NUMBER, CODE, REASON) else self.name
-        return f"{name} [{self.unit}]" if self.unit else name
+        """The label with the unit, such as `n [rpm]`."""
+        return f"{self.label} [{self.unit}]" if self.unit else self.label
 
     def make_value(self, cell: float | str) -> ParameterValue:
         """Return the value of a cell."""
@@ -86,13 +90,13 @@ class SweepColumns(NamedTuple):
     def make_cells(self, row: SweptRow) -> list[Cell]:
         """Return the cells of a variant; None where there is no value."""
         measures: list[Cell] = [None] * (3 * len(self.measures))
-        for place, one in enumerate(row.answer.measures):
+        for place, one in enumerate(row.result.measures):
             measures[3 * place : 3 * place + 3] = (to_finite(number) for number in (one.value, one.error, one.time))
         return [
             row.number,
             *(to_cell(row.values[one.name]) for one in self.parameters),
             *measures,
-            row.answer.code,
+            row.result.code,
             explain_missing(row, self.measures),
         ]
 
@@ -110,9 +114,9 @@ def to_finite(number: float | None) -> float | None:
 
 def explain_missing(row: SweptRow, measures: Sequence[str]) -> str:
     """Say why a variant, or a measure of it, has no value; empty if all have one."""
-    if row.answer.code:
-        return row.answer.reason
-    missing = [(text, one.word) for text, one in zip(measures, row.answer.measures, strict=True) if one.word]
+    if row.result.code:
+        return row.result.reason
+    missing = [(text, one.word) for text, one in zip(measures, row.result.measures, strict=True) if one.word]
     return SEPARATOR.join(f"{text}: {MISSING_KINDS[word].sentence} [{word}]" for text, word in missing)
 
 

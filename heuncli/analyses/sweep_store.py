@@ -126,7 +126,7 @@ class Store:
                 raise
 
     def find_rows(self, sweep: int, plan: Plan, shard: tuple[int, int] = (1, 1)) -> StoredRows:
-        """Return the rows of a sweep, or of a shard of it, in the order of its plan."""
+        """Return the stored rows of a sweep or of one shard, in the plan's order."""
         return StoredRows(self, sweep, plan, shard)
 
     def iter_sweeps(self) -> Iterator[StoredSweep]:

@@ -22,7 +22,7 @@ Motion = Literal["turning", "sliding"]
 
 
 class Hold(NamedTuple):
-    """The constraint that a joint sets on the `to` point.
+    """The constraint of a joint on the position of the `to` point.
 
     gap_type: the gap that the assembly closes
     guides: directions along which the point cannot leave the `from` point, and so those of the forces; one closure row
@@ -38,7 +38,7 @@ class Hold(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """The constraint that a joint sets on the rotation of `to`.
+    """The constraint of a joint on the rotation of `to`.
 
     condition: the condition that the assembly sets on its orientation
     dots: pairs of directions d of `from` and e of `to` that stay perpendicular; one closure row each, with the moment e
@@ -202,13 +202,13 @@ class JointKind(NamedTuple):
 
     @property
     def load_unit(self) -> Literal["N", "N·m"]:
-        """The unit of what acts in it: N·m if it turns."""
+        """The unit of loads that act in it: N·m if it turns."""
         return "N·m" if "turning" in self.motions else "N"
 
     def motions_for_load(self, load: str) -> tuple[Motion, ...]:
         """Return the motions on which a load of this kind acts: one row of the kernel's table of loads each."""
         known: tuple[Motion, ...] = ("turning", "sliding")
-        return tuple(x for x, _ in zip(known, LOAD_KINDS[load].laws, strict=False) if x in self.motions)
+        return tuple(x for x, _ in zip(known, LOAD_KINDS[load].kernel_laws, strict=False) if x in self.motions)
 
     def accepts_load(self, load: str) -> bool:
         """Whether a load of this kind may act in it."""

@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-def count_rank(sizes: Array, tolerance: float = tolerances.RANK, *, least_scale: float = 1.0) -> int:
+def count_rank(sizes: Array, tolerance: float = tolerances.RANK, *, min_scale: float = 1.0) -> int:
     """Count the singular values, the largest first, that exceed a tolerance relative to the largest of them, or to
-    `least_scale` if that is larger: 1 for a matrix whose rows have lengths of about 1.
+    `min_scale` if that is larger: 1 for a matrix whose rows have lengths of about 1.
     """
-    return int(np.count_nonzero(sizes > tolerance * max(least_scale, float(sizes[0])))) if len(sizes) else 0
+    return int(np.count_nonzero(sizes > tolerance * max(min_scale, float(sizes[0])))) if len(sizes) else 0
 
 
-def null_space(A: Array, tolerance: float = tolerances.RANK, *, least_scale: float = 1.0) -> Array:
-    """Return the null space of A (m, n), orthonormal columns (n, n - rank); tolerance, least_scale: of `count_rank`."""
+def null_space(A: Array, tolerance: float = tolerances.RANK, *, min_scale: float = 1.0) -> Array:
+    """Return the null space of A (m, n), orthonormal columns (n, n - rank); tolerance, min_scale: of `count_rank`."""
     _, sizes, V = np.linalg.svd(A, full_matrices=True)
-    return V[count_rank(sizes, tolerance, least_scale=least_scale) :].T
+    return V[count_rank(sizes, tolerance, min_scale=min_scale) :].T
 
 
 def split_null_space(A: Array, rounding: float) -> tuple[Array, Array]:

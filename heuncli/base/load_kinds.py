@@ -1,8 +1,8 @@
 """The kinds of loads, one row each: all other code reads the rows, nothing branches on a kind's name.
 
 A row tells where a load acts, by which laws of the kernel, and how it is spoken of, drawn and checked. Three tables
-beside it have an entry of the same name for what users write: its keys (scene/file_format/format.py), what they mean
-(scene/file_format/resolve_loads.py), and for symbols of its own how they are drawn (output/drawing/symbols.py, and
+beside it have an entry of the same name for what users write: its keys (scene/file_format/format_loads.py), what these
+mean (scene/file_format/resolve_loads.py), and for symbols of its own how they are drawn (output/drawing/symbols.py, and
 output/web_page/symbols.js for the page). The spec depends on this module, so it does not import NumPy.
 """
 
@@ -23,12 +23,12 @@ NO_SAMPLE: Mapping[str, tuple[float, float]] = MappingProxyType({})
 class LoadKind(NamedTuple):
     """One kind of load: a row of LOAD_KINDS. Defaults hold for most kinds.
 
-    laws: names of the kernel's laws (kernel/scene.py); in a joint of its turning and of its sliding, of a bushing of
+    kernel_laws: names of laws in kernel/scene.py; in a joint of its turning and of its sliding, of a bushing of
     its shift and of its turn
-    does: what it is, in the manual
+    description: what it is, in the manual
     unit: of its value; None: the joint decides
     has_potential: whether it stores energy that only its place decides; damping may take some
-    resists: the motion that it opposes, in words, if it does nothing else
+    opposed_motion: the motion that it opposes, in words, if that is all it does
     is_friction: whether what opposes has a size of its own, and a sign that is smoothed
     law_keys, number_keys: keys of its law, and of the numbers that may stand in its place, where it has two forms
     required_keys: of those numbers, the ones without a default
@@ -42,11 +42,11 @@ class LoadKind(NamedTuple):
 
     name: str
     place: Place
-    laws: tuple[str, ...]
-    does: str
+    kernel_laws: tuple[str, ...]
+    description: str
     unit: Literal["N", "N·m"] | None = "N"
     has_potential: bool = False
-    resists: str | None = None
+    opposed_motion: str | None = None
     is_friction: bool = False
     law_keys: tuple[str, ...] = ()
     number_keys: tuple[str, ...] = ()
@@ -70,7 +70,7 @@ class LoadKind(NamedTuple):
     @property
     def depends_on_state(self) -> bool:
         """Whether it depends on positions or velocities even where its values in time do not."""
-        return self.has_potential or self.resists is not None
+        return self.has_potential or self.opposed_motion is not None
 
     @property
     def display_name(self) -> str:
@@ -115,13 +115,14 @@ LOAD_KINDS: dict[str, LoadKind] = {
         ),
         LoadKind(
             "damper", "joint", ("TURN_DAMPER", "SHIFT_DAMPER"), "resists the motion that a joint leaves free", None,
-            resists="the rate of its joint", law_keys=("torque", "force"), number_keys=("coefficient", "sliding"),
-            not_negative=("sliding", "coefficient"), symbols=("damping", "damping", "damping"),
+            opposed_motion="the rate of its joint", law_keys=("torque", "force"),
+            number_keys=("coefficient", "sliding"), not_negative=("sliding", "coefficient"),
+            symbols=("damping", "damping", "damping"),
             synonyms=("dashpot",),
         ),
         LoadKind(
             "friction", "joint", ("TURN_FRICTION", "SHIFT_FRICTION"), "Coulomb's friction in a joint, smoothed", None,
-            resists="the rate of its joint", is_friction=True,
+            opposed_motion="the rate of its joint", is_friction=True,
             not_negative=("length", "coefficient", "torque", "force"), symbols=("brake", "brake", "brake along"),
             synonyms=("brake", "coulomb"),
         ),
@@ -138,7 +139,7 @@ LOAD_KINDS: dict[str, LoadKind] = {
         LoadKind("rope", "rope", ("ROPE",), "an elastic rope", has_potential=True),
         LoadKind(
             "thread friction", "thread", ("THREAD_FRICTION",), "friction in a thread", "N·m",
-            resists="the direction of rotation of its thread", is_friction=True,
+            opposed_motion="the direction of rotation of its thread", is_friction=True,
         ),
     )
 }  # fmt: skip

@@ -303,7 +303,7 @@ TOO_LARGE = "check its unit; for no limit leave the entry out"
 
 
 def is_in_range(value: float) -> bool:
-    """Whether a number is 0, or of a magnitude that is computed with; nan and inf are not."""
+    """Return whether a number is 0 or of a magnitude that arithmetic can handle; nan and inf are not."""
     return value == 0.0 or tolerances.LEAST_MAGNITUDE <= abs(value) <= tolerances.MOST_MAGNITUDE
 
 

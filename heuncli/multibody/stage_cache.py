@@ -77,7 +77,7 @@ class ReusingStages(Stages):
 
 
 class InputTrace:
-    """An input value of a stage, and the parts of it that were read; a value without parts counts as a whole.
+    """An input of a stage, and which of its fields the stage read; a value without parts counts as a whole.
 
     parts: fields of a record by name, members of a list or tuple of records by index
     """

@@ -16,10 +16,9 @@ from heuncli.base import units as u
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.path_words import INDEX_WORD, POSITION_WORD
-from heuncli.results.results import Array, Indices
+from heuncli.results.results import SIDE_SIGNS, Array, Indices
 from heuncli.results.results_schema import parse_index
 
-SIDES = ("before", "beyond")
 ACCEPTED = (
     "a position is @0.28 (metres), @280mm, @start or @end; a cut is its number from 0; both accept :before or :beyond"
 )
@@ -42,7 +41,7 @@ def parse_cut(word: str) -> CutSelector:
     cut = parse_index(word if index_match is None else index_match["cut"])
     match = index_match if position_match is None else position_match
     side = None if match is None else match["side"]
-    if (cut is None and position_match is None) or (side is not None and side not in SIDES):
+    if (cut is None and position_match is None) or (side not in SIDE_SIGNS):
         raise cut_error(f"'{word}' is not a position along a series of cuts", ACCEPTED)
     if position_match is None:
         return CutSelector(None, None, cut, side)

@@ -34,7 +34,7 @@ def join_path(words: Sequence[str]) -> str:
 
 
 def find_position_word(words: Sequence[str]) -> str | None:
-    """Return the word of a path that is a position, by its @; None if there is none."""
+    """Return the word of a path that begins with @, a position along a series of cuts; None if there is none."""
     return next((word for word in words if word.startswith("@")), None)
 
 

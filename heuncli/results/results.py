@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, TypedDict
 
 import numpy as np
@@ -194,6 +195,12 @@ class Results:
         return {("motion", "m"): relative * size, ("motion", "rad"): relative * max(largest_angle, 1.0)}
 
 
+# A cut in whose plane something acts is just before it, so that it is part of the piece, or just beyond it.
+BEFORE, BEYOND = 1.0, -1.0
+SIDE_WORDS: Mapping[float, str | None] = MappingProxyType({BEFORE: "before", BEYOND: "beyond", 0.0: None})
+SIDE_SIGNS: Mapping[str | None, float] = MappingProxyType({word: sign for sign, word in SIDE_WORDS.items()})
+
+
 class CutPosition(NamedTuple):
     """A position in a series of cuts: distance s [m], side of a load there, and the index of the requested cut, if it
     is one.
@@ -246,7 +253,7 @@ class Extremes(NamedTuple):
         return self.select(np.array([index[path] for path in paths], dtype=np.intp))
 
     def join(self, other: Extremes) -> Extremes:
-        """Return these extremes and those of other channels."""
+        """Return the extremes of both, those of the other channels last."""
         low, low_at, low_column, high, high_at, high_column = (
             np.concatenate(both) for both in zip(self[:6], other[:6], strict=True)
         )

@@ -4,7 +4,7 @@
     Setup -> History              solve/     the motion, and the errors of its numbers
     History -> Results            compose/   the kernel's solutions at some instants as blocks of results
     between the instants          search/    extremes, crossings of zero
-    Study                         ask/       the solved scene: measures, expectations, events
+    Study                         queries/   the solved scene: measures, expectations, events
 
 Each folder imports only those above it in this list; the workflow imports all of them. compose/blocks.py describes how
 one number gets from the kernel's solution to the cell of a table. Impure: reads the clock.

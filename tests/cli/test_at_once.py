@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.app.cli.line_width import find_line_width
+from heuncli.app.cli.terminal import find_line_width
 from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.shell import shell
 

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.explain.codes import parse_codes
-from heuncli.app.commands.explain.pages import PAGES, find_section, read_sections
+from heuncli.app.commands.explain.pages import PAGES, find_section, parse_codes, read_sections
 from heuncli.app.commands.explain.paths import MEANINGS
 from heuncli.results.path_words import NAMES
 from heuncli.results.results_schema import ROWS, Quantity

@@ -7,7 +7,8 @@ import pytest
 
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.scene.expressions import composition
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
+from heuncli.scene.expressions.scope import Scope
 from tests.shared.scenes import near, solved
 
 BLOCK = """

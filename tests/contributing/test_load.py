@@ -16,13 +16,14 @@ from heuncli.base.load_kinds import LOAD_KINDS, LoadKind
 from heuncli.kernel.choose import scene as kernel
 from heuncli.output.drawing import symbols
 from heuncli.output.drawing.symbols import LINKS
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import LOADS
-from heuncli.scene.file_format import format as f
+from heuncli.scene.expressions.scope import Scope
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import loads, resolve_loads
 from heuncli.scene.file_format.entries import keys_of
 from heuncli.scene.file_format.fields import Moment, SiNumber
-from heuncli.scene.file_format.format_joints import JointLoadEntry, PairEntry
+from heuncli.scene.file_format.format_loads import JointLoadEntry, PairEntry
 from heuncli.scene.file_format.resolve_couplings import ReferenceResolver
 from tests.contributing.addition import cited
 from tests.oracle.loads import KINDS_OF_LOAD, between, pushes
@@ -71,7 +72,7 @@ def scene(place: float = 2.0, end: str = "c") -> str:
 def magnet(monkeypatch: pytest.MonkeyPatch) -> None:
     """The magnet in the three tables."""
     monkeypatch.setitem(LOAD_KINDS, "magnet", ROW)
-    monkeypatch.setitem(f.LOADS, "magnet", MagnetEntry)
+    monkeypatch.setitem(fl.LOADS, "magnet", MagnetEntry)
     monkeypatch.setitem(resolve_loads.MEANINGS, "magnet", resolve_magnet)
 
 
@@ -132,9 +133,9 @@ def test_one_in_a_joint(monkeypatch: pytest.MonkeyPatch) -> None:
         assert bound is not None
         return loads.Torque(load.joint, bound, load.type)
 
-    row = LOAD_KINDS["motor"]._replace(name="detent", does="holds in four places", not_negative=("hold",))
+    row = LOAD_KINDS["motor"]._replace(name="detent", description="holds in four places", not_negative=("hold",))
     monkeypatch.setitem(LOAD_KINDS, "detent", row)
-    monkeypatch.setitem(f.LOADS, "detent", DetentEntry)
+    monkeypatch.setitem(fl.LOADS, "detent", DetentEntry)
     monkeypatch.setitem(resolve_loads.MEANINGS, "detent", resolve_detent)
     monkeypatch.setitem(TYPES, "pin", TYPES["pin"]._replace(loads=(*TYPES["pin"].loads, "detent")))
     turned = scene(0.3).replace("slide", "pin").replace("travel", "angle").replace("speed", "rate")
@@ -162,20 +163,20 @@ def test_in_random_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("kind", LOAD_KINDS.values(), ids=lambda kind: kind.name)
 def test_every_row(kind: LoadKind) -> None:
     """Each names laws of the kernel and symbols that are drawn, keys that there are, and has its entry and meaning."""
-    assert all(isinstance(getattr(kernel, law), int) for law in kind.laws)
+    assert all(isinstance(getattr(kernel, law), int) for law in kind.kernel_laws)
     if kind.place == "points":
         assert {*kind.symbols} <= {*LINKS} and re.search(rf"^  {kind.symbols[0]}: \(pen", PAGE_SYMBOLS, re.MULTILINE)
     elif kind.is_in_joint:
         assert all(name in symbols.SYMBOLS for name in kind.symbols) and len(kind.symbols) == 3
     if kind.place not in ("rope", "thread"):
         keys = {*kind.law_keys, *kind.number_keys, *kind.required_keys, *kind.not_negative, *kind.sample}
-        assert keys <= {*keys_of(f.LOADS[kind.name])}
+        assert keys <= {*keys_of(fl.LOADS[kind.name])}
         assert kind.name in resolve_loads.MEANINGS
 
 
 def test_its_list() -> None:
     """The list of what a load needs names the files of these tables, and is short."""
-    tables = (load_kinds, f, resolve_loads, symbols)
+    tables = (load_kinds, fl, resolve_loads, symbols)
     named = {name for name in cited("A load") if not name.startswith("tests/contributing")}
     assert {str(Path(table.__file__ or "").relative_to(ROOT)) for table in tables} <= named
     assert len(named) <= 9

@@ -9,8 +9,8 @@ from functools import cache
 from random import Random
 from typing import Any
 
-from heuncli.scene.file_format.format import LOADS
 from heuncli.scene.file_format.format_couplings import COUPLINGS
+from heuncli.scene.file_format.format_loads import LOADS
 from tests.faults import sources
 from tests.faults.random_expressions import random_expression
 from tests.faults.sources import Spot, Tree

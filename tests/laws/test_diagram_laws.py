@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.output.figures.bars import WholeBar
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import rotation_matrix_about
+from heuncli.study.queries.bars import WholeBar
 from heuncli.study.queries.study import Study
 from tests.shared.drawn_bars import drawn, panels_of
 from tests.shared.drawn_panels import edges, heights

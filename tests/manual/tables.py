@@ -21,7 +21,8 @@ from heuncli.base.load_kinds import LOAD_KINDS, LOAD_SYNONYMS
 from heuncli.base.method_rows import METHODS
 from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
 from heuncli.scene.expressions.names import ARITY, CONSTANTS
-from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_joints as fj
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.foreign_words import SHAPE_WORDS, list_aliases
 from tests.manual import codes
@@ -171,8 +172,8 @@ def keys() -> Iterator[tuple[str, str]]:
 def types() -> Iterator[tuple[str, str]]:
     """What `type` may be, with the words of others for it, and where each is described."""
     blocks = (
-        ("a joint", "joints", f.JOINTS, SYNONYMS, "Joints"),
-        ("a load", "forces", f.LOADS, LOAD_SYNONYMS, None),
+        ("a joint", "joints", fj.JOINTS, SYNONYMS, "Joints"),
+        ("a load", "forces", fl.LOADS, LOAD_SYNONYMS, None),
         ("a shape", "shapes", fs.SHAPES, SHAPE_WORDS, "Shapes"),
     )
     for what, block, models, meant, heading in blocks:
@@ -199,7 +200,7 @@ def pages() -> Iterator[tuple[str, str]]:
 
 def loads() -> Iterator[tuple[str, str]]:
     """The kinds of loads that users write."""
-    return ((f"`{name}`", LOAD_KINDS[name].does) for name in f.LOADS)
+    return ((f"`{name}`", LOAD_KINDS[name].description) for name in fl.LOADS)
 
 
 def groups_of_equations() -> Iterator[tuple[str, str, str]]:

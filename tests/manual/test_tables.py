@@ -13,6 +13,8 @@ from heuncli.loads.kinetostatics.stress import UNKNOWN_SHEAR
 from heuncli.output.tables.export import MOST_NUMBERS
 from heuncli.scene.expressions.grammar import MAX_LENGTH as LONGEST_EXPRESSION
 from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_joints as fj
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.entries import REQUIRED as NO_DEFAULT
 from heuncli.scene.file_format.entries import Entry, Field
 from heuncli.scene.file_format.named_files import MAX_FILE_SIZE as LARGEST_TABLE
@@ -92,7 +94,7 @@ def test_small_mappings_are_told_in_their_row() -> None:
 
 
 def test_every_model_has_a_chapter() -> None:
-    told = {f.HeadEntry, f.AnyJoint, f.Bearing, f.PairEntry, f.JointLoadEntry, *INLINE}
+    told = {f.HeadEntry, fj.AnyJoint, fj.Bearing, fl.PairEntry, fl.JointLoadEntry, *INLINE}
     for model in CHAPTERS.values():
         told.update(model.values() if isinstance(model, Mapping) else {model})
     models = {x for x in vars(f).values() if isinstance(x, type) and issubclass(x, Entry) and x is not Entry}
@@ -174,7 +176,7 @@ def test_words_are_those_of_the_models() -> None:
             assert f"`{word}`" in " ".join(row.values()), f"{heading}: {row['key']} lacks {word}"
 
 
-@pytest.mark.parametrize(("heading", "types"), [("Joints", f.JOINTS), ("Forces", f.LOADS)])
+@pytest.mark.parametrize(("heading", "types"), [("Joints", fj.JOINTS), ("Forces", fl.LOADS)])
 def test_each_type_is_told_in_a_word(heading: str, types: Mapping[str, type[Entry]]) -> None:
     first, *_ = tables_below(TEXTS["format"], heading)
     assert re.findall(r"^\| `(\w+)`", first, re.MULTILINE) == list(types)

@@ -56,7 +56,7 @@ KEPT = {
     "analyses/find/study.py": {"close_edge(solved)", "evaluate_between(solved)", "predict_edge(solved)"},
     "analyses/lagrange/coordinates.py": {"choose_coordinates(driven)", "group_coordinates(driven)"},
     "results/results.py": {"JointBlock.chosen"},
-    "scene/expressions/grammar.py": {"Scope.given"},
+    "scene/expressions/scope.py": {"Scope.given"},
     "scene/file_format/entries.py": {"Entry.before"},
     "scene/file_format/format.py": {"ExpectEntry.before"},
     "scene/importers/mjcf/reader.py": {"described"},

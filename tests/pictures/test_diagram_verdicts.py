@@ -9,11 +9,11 @@ from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.figure import Blank, Trace
 from heuncli.output.drawing.letters import draw_text as in_letters
-from heuncli.output.figures.bars import WholeBar
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.scene.shapes.rotations import cross_vectors
 from heuncli.study.quantities.digits import StatedErrors
+from heuncli.study.queries.bars import WholeBar
 from tests.shared.drawn_bars import HELD_TWICE, SI, diagrams, drawn, panels_of
 from tests.shared.scenes import study
 

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.published.cases import read_case, spec_of
-from heuncli.output.figures.bars import WholeBar
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.bars import WholeBar
 from heuncli.study.queries.study import Study
 from tests.shared.drawn_panels import heights, panels, upright_at
 from tests.shared.scenes import near, study

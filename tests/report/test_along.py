@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from heuncli.output.documents.document import OutputTable
-from heuncli.output.snapshots import searches
-from heuncli.output.tables.cut_runs import collect_runs, find_sample_extremes, merge_extremes
+from heuncli.output.snapshots import tables as snapshot_tables
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
+from heuncli.study.quantities.cut_runs import collect_runs, find_sample_extremes, merge_extremes
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.measure import find_peak
 from heuncli.study.queries.study import Study
@@ -46,7 +46,7 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extre
     spec = load(str(path))
     study = solve(spec, Options(requested_reports=SECTIONS))
     page = make_page(study.results, make_labels(spec), study.magnitudes)
-    return study, *searches.search_page(page, study, SECTIONS)
+    return study, *snapshot_tables.search_page(page, study, SECTIONS)
 
 
 def cells(table: OutputTable) -> list[tuple[str, ...]]:
@@ -146,6 +146,6 @@ def test_the_place_of_a_stress_is_not_sought_in_rounding(monkeypatch: pytest.Mon
     found = solve(load("box.yaml", LOADED_BOX), Options())
     run = next(iter(collect_runs(found.results, make_labels(found.spec))))
     certain = make_page(found.results, make_labels(found.spec), found.magnitudes).certain
-    told = searches.search_stresses(run, certain, found)
+    told = snapshot_tables.search_stresses(run, certain, found)
     assert told.places[-1][1] == CutPosition(0.0, "beyond", 0)  # of the utilisation
     assert sum(asked) < 2000

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-from heuncli.output.documents.markdown_text import escape_line, escape_markdown, fence_text
+from heuncli.output.documents.as_markdown import escape_line, escape_markdown, fence_text
 from tests.shared.command import HANGING, Heun
 
 HOSTILE = "![x](http://x.y) <img src=x onerror=alert(1)> [a](javascript:alert(1)) *b* `c` | # & www.x.y ~~d~~"

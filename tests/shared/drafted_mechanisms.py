@@ -12,8 +12,9 @@ import numpy as np
 
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Assembly, Body, Joint, Mechanism
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.models import Drive, FramedVector
 from heuncli.scene.shapes.rotations import rotation_from_vector, rotation_matrix_about, vector_from_rotation
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts
+from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.stretch import NODES, Stretch
 from heuncli.output.tables.page import Page
-from heuncli.results.results import Array, Block, Extremes, Magnitudes, Results
+from heuncli.results.results import SIDE_SIGNS, Array, Block, Extremes, Magnitudes, Results
 from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, SectionInfo
@@ -194,7 +194,7 @@ class FakeStudy:
 def stretch_like(name: str, section: dict[str, Any]) -> Stretch:
     """A stretch with the cuts of a run as its corners."""
     s = section["s"]
-    side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[x] for x in section.get("side", [None] * len(s))])
+    side = np.array([SIDE_SIGNS[x] for x in section.get("side", [None] * len(s))])
     bare = dict.fromkeys(Cuts.__annotations__) | {
         "name": name,
         "n": np.array([0.0, 0.0, 1.0]),

@@ -20,8 +20,9 @@ from heuncli.scene.expressions.discontinuities import (
     instant_after_end,
     pair_adjacent_instants,
 )
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression, TableFunction
+from heuncli.scene.expressions.scope import Scope
 from heuncli.study.solve.history import require_steps
 
 TRIANGLE = interpolate_points("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)

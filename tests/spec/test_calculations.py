@@ -7,7 +7,8 @@ import pytest
 from heuncli.base.errors import Finding
 from heuncli.base.units import FORCE, LENGTH
 from heuncli.scene.expressions.codegen import CalculationCache
-from heuncli.scene.expressions.grammar import DimensionedParameter, Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
+from heuncli.scene.expressions.scope import DimensionedParameter, Scope
 from tests.shared.bits import bits
 
 FIRST = {"a": 2.0, "b": -0.5, "n": 3.0}

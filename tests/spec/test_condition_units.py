@@ -9,8 +9,9 @@ import pytest
 
 from heuncli.base.errors import Finding
 from heuncli.base.units import LENGTH, UNITS, parse_unit
-from heuncli.scene.expressions.grammar import DimensionedParameter, Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.expressions.scope import DimensionedParameter, Scope
 from heuncli.scene.file_format.quantity import read_condition
 
 JOINTS = {"shaft": "pin", "guide": "slide"}

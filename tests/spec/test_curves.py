@@ -15,8 +15,9 @@ from heuncli.base.errors import SpecError
 from heuncli.kernel.choose import expressions
 from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.discontinuities import find_discontinuities
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression, Pack, TableFunction
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.columns import CsvError, MissingColumnError, read_column_numbers
 from heuncli.scene.file_format.load import load
 

@@ -13,8 +13,9 @@ from heuncli.base.records import replace
 from heuncli.base.units import NUMBER, Dimension, parse_unit
 from heuncli.scene.expressions import dimensions
 from heuncli.scene.expressions.curves import interpolate_points
-from heuncli.scene.expressions.grammar import DimensionedParameter, Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.expressions.scope import DimensionedParameter, Scope
 from heuncli.scene.file_format.load import load
 from tests.shared.folders import ROOT
 from tests.shared.manual import TEXTS, file_of

@@ -18,8 +18,9 @@ import pytest
 from heuncli.kernel.choose import enclosure, jets
 from heuncli.kernel.form import KERNEL
 from heuncli.scene.expressions.curves import interpolate_points
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression, Pack
+from heuncli.scene.expressions.scope import Scope
 from tests.shared.random_programs import (
     HELD,
     TAKEN,

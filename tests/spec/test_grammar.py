@@ -7,8 +7,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from heuncli.base.errors import Finding
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.expressions.scope import Scope
 
 SCOPE = Scope(
     parameters={"L": 1.5, "broken": None},

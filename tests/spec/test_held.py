@@ -12,8 +12,9 @@ import pytest
 
 from heuncli.kernel.choose import expressions
 from heuncli.scene.expressions.curves import interpolate_points
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import OPS, Expression, Pack
+from heuncli.scene.expressions.scope import Scope
 from tests.shared.plain_kernel import plain_module
 from tests.shared.random_programs import VARIABLES, random_program
 

@@ -11,9 +11,10 @@ import pytest
 from heuncli.base.errors import SpecError
 from heuncli.kernel.choose import expressions
 from heuncli.scene.expressions.curves import interpolate_points
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.integrals import add_start_value, integrate_rate
 from heuncli.scene.expressions.programs import Expression, Pack
+from heuncli.scene.expressions.scope import Scope
 from tests.shared.evaluators import COMPILED, PLAIN, answers
 from tests.shared.scenes import near
 

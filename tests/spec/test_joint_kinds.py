@@ -9,6 +9,8 @@ import pytest
 
 from heuncli.base.joint_kinds import ABOUT_AXIS, FLAT, FREE, JOINTS, LINE, POINT, RATES, SYNONYMS, TYPES, JointKind
 from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_joints as fj
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.entries import fields_of, keys_of
 
 IN_PLANE = {kind.name: kind for kind in FLAT.values()}
@@ -18,7 +20,7 @@ WRITTEN = pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
 
 
 def test_the_format_and_the_table_know_the_same_kinds() -> None:
-    assert list(f.JOINTS) == list(TYPES)
+    assert list(fj.JOINTS) == list(TYPES)
 
 
 @WRITTEN
@@ -32,12 +34,12 @@ def test_keys(kind: JointKind) -> None:
     own = {"x", "y", "z", "radius", "normal", "one_sided", "restitution", "bearing"}
     keys |= own if kind.follows_path else set()  # in place of an axis
     keys |= {"bearing"} if kind.hold in (POINT, LINE) and kind.turn in (FREE, ABOUT_AXIS) else set()  # a journal turns
-    assert set(keys_of(f.JOINTS[kind.name])) == keys
+    assert set(keys_of(fj.JOINTS[kind.name])) == keys
 
 
 @WRITTEN
 def test_what_must_be_given(kind: JointKind) -> None:
-    fields = fields_of(f.JOINTS[kind.name])
+    fields = fields_of(fj.JOINTS[kind.name])
     must = {key for key in ("axis", "normal", "to_axis") if key in fields and fields[key].is_required}
     wanted = {kind.axis_key, "to_axis" if kind.to_axis == "required" else None}
     assert must == wanted - {None}
@@ -46,7 +48,7 @@ def test_what_must_be_given(kind: JointKind) -> None:
 @WRITTEN
 def test_start_values(kind: JointKind) -> None:
     """Each coordinate and its rate may be held at the start."""
-    fields = fields_of(f.JOINTS[kind.name])
+    fields = fields_of(fj.JOINTS[kind.name])
     parts = get_args(fields["initial"].annotation) if "initial" in fields else ()
     models = [part for part in parts if part is not NoneType]
     held = {key for model in models for key in keys_of(model)}
@@ -58,7 +60,7 @@ def test_drives_have_keys() -> None:
 
 
 def test_loads_have_types() -> None:
-    assert {load for kind in TYPES.values() for load in kind.loads} < set(f.LOADS)
+    assert {load for kind in TYPES.values() for load in kind.loads} < set(fl.LOADS)
 
 
 @ROWS

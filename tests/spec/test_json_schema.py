@@ -18,7 +18,7 @@ from heuncli.output.tables.export import to_json
 from heuncli.output.tables.results_json_schema import make_results_schema
 from heuncli.results.results_schema import REPORTS, SHARES
 from heuncli.scene.file_format.foreign_words import list_aliases
-from heuncli.scene.file_format.format import JOINTS
+from heuncli.scene.file_format.format_joints import JOINTS
 from heuncli.scene.file_format.json_schema import make_spec_schema
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options

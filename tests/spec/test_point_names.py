@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from heuncli.base.errors import Finding
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.quantity import read_condition
 
 POINTS = {"drill": ["top", "bit"], "rod": ["top", "eye"], "bare": [], "ground": ["post", "eye"]}

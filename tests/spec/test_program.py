@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 
 from heuncli.kernel.choose import expressions, jets
 from heuncli.scene.expressions.discontinuities import find_discontinuities
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression, Pack
+from heuncli.scene.expressions.scope import Scope
 from tests.shared.evaluators import COMPILED, PLAIN, answers, bits
 from tests.shared.plain_kernel import plain_module
 from tests.shared.random_programs import VARIABLES, random_program

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
-from heuncli.scene.expressions.grammar import Scope
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.quantity import read_function, read_number
 
 SCOPE = Scope(parameters={"L": 2.0, "m": 3.0})

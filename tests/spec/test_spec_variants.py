@@ -12,7 +12,8 @@ import pytest
 
 from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.entries import fields_of
-from heuncli.scene.file_format.format import BallJoint, ForceEntry, PinJoint
+from heuncli.scene.file_format.format_joints import BallJoint, PinJoint
+from heuncli.scene.file_format.format_loads import ForceEntry
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.lookups import (
     GIVEN_FIELDS,

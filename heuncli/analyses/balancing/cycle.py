@@ -30,7 +30,8 @@ from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.models import Drive
 from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import reduce_scene

@@ -317,8 +317,8 @@ def require_position_loads(mechanism: Mechanism) -> None:
 
 def iter_dependence_reasons(load: Load) -> Iterator[str]:
     """Yield the reasons why the pose does not determine the work of a load; none if it does."""
-    if load.row.resists is not None:
-        yield f"depends on {load.row.resists}"
+    if load.row.opposed_motion is not None:
+        yield f"depends on {load.row.opposed_motion}"
     if load.row.has_potential and load.is_damped:
         yield "has damping"
     if any(value.time_dependent for value in load.values):

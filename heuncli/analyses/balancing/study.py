@@ -75,7 +75,7 @@ def compute_balance(spec: Spec, options: BalanceOptions) -> BalanceResults:
 def add_load_torque(
     results: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, options: BalanceOptions
 ) -> BalanceResults:
-    """Return the results with the orders of the torque of the loads on the shaft, if there are any."""
+    """Add the orders of the torque that loads exert on the shaft, if loads act on it."""
     if not scene.mechanism.loads and not scene.mechanism.gravity.any():
         return results
     from heuncli.analyses.balancing.loaded_scene import compute_load_torque  # with all that solves loads
@@ -103,7 +103,7 @@ FIRST_SAMPLES = 8  # instants for the size of the terms of force and moment
 
 @record
 class TwoPeriods:
-    """The last period of a motion and the one before it.
+    """The last two periods of a motion.
 
     begin [s]: start of the last period
     reference_point (3,): where moments are taken

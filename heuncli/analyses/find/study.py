@@ -237,7 +237,7 @@ def enclose_touches(course: MeasureCourse) -> None:
 
 
 def find_touching_groups(course: MeasureCourse) -> list[SideGroup]:
-    """Return the groups that meet the value and have the same side on both ends."""
+    """Return the groups of samples that meet the value, with neighbours on the same side of it at both ends."""
     side_groups = group_by_side(course)
     return [
         group

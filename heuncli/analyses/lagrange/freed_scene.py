@@ -157,7 +157,7 @@ class Instant:
 
     @property
     def recovery(self) -> Recovery:
-        """Results of the scene as it is."""
+        """The solution of the scene before its drives are removed."""
         return recover(self.setup, self.driven_recovered, False)
 
 

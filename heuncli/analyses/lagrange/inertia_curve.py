@@ -28,7 +28,8 @@ from heuncli.motion.integration.run.request import MotionTask
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Layout, find_speed_rows, rate_indices
 from heuncli.results.results import Array
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.models import Analysis, Drive, Spec
 from heuncli.study.model.setup import attach_locations, set_up
 

@@ -15,7 +15,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.results.results import Array
 from heuncli.results.results_paths import find_values
-from heuncli.scene.expressions.grammar import Scope
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.quantity import read_number

@@ -61,7 +61,7 @@ class DeterminateLoadErrors(LoadErrors):
 
 @record
 class ReferenceComparison:
-    """A reference and what is compared with it.
+    """A reference solution and the runs compared with it.
 
     runs: runs by the reference's method
     times (n,): the instants that are compared

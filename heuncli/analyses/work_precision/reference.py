@@ -44,7 +44,7 @@ AGREEMENT_TEXTS = {
 
 @record
 class VerifiedReference:
-    """A reference with the comparison of runs with it.
+    """A reference solution, and the comparison of runs with it.
 
     seconds: processor time of its run
     """

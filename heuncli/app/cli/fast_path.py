@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 
-from heuncli.app.cli.line_width import find_line_width
+from heuncli.app.cli.terminal import find_line_width
 from heuncli.base.errors import HeunError
 from heuncli.version import VERSION
 

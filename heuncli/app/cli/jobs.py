@@ -114,7 +114,7 @@ def run_in_order(
     is_last: Callable[[Answer], bool] = lambda answer: False,
     separate_process: bool = False,
 ) -> Iterator[Answer]:
-    """Yield the results in the order of the items, each as soon as all results before it are there.
+    """Yield results in the order of the items, each as soon as it and all earlier ones are there.
 
     make_failure: makes the result of an item whose process died twice, or at its time limit
     is_last: whether a result ends the work, so that later items are skipped
@@ -180,7 +180,7 @@ def run_as_completed(
 
 
 class _Worker(Generic[Item, Answer]):
-    """A process that works on one item after the other, and the pipe to it."""
+    """A worker process that handles items one by one, and the pipe to it."""
 
     def __init__(self, work: Callable[[Item], Answer], other_workers: Sequence[_Worker[Item, Answer]]) -> None:
         import multiprocessing

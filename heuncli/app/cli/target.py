@@ -1,5 +1,6 @@
-"""The option `-o FILE`: choose the format by the file's name, and check that it can be written. Impure: looks at the
-files.
+"""The options `-o FILE`, `--format` and `--units`: where, in which format and in which units is written.
+
+Impure: looks at the files.
 """
 
 from __future__ import annotations
@@ -7,11 +8,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import require_choice
 from heuncli.base.errors import Problem
 from heuncli.base.files import STDOUT, find_target
+from heuncli.study.quantities.table_units import Units, read_display_units
 
 ENDINGS = {"json": ".json", "csv": ".csv", "markdown": ".md", "parquet": ".parquet", "m": ".m"}
+TABLES = ("table", "markdown")
 
 
 def choose_format(requested: str | None, output: str | None, formats: Sequence[str]) -> str:
@@ -43,3 +47,14 @@ def require_writable(output: str, option: str = "-o") -> None:
         hint = f"for example {option} {'results.json' if option == '-o' else 'chart.svg'}"
         raise UsageError(Problem("bad-option", f"{option}: expected a file name", hint=hint))
     find_target(output)
+
+
+def parse_units(words: str | None) -> Units:
+    """Parse the units in which tables are shown. Raises UsageError."""
+    return read_display_units("--units", words)
+
+
+def note_si_format(words: str | None, form: str, quiet: bool) -> None:
+    """Print a note to standard error that a format other than a table stays in SI although units were given."""
+    if words is not None and not quiet and form not in TABLES:
+        print_stderr(f"heun: --units applies to tables only; {form} stays in SI")

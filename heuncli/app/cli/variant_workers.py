@@ -1,13 +1,19 @@
-"""Solve one variant in a process of its own: what ends it early becomes its result. Impure: the clock."""
+"""Solve one variant in a process of its own, and print the warnings of all. What ends one early becomes its result.
+
+Impure: the clock.
+"""
 
 from __future__ import annotations
 
-from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
+from heuncli.analyses.variants.evaluation import CachedEvaluator, Values, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, WORKER_DIED, VariantResult, make_failed_result
 from heuncli.analyses.variants.parameters import format_value
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import run_contained
+from heuncli.app.cli.output import print_stderr
+from heuncli.app.cli.solving import print_warnings
 from heuncli.base.errors import HeunError
+from heuncli.scene.file_format.models import Spec
 
 
 def solve_contained(evaluator: VariantEvaluator, values: Values, command: str, limit: float | None) -> VariantResult:
@@ -27,3 +33,10 @@ def make_death_result(death: jobs.ProcessDeath) -> VariantResult:
     if death.is_time_up:
         return VariantResult(code=TIME_LIMIT_CODE, reason="the time limit was reached, but the work did not stop")
     return VariantResult(code=WORKER_DIED, reason=f"the process that solved it failed twice: {death.description}")
+
+
+def print_variant_warnings(spec: Spec, evaluator: CachedEvaluator, quiet: bool) -> None:
+    """Print the warnings of reading the spec and of solving its variants."""
+    print_warnings(spec, None, quiet)
+    for text, variants in ({} if quiet else evaluator.count_warnings()).items():
+        print_stderr(f"warning: heun: {text} (in {variants} of {evaluator.runs} variants)")

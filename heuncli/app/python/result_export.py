@@ -12,7 +12,6 @@ from heuncli.base.errors import Problem, UsageError
 from heuncli.base.records import replace
 from heuncli.output.documents.as_html import escape_text, make_element, render_table
 from heuncli.output.documents.as_text import render_text
-from heuncli.output.snapshots.display_units import read_display_units
 from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.output.snapshots.tables import TablesQuery
 from heuncli.output.summary.run_document import RunParts, make_run_parts
@@ -20,7 +19,7 @@ from heuncli.results.results import Array
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.model.selection import Selection
 from heuncli.study.quantities.labels import make_labels
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.table_units import Units, read_display_units
 from heuncli.study.queries.study import Study
 
 # no colours, so that light and dark notebooks keep theirs; all rules apply within this class only

@@ -205,7 +205,7 @@ class RestSearch:
         return None
 
     def find_singularity(self, pose: Pose) -> Problem | None:
-        """Return the problem of a singular position if the search has come to one and did not start in one."""
+        """Return the problem if the search has run into a singular position; None if it started in one."""
         if count_dependent_rows(pose) <= count_dependent_rows(self.start_pose()):
             return None
         return singular_pose_problem(self.coordinates, pose)

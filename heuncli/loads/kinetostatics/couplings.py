@@ -89,7 +89,7 @@ class PartLoad:
 
     @property
     def ends(self) -> tuple[ActionEnd, ActionEnd]:
-        """Where it acts on b and on a; it may move over both."""
+        """The points of application on b and on a; it may move over both."""
         on_b = ActionEnd(self.part.b, self.place, None, is_offset=True)
         return on_b, ActionEnd(self.part.a, self.place_a, None, is_offset=True)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.joint_kinds import JOINTS
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.results.results import Array
+from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array
 from heuncli.scene.file_format.models import Properties, Section, Spec
 from heuncli.scene.shapes.composite_solid import CompositeSolid
 from heuncli.scene.shapes.inertia import pseudo_inertia
@@ -30,7 +31,6 @@ from heuncli.scene.shapes.rotations import cross_vectors
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
 
-BEFORE, BEYOND = 1.0, -1.0
 MIN_RUN_FACTOR = 4.0  # times the plane tolerance: the distance at which corners of a run are separate (stretch.py)
 
 
@@ -103,41 +103,58 @@ class Cuts:
         return replace(self, properties=None, is_impulse=True)
 
 
-def list_attachment_points(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+class Attachment(NamedTuple):
+    """What acts on a body, and where: a joint, force, impulse or stop with its name; a point (3,), body axes.
+
+    Of a distributed load: the two ends of its line (2, 3).
+    """
+
+    kind: Literal["joint", "force", "impulse", "stop"]
+    name: str
+    place: Array
+
+    @property
+    def label(self) -> str:
+        """Its kind and name."""
+        return f"{self.kind} {self.name}"
+
+
+def list_attachments(mechanism: Mechanism, body: int) -> list[Attachment]:
     """List loads, impulses, joints and stops with their points, body axes.
 
     A joint whose point of action moves over the body is left out, except where it comes to a stop.
     """
-    points: list[tuple[str, Array]] = []
+    points: list[Attachment] = []
     for joint in mechanism.joints:
         if joint.b == body:
-            points.append((f"joint {joint.name}", joint.q))
+            points.append(Attachment("joint", joint.name, joint.q))
         if joint.a == body and not JOINTS[joint.kind].has_moving_contact:
-            points.append((f"joint {joint.name}", joint.p))
+            points.append(Attachment("joint", joint.name, joint.p))
     for load in mechanism.loads:
         if isinstance(load, PointLoad) and load.spread is not None:
             continue
-        points += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
+        points += [Attachment("force", load.name, point) for owner, point in load.points if owner == body]
     for blow in mechanism.impulses:
         if blow.body == body and blow.point is not None:
-            points.append((f"impulse {blow.name}", blow.point))
+            points.append(Attachment("impulse", blow.name, blow.point))
     for stop in mechanism.stops:
         joint = mechanism.joints[stop.joint]
         if joint.a == body and stop.quantity == "travel":
             limits = [limit for limit in (stop.low, stop.high) if limit is not None]
             for limit in limits:
                 limit_point = limit * joint.axis if joint.path is None else joint.path.evaluate(limit)[0]
-                points.append((f"stop {stop.name}", joint.p + limit_point))
+                points.append(Attachment("stop", stop.name, joint.p + limit_point))
     return points
 
 
-def list_distributed_loads(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+def list_distributed_loads(mechanism: Mechanism, body: int) -> list[Attachment]:
     """List the distributed loads on a body, each with the two ends of its line, (2, 3), body axes."""
-    lines: dict[str, Array] = {}
+    lines: dict[str, Attachment] = {}
     for load in mechanism.loads:
         if isinstance(load, PointLoad) and load.spread is not None and load.body == body:
-            lines.setdefault(f"force {load.name}", np.stack([load.spread.start, load.spread.end]))
-    return list(lines.items())
+            ends = np.stack([load.spread.start, load.spread.end])
+            lines.setdefault(load.name, Attachment("force", load.name, ends))
+    return list(lines.values())
 
 
 def make_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, CompositeSolid]) -> tuple[Cuts, ...]:
@@ -167,14 +184,14 @@ def _make_section_cuts(
     e1 = make_first_axis(n, section.first_axis)
     points, s = _cut_points(section)
     d = points @ n
-    attachment_points, lines = list_attachment_points(mechanism, body), list_distributed_loads(mechanism, body)
-    heights = np.array([point for _, point in attachment_points]).reshape(-1, 3) @ n
-    ends = np.array([line for _, line in lines]).reshape(-1, 2, 3) @ n
+    attachments, lines = list_attachments(mechanism, body), list_distributed_loads(mechanism, body)
+    heights = np.array([attachment.place for attachment in attachments]).reshape(-1, 3) @ n
+    ends = np.array([line.place for line in lines]).reshape(-1, 2, 3) @ n
     plane_tolerance = _plane_tolerance(form, np.append(heights, ends), d)
     # the end of a distributed load in the plane carries nothing, but the whole line may lie there
     distances = np.concatenate([np.abs(heights - d[:, None]), np.abs(ends - d[:, None, None]).max(axis=2)], axis=1)
     in_plane = distances <= plane_tolerance
-    attachment_points, heights = attachment_points + lines, np.append(heights, ends)
+    attachments, heights = attachments + lines, np.append(heights, ends)
     jumps = np.asarray(in_plane.any(axis=1))
     if form is not None:
         jumps = jumps | form.has_mass_in_plane(n, d) | form.has_rod_in_plane(n, d)
@@ -183,11 +200,11 @@ def _make_section_cuts(
         if jumps[0] and section.side is None:
             raise SpecError(
                 _missing_side_problem(
-                    [what for (what, _), on in zip(attachment_points, in_plane[0], strict=True) if on], location
+                    [attachment.label for attachment, on in zip(attachments, in_plane[0], strict=True) if on], location
                 )
             )
         # kept also where nothing lies in the plane: joints may move into it during the run
-        side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]])
+        side = np.array([SIDE_SIGNS[section.side]])
     else:
         if s[-1] <= MIN_RUN_FACTOR * plane_tolerance:
             message = (

@@ -22,7 +22,7 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses
-from heuncli.results.results import Array, Block, Mask
+from heuncli.results.results import SIDE_WORDS, Array, Block, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 
 
@@ -52,7 +52,7 @@ class AttachedLoad:
 
 
 def find_attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[AttachedLoad]:
-    """Return the loads of the actions on a body, each at its point of application."""
+    """Return the loads that actions exert on a body, each at its point of application."""
     R = states.R[:, body]
     result: list[AttachedLoad] = []
     for action in actions:
@@ -388,8 +388,7 @@ def section_block(
         for part in {"line", "stress"} & block.keys():
             block[part] = {key: value[:, 0] for key, value in block[part].items()}
         return block
-    words = {1.0: "before", -1.0: "beyond", 0.0: None}
-    return {"s": cuts.s, "side": [words[x] for x in cuts.side.tolist()]} | block
+    return {"s": cuts.s, "side": [SIDE_WORDS[x] for x in cuts.side.tolist()]} | block
 
 
 def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:

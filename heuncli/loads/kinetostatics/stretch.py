@@ -21,8 +21,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts
-from heuncli.results.results import Array, CutPosition, Indices, Mask
+from heuncli.loads.kinetostatics.cuts import Cuts
+from heuncli.results.results import BEFORE, BEYOND, SIDE_WORDS, Array, CutPosition, Indices, Mask
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.sections import AttachedLoad
@@ -101,7 +101,7 @@ class Stretch:
         return np.asarray(float(self.cuts.points[0] @ self.cuts.n) + s)
 
     def place_for_loads(self, attached_loads: Sequence[AttachedLoad]) -> Cuts:
-        """Return the cuts at the nodes of all pieces, which move where a load does: s (k,), or (n_t, k)."""
+        """Return the cuts at the nodes of all pieces, s (k,), or (n_t, k) with loads that move over the body."""
         moving = [a.point @ self.cuts.n for a in attached_loads if a.point.ndim == 2]
         if not moving:
             return self.fixed_cuts
@@ -140,9 +140,7 @@ class Stretch:
         side = side if jumps else 0.0
         is_close = np.abs(own_cuts.s - s) <= tolerances.SAME_CUT * own_cuts.s[-1]
         matching = np.flatnonzero(is_close & (own_cuts.side * side >= 0.0))
-        return CutPosition(
-            s, {BEFORE: "before", BEYOND: "beyond"}.get(side), int(matching[0]) if len(matching) else None
-        )
+        return CutPosition(s, SIDE_WORDS[side], int(matching[0]) if len(matching) else None)
 
 
 def find_middle_of_longest(corners: Array) -> Array:

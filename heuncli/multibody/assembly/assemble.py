@@ -127,7 +127,7 @@ def _largest_displacement(
 
 @record
 class StartPoses:
-    """The poses at the start, and how they were found; the fields are described at PoseAssembly."""
+    """The poses at the start, and a description of the search; the fields are described at PoseAssembly."""
 
     drawn_poses: AssemblyPoses
     poses: AssemblyPoses

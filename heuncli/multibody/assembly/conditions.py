@@ -53,7 +53,7 @@ NO_BEND = np.zeros(3)
 
 
 class JointConstraint(NamedTuple):
-    """How a joint constrains the `to` point and the rotation of `to`: for poses, or for rates."""
+    """The constraints of a joint on the point and on the rotation of `to`: for poses, or for rates."""
 
     hold: Hold
     turn: Turn

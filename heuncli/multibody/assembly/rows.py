@@ -200,7 +200,7 @@ MemberFreedoms = Sequence[tuple[bool, bool]]  # whether each member may turn, an
 
 @record
 class MemberStep:
-    """The motion of a member by that of its parent: z = offset + transfer z_parent + N y_here.
+    """How a body of the loop moves with its parent: z = offset + transfer z_parent + N y_here.
 
     parent: index of the parent, -1 for none
     rest (r, 6): rows on z_parent that the member cannot follow because it is held

@@ -45,7 +45,7 @@ class CoupledFit:
 
     def __init__(self, scene: PreparedScene, t: float, start_rows: StartRows, bodies: Iterable[int]) -> None:
         """bodies: tree indices of those whose changes count; all of them may move until others are released."""
-        self.scene, self.asked, self.t = scene, start_rows, t
+        self.scene, self.start_rows, self.t = scene, start_rows, t
         self.size, self.state = scene.layout.size, scene.layout.y0.copy()
         places = sorted(bodies)
         self.release_bodies(places)
@@ -90,7 +90,7 @@ class CoupledFit:
         spread, hard, soft = self._rate_conditions()
         step, _ = _least_step(spread, hard, soft, None)
         self.state = self.freedoms.apply_rate_step(self.state, step)
-        rows = self.asked.rates
+        rows = self.start_rows.rates
         return np.asarray(self.freedoms.measure(self.state).rates[rows] * self.length_factors(rows))
 
     def could_stay(self, body: int) -> bool:
@@ -112,11 +112,14 @@ class CoupledFit:
         """
         measured, start = self.measure_present()
         motion = self.freedoms.measure_motion(self.state)
-        hard = [self._weighted_rows(motion, measured.rates, self.asked.joints), *held_rates(self.scene, start, motion)]
+        hard = [
+            self._weighted_rows(motion, measured.rates, self.start_rows.joints),
+            *held_rates(self.scene, start, motion),
+        ]
         return (
             self._body_motions(motion, start),
             _concatenate_rows(hard),
-            self._weighted_rows(motion, measured.rates, self.asked.rates),
+            self._weighted_rows(motion, measured.rates, self.start_rows.rates),
         )
 
     # Poses
@@ -139,7 +142,7 @@ class CoupledFit:
                 self.state = before
                 break
             gap = new
-        rows = self.asked.poses
+        rows = self.start_rows.poses
         measured, _ = self.measure_present()
         return np.asarray(measured.gaps[rows] * self.length_factors(rows))
 
@@ -167,14 +170,14 @@ class CoupledFit:
     def _pose_step(self, measured: MeasuredState, start: Assembly, change: Array | None) -> Array:
         motion = self.freedoms.measure_motion(self.state)
         held = list(held_poses(self.scene, start, motion))
-        hard = _concatenate_rows([self._weighted_rows(motion, measured.gaps, self.asked.joints), *held])
-        soft = self._weighted_rows(motion, measured.gaps, self.asked.poses)
+        hard = _concatenate_rows([self._weighted_rows(motion, measured.gaps, self.start_rows.joints), *held])
+        soft = self._weighted_rows(motion, measured.gaps, self.start_rows.poses)
         step, turn = _least_step(self._body_motions(motion, start), hard, soft, change)
         return step * min(1.0, TURN / turn) if turn > 0.0 else step
 
     def _largest_gap(self, measured: MeasuredState, start: Assembly) -> float:
         """The largest gap of all rows and held values, by the size, or rad."""
-        rows = np.concatenate([self.asked.joints, self.asked.poses])
+        rows = np.concatenate([self.start_rows.joints, self.start_rows.poses])
         still = np.zeros((len(start.position), 3, 0))
         nothing = FreedomMotion(still, still, np.zeros((len(measured.gaps), 0)), start.position)
         held = [lack for _, lack in held_poses(self.scene, start, nothing)]

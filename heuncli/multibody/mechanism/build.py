@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def make_forms(spec: m.Spec, stages: Stages = NO_CACHE) -> dict[str, CompositeSolid]:
-    """Make the forms of the bodies that are built from shapes, each in a stage of its own."""
+    """Make the composite solids of bodies with shapes, each in a stage of its own."""
     shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
     if not shapes:
         return {}

@@ -222,7 +222,7 @@ class CoupledDrawing:
         return [self.number[x.joint] for x in terms]
 
     def locate(self, end: End) -> tuple[int, Array]:
-        """Return the number of a body, or of the ground, and the point on it."""
+        """Return a body's index (GROUND for the ground) and the point in its axes."""
         names = [body.name for body in self.bodies]
         return (names.index(end.body) if end.body in names else GROUND), np.array(end.point)
 

@@ -104,7 +104,7 @@ class CouplingPart:
 
     @property
     def lies_on_sheave(self) -> bool:
-        """Whether it is the section of a rope that lies on a sheave, which has no load."""
+        """Whether it is a piece of rope lying on a sheave; such a piece carries no load of its own."""
         return self.kind in ("arc", "wound")
 
     @property
@@ -186,7 +186,7 @@ class Coupling:
 
     @property
     def has_pretension(self) -> bool:
-        """Whether it is a belt with a pretension, which is a load of the same name."""
+        """Whether it is a belt with pretension; that acts as a load of the same name."""
         return isinstance(self.entry, spec.Belt) and self.entry.pretension > 0.0
 
     @property

@@ -67,7 +67,7 @@ class Placement(NamedTuple):
 
 
 class AnyLoad:
-    """What all loads have, with what holds for most of them."""
+    """The interface of all loads, with defaults that hold for most of them."""
 
     kind: str
     name: str
@@ -111,7 +111,7 @@ class AnyLoad:
 
     def count_rows(self, joints: Sequence[Joint]) -> int:
         """Return the number of its rows in the kernel's table of loads: one for each of its laws."""
-        return len(self.row.laws)
+        return len(self.row.kernel_laws)
 
 
 @record
@@ -157,7 +157,7 @@ class PointLoad(AnyLoad):
 
 
 class ValuedLoad(AnyLoad):
-    """A load with one value in time, None where it has a law of the kernel's own."""
+    """A load whose size is one value in time; None if a law of the kernel gives it."""
 
     value: Expression | None
 

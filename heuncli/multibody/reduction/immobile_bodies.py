@@ -186,7 +186,7 @@ def find_limited_body(layout: Layout, is_held: Mask, exceptions: dict[int, str])
 def find_moving_bodies(
     search: ImmobilitySearch, island: Island, is_held: Mask, exceptions: dict[int, str]
 ) -> list[int]:
-    """Find the remaining bodies of an island that can move if the others do not."""
+    """Find the bodies of an island that can still move when all others are held."""
     layout = search.layout
     bodies = {i: free for i in np.flatnonzero(is_held).tolist() if (free := island_freedoms(layout, island, i))}
     if not bodies:

@@ -35,7 +35,7 @@ from heuncli.scene.expressions.programs import Expression
 
 @record
 class BodyPlacement:
-    """The placement of a body in the one that it is part of: that body (-1: the ground), its attitude R and origin p
+    """Where a welded body sits in its compound body: that body (-1: the ground), its attitude R and origin p
     there.
     """
 
@@ -48,7 +48,7 @@ class BodyPlacement:
         return np.asarray(self.R @ x + self.p)
 
     def compose(self, inner: BodyPlacement) -> BodyPlacement:
-        """Return the placement of a body that is placed in this one."""
+        """Return the placement of a body that is itself placed in this one, in the outer compound body."""
         return BodyPlacement(self.body, self.R @ inner.R, self.transform_point(inner.p))
 
 
@@ -57,7 +57,7 @@ GROUND_PLACEMENT = BodyPlacement(GROUND, np.eye(3), np.zeros(3))  # the ground i
 
 @record
 class BodyParts:
-    """The placement of each body in the one that it is part of, by its number in the larger scene.
+    """The placement of each body in its compound body, by its number in the larger scene.
 
     roots: the bodies that are not part of others
 
@@ -151,7 +151,7 @@ def restate_joint(layout: Layout, parts: BodyParts, number: dict[int, int], k: i
 
 
 def restate_load(load: Load, parts: BodyParts, number: dict[int, int], joint_number: dict[int, int]) -> Load:
-    """Return a load on the bodies that its own are part of."""
+    """Return the load acting on compound bodies instead of their parts."""
     if isinstance(load, PointLoad):
         part = parts.get_placement(load.body)
         point = None if load.point is None else part.transform_point(load.point)
@@ -164,7 +164,7 @@ def restate_load(load: Load, parts: BodyParts, number: dict[int, int], joint_num
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     zero = Expression.from_number(0.0)
-    value = load.value if not load.row.resists and load.value is not None else zero
+    value = load.value if not load.row.opposed_motion and load.value is not None else zero
     return PointLoad(load.name, "couple", GROUND, None, (value, zero, zero), False)
 
 
@@ -183,7 +183,7 @@ def restate_couplings(
 
 
 def rotate_load(part: BodyPlacement, load: PointLoad) -> tuple[Expression, Expression, Expression]:
-    """Return the components of a body-fixed load in the axes of the body that its own is part of.
+    """Return the components of a body-fixed load in the axes of the compound body.
 
     A load that varies can only be expressed in the same axes, or on the ground, which it does not move
     (`bodies_with_varying_loads`).
@@ -205,13 +205,13 @@ def bodies_with_varying_loads(mechanism: Mechanism) -> set[int]:
 
 
 def restate_point(point: NamedPoint, parts: BodyParts, number: dict[int, int]) -> NamedPoint:
-    """Return a point that expressions use, on the body that its own is part of."""
+    """Return a point that expressions use, on the compound body instead of its part."""
     part = parts.get_placement(point.body)
     return replace(point, body=number[part.body], place=part.transform_point(point.place))
 
 
 def restate_impulse(impulse: Blow, parts: BodyParts, number: dict[int, int]) -> Blow:
-    """Return an impulse on the body that its own is part of."""
+    """Return the impulse acting on the compound body instead of its part."""
     part = parts.get_placement(impulse.body)
     point = None if impulse.point is None else part.transform_point(impulse.point)
     vector = part.R @ impulse.vector if impulse.in_body else impulse.vector
@@ -241,7 +241,7 @@ def second_direction_body(part: CouplingPart) -> int:
 
 @record
 class SceneTransform:
-    """The transformation to a smaller scene of what is fixed in bodies of the larger one.
+    """Transforms points, vectors and loads fixed in bodies of a scene to the bodies of a smaller one.
 
     body, joint: the smaller scene's numbers from the larger one's
     point, direction: transform a body's point or direction

@@ -83,7 +83,7 @@ def find_welded_parts(layout: Layout, separate: dict[int, str]) -> BodyParts:
 
 
 def weld_placement(layout: Layout, joint: int, reverse: bool) -> BodyPlacement:
-    """Return the placement of a body in the one it is welded to."""
+    """Return where a body sits in the body that it is welded to."""
     weld, R = layout.mechanism.joints[joint], layout.starts[joint].R_ref
     if reverse:
         return BodyPlacement(weld.b, R.T, weld.q - R.T @ weld.p)
@@ -110,7 +110,7 @@ def find_excluded_body(layout: Layout, parts: BodyParts) -> tuple[int, str] | No
 
 
 def merge_parts(mechanism: Mechanism, parts: BodyParts, root: int) -> Body:
-    """Merge a body with all its parts, in its own axes."""
+    """Merge the masses, points and shapes of a body and its welded parts, in the body's axes."""
     members = [i for i, part in enumerate(parts.placements) if part.body == root]
     body = mechanism.bodies[root]
     if members == [root]:

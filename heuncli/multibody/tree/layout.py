@@ -70,7 +70,7 @@ class Contact:
 
 @record
 class LayoutFrame:
-    """The part of a layout that does not depend on the value of any load: the tree, its rows, the start.
+    """A layout without loads, which scenes that differ only in loads share: the tree, its rows, the start.
 
     place: index in the tree by body (the order of spanning.links)
     reference (n, 3): each body's joint point in its own axes, tree order

@@ -284,7 +284,7 @@ class _LoadRowBuilder:
 
 def law_numbers(load: Load) -> tuple[int, ...]:
     """Return the kernel's numbers of the laws of a load."""
-    return tuple(getattr(kernel, law) for law in load.row.laws)
+    return tuple(getattr(kernel, law) for law in load.row.kernel_laws)
 
 
 def make_watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:

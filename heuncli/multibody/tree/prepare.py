@@ -106,7 +106,7 @@ def lay_out_scene(
 
 @record
 class LayoutWithoutLoads:
-    """The part of a laid-out scene that does not depend on the value of any load.
+    """A laid-out scene without its loads, which scenes that differ only in loads share.
 
     idle_spins: the undetermined spins, with their artificial inertia
     omega (n, 3): angular velocities at the start, without these spins

@@ -340,7 +340,7 @@ def make_parts(
 
 
 def make_strand_part(a: RopePoint, b: RopePoint, at_a: float, at_b: float) -> CouplingPart:
-    """Make the part of a strand, relative to a sheave if there is one."""
+    """Make the part of a strand: between two points, or relative to the sheave that it winds on."""
     if not a.radius and not b.radius:
         return CouplingPart("rod", a.body, b.body, a.point, b.point)
     if not a.radius:

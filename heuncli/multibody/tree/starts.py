@@ -46,8 +46,9 @@ class JointStart:
 
 @record
 class PresetTree:
-    """A tree that was chosen for a larger scene, and the starts of its joints; starts: None: from the assembled
-    start.
+    """The spanning tree of a larger scene, to be used again.
+
+    starts: of its joints; None: from the assembled start
     """
 
     spanning: SpanningTree
@@ -166,7 +167,7 @@ def find_reference_angle(mechanism: Mechanism, joint: Joint) -> float:
 
 
 def joint_direction(joint: Joint, direction: Direction) -> Array:
-    """A direction of the joint in `from` axes: its axis, or one of the two perpendicular to it."""
+    """Return a direction of the joint in `from` axes: its axis, or one of the two perpendicular to it."""
     if direction == "axis":
         return joint.axis
     if direction == "z":
@@ -178,9 +179,7 @@ def joint_direction(joint: Joint, direction: Direction) -> Array:
 
 
 def to_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
-    """A direction of the joint that is fixed in `to`, in `to` axes: its second axis, or one of `from` at the reference
-    attitude.
-    """
+    """Return a direction fixed in `to`, in its axes: the second axis, or one of `from` at the reference attitude."""
     if direction == "to_axis":
         return joint.to_axis
     return np.asarray(R_ref.T @ joint_direction(joint, direction))

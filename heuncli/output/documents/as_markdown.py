@@ -27,10 +27,12 @@ from heuncli.output.documents.document import (
     has_content,
     is_governing,
 )
-from heuncli.output.documents.markdown_text import escape_line, escape_markdown, fence_text
 from heuncli.version import VERSION
 
 MOOD_SIGNS = {"plain": "", "good": "**✓** ", "bad": "**✗** ", "unsure": "**!** "}
+# Characters with a meaning anywhere in a line. Brackets alone, such as those of units, have none: a link needs more.
+MARKUP = r"(?i)([\\`*_{<#|~&$]|!(?=\[)|\](?=[(\[:])|\[(?=\^)|:(?=//)|(?<=www)\.|(?<=[a-z0-9])@(?=[a-z0-9]))"
+LINE_START_MARKUP = r"^(\d*)([-+=.)>\[])"  # with a meaning at its beginning only
 
 
 def render_markdown(document: OutputDocument) -> str:
@@ -124,3 +126,25 @@ RENDERERS: dict[type[Part], Callable[[Any], str]] = {
     Drawing: _render_drawing,
     Verbatim: _render_verbatim,
 }
+
+
+def escape_markdown(text: str) -> str:
+    """Escape a text within a line, such as a cell."""
+    import re  # imported here, as most commands write no markdown
+
+    return re.sub(MARKUP, r"\\\1", escape(text))
+
+
+def escape_line(text: str) -> str:
+    """Escape a text at the beginning of a line, where more characters act as markup."""
+    import re
+
+    return re.sub(LINE_START_MARKUP, r"\1\\\2", escape_markdown(text).strip())
+
+
+def fence_text(text: str, language: str = "text") -> str:
+    """Put a text of several lines between fences that are longer than any in it."""
+    fence = "```"
+    while fence in text:
+        fence += "`"
+    return f"{fence}{language}\n{text}\n{fence}"

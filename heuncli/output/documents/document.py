@@ -26,15 +26,19 @@ class NumberCell(NamedTuple):
     """A number in the unit of its column, with its error.
 
     write: prints it, such as `style.write` of its family; None: with the digits that its own error leaves
+    cached_text: it as it is printed, where that depends on other cells of its column
     """
 
     value: float
     error: float = 0.0
     write: Callable[[float], str] | None = None
+    cached_text: str = ""
 
     @property
     def text(self) -> str:
         """The number as it is printed."""
+        if self.cached_text:
+            return self.cached_text
         return format_with_error(self.value, self.error) if self.write is None else self.write(self.value)
 
 
@@ -166,7 +170,7 @@ Part = Sentence | Facts | Brand | Listing | OutputTable | Drawing | Verbatim | C
 
 
 class OutputDocument(NamedTuple):
-    """A title, its parts, and the same as data.
+    """A title and its parts, and how the same content is written as JSON and CSV.
 
     title: None if the parts say all
     facts: label and text of the lines below the title
@@ -221,10 +225,13 @@ def make_text_columns(heads: Iterable[str]) -> tuple[OutputColumn, ...]:
 
 def make_number_cells(values: Sequence[float], style: Style, error: float = 0.0) -> list[NumberCell]:
     """Make the cells of numbers of one family, without the zeros that they would all end in."""
-    texts = [style.write(value) for value in values]
-    spare = max((len(text) - len(short) for text, short in zip(texts, trim_zeros(texts), strict=True)), default=0)
-    write = style._replace(decimals=style.decimals - spare).write
-    return [NumberCell(value, error, write) for value in values]
+    return trim_cells([(value, error, style) for value in values])
+
+
+def trim_cells(numbers: Sequence[tuple[float, float, Style]]) -> list[NumberCell]:
+    """Make the cells of numbers, each with its error and style, without the zeros that they would all end in."""
+    texts = trim_zeros([style.write(value) for value, _, style in numbers])
+    return [NumberCell(value, error, None, text) for (value, error, _), text in zip(numbers, texts, strict=True)]
 
 
 def format_head(label: str, unit: str) -> str:

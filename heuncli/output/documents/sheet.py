@@ -11,7 +11,7 @@ PAPERS = {"a4": "A4", "letter": "letter"}  # words of --paper -> names of CSS
 
 
 class Sheet(NamedTuple):
-    """The paper, and the texts at the head of each page but the first, at the left and at the right."""
+    """The paper format, and the left and right texts of the page header (not on the first page)."""
 
     paper: Literal["a4", "letter"] = "a4"
     is_landscape: bool = False

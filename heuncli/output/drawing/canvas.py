@@ -104,7 +104,7 @@ class Canvas:
         return box is not None
 
     def write_touching(self, text: str, column: int, row: int, number: int) -> bool:
-        """Write words at a cell or touching it, where there are no others; return whether there is room."""
+        """Write words at a cell, or next to it if other words are there; return whether there is room."""
         width = count_columns(text)
         box = self.field.occupy_best(
             (abs(down) + 0.1 * k, WordBox(column + right, row + down, column + right + width, row + down + 1))

@@ -14,10 +14,19 @@ import numpy as np
 from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
-from heuncli.output.drawing.figure import Band, Figure, Item, LegendEntry, Panel, PlaceLabel, Trace, VerticalMark
+from heuncli.output.drawing.figure import (
+    Band,
+    Figure,
+    Item,
+    LegendEntry,
+    Panel,
+    PlaceLabel,
+    SpaceKey,
+    Trace,
+    VerticalMark,
+)
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
-from heuncli.output.drawing.letter_key import format_key
 from heuncli.output.drawing.pens import find_pen
 from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.output.drawing.ticks import MINUS, choose_ticks
@@ -28,6 +37,7 @@ ASPECT = 2.0  # height of a cell in widths
 LABEL_WIDTH = 10  # columns left of a panel
 N_LETTERS = 3  # pen letters along a curve
 ZERO_STRIDE = 4  # columns between dots of the zero line
+ALONG_AXIS = 0.999  # component of a world axis along a side of the drawing, from which its direction is told
 
 
 def draw_text(figure: Figure, style: TerminalStyle) -> str:
@@ -220,3 +230,26 @@ def _center_words(places: Mapping[int, str], canvas: Canvas) -> str:
         if begin >= 0 and all(c == " " for c in line[max(begin - 1, 0) : begin + len(text) + 1]):
             line[begin : begin + len(text)] = text
     return "".join(line).rstrip()
+
+
+def format_key(key: SpaceKey, columns_per_unit: float, style: TerminalStyle) -> list[str]:
+    """Return the lines of a key; each arrow is as long as its value, to the column."""
+    rule, ends, head = ("─", "├┤", "▶") if style.has_braille else ("-", "||", ">")
+    bar = rule * max(0, round(columns_per_unit * key.bar[0]) - 2)
+    lines = [f"{ends[0]}{bar}{ends[1]} {escape(key.bar[1])}"]
+    ways = [f"{name} {way}" for name, a, b in key.axes if (way := _find_way(a, b))]
+    lines[0] += f"   {', '.join(ways)}" if ways else ""
+    for arrow in key.arrows:
+        heads = head * (1 + arrow.is_double)
+        shaft = rule * max(0, round(columns_per_unit * arrow.length) - len(heads)) + heads
+        if style.has_colours and arrow.pen is not None:
+            shaft = f"\x1b[{find_pen(arrow.pen).code}m{shaft}{RESET}"
+        lines.append(f"{shaft} {escape(arrow.text)}")
+    return lines
+
+
+def _find_way(a: float, b: float) -> str:
+    """Return the direction of a world axis along a side of the drawing; empty for any other."""
+    if max(abs(a), abs(b)) < ALONG_AXIS:
+        return ""
+    return ("right" if a > 0.0 else "left") if abs(a) > abs(b) else "up" if b > 0.0 else "down"

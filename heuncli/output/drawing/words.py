@@ -79,7 +79,7 @@ def _make_text_box(text: Text) -> WordBox:
 
 
 def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> list[Shape] | None:
-    """Place the words of a mark, with a line to it if they are far; None if there is no room."""
+    """Place the words of a mark, with a leader line if they are far from it; None if there is no room."""
     text = escape(item.text)
     mark = Mark(
         box.to_pixel_x(item.x),

@@ -80,7 +80,7 @@ def needs_mesh(cases: LoadCases) -> bool:
 
 
 def notes(cases: LoadCases, names: DeckNames) -> list[str]:
-    """Warn if the mesh is a different body from the one whose loads these are."""
+    """Warn if the mesh is of a different body than the loads."""
     if names.mesh is None or not needs_mesh(cases):
         return []
     body, mesh_inertia = cases.body, names.mesh.pseudo_inertia(cases.body.mass)

@@ -27,7 +27,7 @@ class Deck(NamedTuple):
         return pieces
 
     def notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
-        """Return what the user has to do that no card does, in sentences."""
+        """Return sentences on steps that the user must do by hand after import."""
         module_notes: Callable[[LoadCases, DeckNames], list[str]] | None = getattr(self._module, "notes", None)
         return module_notes(cases, names) if module_notes is not None else []
 

@@ -20,7 +20,7 @@ from heuncli.multibody.mechanism.loads import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.loads import PointLoad
 from heuncli.output.drawing.figure import Arrow, KeyArrow, PlaceLabel, Strokes, Symbol
 from heuncli.output.drawing.ticks import format_short
-from heuncli.output.figures.machine_items import to_pair
+from heuncli.output.figures.posed_machine import to_pair
 from heuncli.output.machine_geometry.coupling_forces import iter_coupling_forces
 from heuncli.output.machine_geometry.joint_symbols import find_guided_actuators
 from heuncli.output.machine_geometry.machine import Machine

@@ -18,15 +18,14 @@ from heuncli.results.results import Array
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries import curves
+from heuncli.study.queries.curve_sampling import MAX_SEARCH_INSTANTS, choose_curve_instants
 from heuncli.study.queries.measure import NotOneNumber, Peak, find_peak, make_several_error
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import find_jump_sides, sort_distinct
+from heuncli.study.search.extremes import find_jump_sides
 
 CASE_SUFFIX = " (case "  # at the end of a title
-MIN_CURVE_INSTANTS = 400  # instants of a curve: nearly two a pixel
 VISIBLE_JUMP = 0.01  # share of the range: larger jumps are drawn as jumps
-MAX_SEARCH_INSTANTS = 4000  # largest number of the search's instants that a figure uses
 
 
 @record
@@ -78,26 +77,12 @@ def require_claimed(study: Study) -> None:
 
 
 def choose_instants(study: Study, max_search_instants: int = MAX_SEARCH_INSTANTS) -> Array:
-    """Choose the instants of curves, (n,) ascending, up to the horizon.
-
-    max_search_instants: how many instants of the search for extremes are used at most
+    """Choose the instants of curves, as `choose_curve_instants` does.
 
     Raises NotDrawable if the horizon is before all of them.
     """
     require_claimed(study)
-    results = study.results
-    times = results.time
-    if study.has_one_instant:
-        return times
-    search_times = study.search_times
-    if len(search_times) > max_search_instants:
-        jumps = np.flatnonzero(find_jump_sides(search_times))
-        selected = np.linspace(0, len(search_times) - 1, max_search_instants).round().astype(np.intp)
-        search_times = search_times[sort_distinct(np.concatenate([selected, jumps, jumps + 1]))]
-    even = np.linspace(times[0], times[-1], MIN_CURVE_INSTANTS)
-    curve_times = sort_distinct(np.concatenate([times, search_times, even]))
-    horizon = results.horizon
-    return np.asarray(curve_times if horizon is None else curve_times[curve_times < horizon])
+    return choose_curve_instants(study, max_search_instants)
 
 
 def is_varying(low: float, high: float, error: float) -> bool:

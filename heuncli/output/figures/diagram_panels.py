@@ -11,12 +11,13 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
 from heuncli.output.drawing.style import HATCH_WIDTH, LEFT, RIGHT, SIGN_SIZE, WIDTH
 from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
-from heuncli.output.figures.bars import BarLine, BarRange, Extreme, WholeBar
-from heuncli.output.figures.error_bands import is_visible
+from heuncli.output.figures.curve_points import is_visible
 from heuncli.results.results import Array, Mask
 from heuncli.study.quantities.digits import OPEN
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.bar_curves import BarLine, BarRange, Extreme
+from heuncli.study.queries.bars import WholeBar
 
 PANEL_HEIGHT, OPEN_PANEL_HEIGHT = 150.0, 56.0  # pixels; the second if all is open
 N_ORDINATES = 60  # of a hatch along a bar

@@ -18,11 +18,22 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.output.drawing.figure import Blank, Figure, Panel, Scaling, VerticalMark
+from heuncli.output.drawing.figure import (
+    Arrow,
+    Blank,
+    Figure,
+    Item,
+    Panel,
+    PlaceLabel,
+    Polygon,
+    Scaling,
+    Strokes,
+    Symbol,
+    VerticalMark,
+    Words,
+)
 from heuncli.output.drawing.ticks import choose_ends, format_short
-from heuncli.output.figures.bar_sketches import make_sketch
-from heuncli.output.figures.bars import Attachment, WholeBar
-from heuncli.output.figures.courses import FigureSource, make_title
+from heuncli.output.figures.courses import FigureSource, make_title, require_claimed
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.study.quantities.captions import WORDS, describe_object
@@ -30,12 +41,21 @@ from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, format_error
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
+from heuncli.study.queries.bar_curves import BarAttachment
+from heuncli.study.queries.bars import WholeBar
 
 INVERTED = frozenset({"M2"})  # on the tension side their ordinates point against e1
 TENSION_SIDES = {"M1": "e2", "M2": "e1"}  # the axis that points up
 INSTANT_SEPARATOR = ": t = "  # between the name of a run and an instant
 BAND_SENTENCE = "Thin lines: range over the run; thick line: at the instant of the greatest magnitude."
 TENSION_SENTENCE = "M1 and M2 are drawn on the tension side."
+HEIGHT = 104.0  # pixels; the axis of the sketch is in pixels, too, with the bar about 0
+UPPER, LOWER = 44.0, 60.0  # pixels above and below the bar's axis
+HALF_DEPTH = 5.0  # of the bar
+ARROW_LENGTH = 24.0
+DIMENSION, TICK = 48.0, 4.0  # of the dimension line below the axis, and half of its ticks
+SYMBOLS = {"support": "foot", "clamp": "clamp", "joint": "circle", "mass": "mass"}  # other kinds are arrows
+DOWN = (0.0, -1.0)
 
 
 def make_diagrams(
@@ -75,6 +95,8 @@ def _make_bars(sources: Sequence[FigureSource], name: str, given_times: Sequence
     number = 0
     for source in sources:
         bar = WholeBar(source.study, name)
+        if not bar.has_impulses:
+            require_claimed(source.study)
         times = bar.instants
         if given_times is None and len(times) > 1:
             ranges = bar.make_ranges()
@@ -197,8 +219,47 @@ def _list_distinct_bars(bars: Sequence[BarCurves]) -> dict[str, WholeBar]:
     return {name: first} if are_same else named
 
 
-def _are_same(first: Sequence[Attachment], other: Sequence[Attachment]) -> bool:
+def _are_same(first: Sequence[BarAttachment], other: Sequence[BarAttachment]) -> bool:
     """Return whether two lists have the same names at the same places."""
     if [attachment[1:] for attachment in first] != [attachment[1:] for attachment in other]:
         return False
     return bool(np.allclose([attachment.s for attachment in first], [attachment.s for attachment in other]))
+
+
+def make_sketch(
+    attachments: Sequence[BarAttachment], x: Scaling, length: float, size: float, unit: str, title: str = ""
+) -> Panel:
+    """Make the sketch of a bar on the horizontal axis of its diagrams.
+
+    length: of the bar [m]; size: display units in a metre
+    """
+    items = tuple(_iter_items(attachments, length, size, unit))
+    return Panel(x._replace(hides_label=True), Scaling("", -LOWER, UPPER), items, HEIGHT, is_bare=True, title=title)
+
+
+def _iter_items(attachments: Sequence[BarAttachment], length: float, size: float, unit: str) -> Iterator[Item]:
+    """Yield the bar, what acts on it, and the dimension line."""
+    end = size * length
+    corners = np.array([[0.0, -HALF_DEPTH], [end, -HALF_DEPTH], [end, HALF_DEPTH], [0.0, HALF_DEPTH]])
+    yield Polygon("bar", corners, is_filled=True)
+    for attachment in attachments:
+        s = size * attachment.s
+        symbol = SYMBOLS.get(attachment.kind)
+        if symbol is None:
+            yield Arrow(s, HALF_DEPTH + ARROW_LENGTH, 0.0, -ARROW_LENGTH, None)
+        elif symbol == "foot":
+            yield Symbol(s, -HALF_DEPTH, symbol, DOWN)
+        elif symbol == "clamp":  # outwards at the ends of the bar
+            yield Symbol(s, 0.0, symbol, (-1.0, 0.0) if attachment.s < 0.5 * length else (1.0, 0.0))
+        else:
+            yield Symbol(s, 0.0, symbol)
+    texts: dict[float, list[str]] = {}
+    for attachment in attachments:
+        texts.setdefault(attachment.s, []).append(attachment.name.replace("_", " "))
+    for s, names in texts.items():
+        yield PlaceLabel(size * s, HALF_DEPTH, ", ".join(names), ", ".join(names))
+    ticks = sorted({0.0, end, *(size * attachment.s for attachment in attachments)})
+    strokes = [[(0.0, -DIMENSION), (end, -DIMENSION)]]
+    strokes += [[(s, -DIMENSION - TICK), (s, -DIMENSION + TICK)] for s in ticks]
+    yield Strokes(np.array(strokes))
+    yield Words(0.5 * end, -DIMENSION + 9.0, f"{format_short(end, 4)} {unit}")

@@ -25,11 +25,10 @@ from heuncli.output.figures.courses import (
     make_title,
     require_one_number,
 )
+from heuncli.output.figures.curve_points import MeasuredPoints, draw_points, find_visible_points
 from heuncli.output.figures.event_marks import make_marks
 from heuncli.output.figures.history_curves import HorizontalAxis, PanelCourse, draw_case_bars, draw_curves
-from heuncli.output.figures.measured_points import MeasuredPoints, draw_points
 from heuncli.output.figures.refusals import NotDrawable
-from heuncli.output.figures.thinning import find_visible_points
 from heuncli.results.results import Array
 from heuncli.study.compose.warnings import has_smoothed_friction
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style

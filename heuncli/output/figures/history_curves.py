@@ -11,7 +11,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Arrow, Band, Bars, Item, Scaling, Spot, Trace
 from heuncli.output.drawing.ticks import format_short
 from heuncli.output.figures.courses import FigureSource, NumberCourse, find_values, is_varying
-from heuncli.output.figures.error_bands import is_visible
+from heuncli.output.figures.curve_points import is_visible
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import UNKNOWN, format_error
 from heuncli.study.quantities.reader_numbers import ReaderStyle

@@ -10,21 +10,17 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.output.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Trace
-from heuncli.output.drawing.ticks import choose_ends, choose_ticks
-from heuncli.output.figures.courses import FigureSource, find_vectors, make_title
-from heuncli.output.figures.history_curves import draw_direction_arrows
-from heuncli.output.figures.polar_grid import make_polar_grid
-from heuncli.output.figures.polar_words import (
-    describe_angle,
-    describe_frame,
-    describe_runs,
-    format_magnitude,
-    make_notes,
-)
+from heuncli.base import tolerances
+from heuncli.output.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Strokes, Trace, Words
+from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
+from heuncli.output.figures.courses import FigureSource, describe_number, find_vectors, make_title
+from heuncli.output.figures.history_curves import draw_direction_arrows, format_number
+from heuncli.output.figures.planes import project_vectors
 from heuncli.output.figures.tips import LargestVector, TipCurve, find_firings, find_largest, make_tip_curves
 from heuncli.output.figures.turning import TurningRun
+from heuncli.output.figures.windows import clip_strokes
 from heuncli.results.results import Array
+from heuncli.study.quantities.digits import UNKNOWN
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.search.extremes import find_jump_sides
@@ -38,6 +34,10 @@ LABEL_STEP = 90  # degrees between labels of marks
 FIRING_PEN, N_ARROW_POINTS = 1, 40
 ARROW_LENGTH, MAX_WIDTH = 14.0, 700.0  # pixels
 VISIBLE_JUMP = 0.01  # share of a panel's width: larger jumps are drawn as jumps
+RAY_STEP, ARC_STEP = 30, 3  # degrees
+N_RINGS = 5  # the largest number up to the farther side of the window
+RIM = 0.94  # share of a ray at which its angle stands
+LABEL_SPACE = np.array([0.08, 0.05])  # smallest distance of angles, in sides of the window
 
 
 def make_polar_figure(
@@ -162,3 +162,144 @@ def _find_marks(turning: TurningRun) -> list[tuple[float, str]]:
     shown = LABEL_STEP if high - low <= MAX_LABELS * LABEL_STEP else step
     texts = [f"{degrees:g}°" if degrees % shown == 0 else "" for degrees in names]
     return sorted(zip(map(float, mark_times), texts, strict=True))
+
+
+def make_polar_grid(
+    sides: tuple[Scaling, Scaling], curves: Sequence[Array], names: tuple[str, str], unit: str
+) -> list[Item]:
+    """Make the grid about the origin.
+
+    sides: the window; curves (n, 2): drawn in it, which the numbers of the rings avoid
+    names: of the axes to the right and upwards
+    """
+    low, high = (np.array([getattr(side, end) for side in sides]) for end in ("low", "high"))
+    reach = float(np.max(np.abs([low, high])))
+    rings = [(value, text) for value, text in choose_ticks(Scaling("", 0.0, reach), N_RINGS) if value > 0.0]
+    items: list[Item] = []
+    angles = np.radians(np.arange(0, 360 + ARC_STEP, ARC_STEP))
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    for value, text in rings:
+        arcs = np.stack([value * circle[:-1], value * circle[1:]], axis=1)
+        items.append(Strokes(clip_strokes(arcs, low, high), is_faint=True, name=f"{text} {unit}"))
+    places: list[tuple[float, float]] = []
+    for degrees in sorted(range(0, 360, RAY_STEP), key=lambda angle: angle % 90):  # those of the axes first
+        direction = _make_direction(degrees)
+        ray = clip_strokes(np.array([[(0.0, 0.0), tuple(2.0 * reach * direction)]]), low, high)
+        if len(ray):
+            items.append(Strokes(ray, is_faint=True))
+            axis = {0: f"{names[0]} ", 90: f"{names[1]} "}.get(degrees, "")
+            x, y = (RIM * ray[0, 1]).tolist()
+            if all(np.any(np.abs(np.array([x, y]) - place) > LABEL_SPACE * (high - low)) for place in places):
+                items.append(Words(x, y, f"{axis}{degrees}°"))
+                places.append((x, y))
+    return [*items, *_label_rings(rings, low, high, curves, unit)]
+
+
+def _make_direction(degrees: float) -> Array:
+    return np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
+
+
+def _label_rings(
+    rings: Sequence[tuple[float, str]], low: Array, high: Array, curves: Sequence[Array], unit: str
+) -> Iterator[Words]:
+    """Label the rings along the direction between two rays in which most of them are seen and the curves are far."""
+    points = np.concatenate(curves)
+    points = points[np.isfinite(points).all(axis=1)]
+
+    def find_room(degrees: int) -> tuple[int, float]:
+        places = [value * _make_direction(degrees) for value, _ in rings]
+        seen = [place for place in places if (place > low).all() and (place < high).all()]
+        distances = [float(np.hypot(*(points - place).T).min(initial=np.inf)) for place in seen]
+        return len(seen), min(distances, default=0.0)
+
+    best = max(range(RAY_STEP // 2, 360, RAY_STEP), key=find_room)
+    for value, text in rings:
+        place = value * _make_direction(best)
+        if (place > low).all() and (place < high).all():
+            yield Words(float(place[0]), float(place[1]), f"{text} {unit}")
+
+
+def describe_runs(sources: Sequence[FigureSource], curves: Sequence[TipCurve]) -> Iterator[str]:
+    """Yield a sentence for each run: the instants that are shown, and the angle that keeps turning."""
+    for source in sources:
+        curve = next(curve for curve in curves if curve.study is source.study)
+        turning = curve.turning
+        text = turning.describe(describe_number(source, turning.path) if turning.path else "")
+        yield f"{source.name}: {text}" if source.name else text
+
+
+def describe_frame(curve: TipCurve, axes: str) -> str:
+    """Describe what a curve's loads act on, and in which axes they are drawn."""
+    if curve.path.startswith("joints."):
+        joint = curve.study.spec.joints[curve.path.split(".")[1]]
+        frame = "world axes" if axes == "world" else f"in the axes of {_find_body(curve, axes)}"
+        return f"reaction of {joint.a} on {joint.b}, {frame}"
+    return "force on the foundation, world axes" if curve.path.startswith("foundation.") else "world axes"
+
+
+def format_magnitude(largest: LargestVector, style: ReaderStyle) -> str:
+    """Format the magnitude with its unit; `?` if its error is as large."""
+    if largest.magnitude <= largest.error:
+        return f"{UNKNOWN} {style.unit}"
+    return format_number(largest.magnitude, largest.error, style)
+
+
+def describe_angle(curve: TipCurve, largest: LargestVector) -> str:
+    """Return the crank angle of the largest vector, else its instant."""
+    turning = curve.turning
+    if not turning.path:
+        return f"{format_short(largest.time, 4)} s"
+    angle = float(np.interp(largest.time, turning.times, turning.degrees))
+    return _format_degrees(angle, 360.0 * turning.turns)
+
+
+def _find_body(curve: TipCurve, axes: str) -> str:
+    """Return the body in whose axes a joint's loads are given."""
+    joint = curve.study.spec.joints[curve.path.split(".")[1]]
+    return joint.a if axes == "from" else joint.b
+
+
+def make_notes(curve: TipCurve, largest: LargestVector | None, units: Units) -> Iterator[str]:
+    """Yield the largest vector with its direction and instant, and what is not drawn."""
+    style = choose_reader_style(curve.unit, 0.0 if largest is None else largest.magnitude, units)
+    if largest is None:
+        yield f"{curve.caption}: open or unknown, not drawn"
+        return
+    magnitude_text = format_magnitude(largest, style)
+    if largest.is_constant:
+        yield f"{curve.caption}: {magnitude_text} at all times"
+    else:
+        yield f"{curve.caption}: largest {magnitude_text} {_describe_largest(curve, largest)}"
+    normal_components = project_vectors(curve.vectors, curve.plane.normal)
+    largest_normal = float(np.nanmax(np.abs(normal_components), initial=0.0))
+    if largest_normal > max(tolerances.TOLD_ACROSS * largest.magnitude, largest.error):
+        yield f"{curve.caption}: normal to the plane up to {style.size * largest_normal:.4g} {style.unit}, not drawn"
+    if np.isnan(curve.x + curve.y).any():
+        yield f"{curve.caption}: partly open or unknown, not drawn there"
+    elif np.isnan(normal_components).any():
+        yield f"{curve.caption}: normal component open or unknown, not drawn"
+    if "1" in curve.plane.names:
+        words = (f"({', '.join(f'{x:.4g}' for x in e + 0.0)})" for e in (curve.plane.right, curve.plane.upward))
+        yield f"{curve.caption}: directions 1 and 2 are {' and '.join(words)}"
+
+
+def _describe_largest(curve: TipCurve, largest: LargestVector) -> str:
+    """Describe the direction, the instant and the crank angle of the largest vector."""
+    first, second = curve.plane.names
+    direction = _format_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)
+    direction_text = f"at {direction} from {first} to {second}"
+    when = f"at t = {format_short(largest.time, 4)} s"
+    turning = curve.turning
+    if turning.path:
+        caption = describe_number(FigureSource("", curve.study), turning.path)
+        when += f", {caption} = {describe_angle(curve, largest)}"
+    return f"{direction_text}, {when}"
+
+
+def _format_degrees(angle: float, cycle: float) -> str:
+    """Format an angle to four digits.
+
+    cycle: degrees after which it starts again at 0; 0 if it does not
+    """
+    rounded = float(f"{angle % cycle if cycle else angle:.4g}")
+    return f"{0.0 if cycle and rounded >= cycle else rounded:g}°"

@@ -1,12 +1,17 @@
-"""Choose the labels of a machine: one for a place, and numbers in circles in place of words if there are many."""
+"""The labels of a machine: names of joints, loads, bodies and stops; one for a place, or numbers if there are many."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
+from itertools import count, product
 
 import numpy as np
 
+from heuncli.base.joint_kinds import TYPES
 from heuncli.output.drawing.figure import PlaceLabel
+from heuncli.output.figures.posed_machine import LOAD_PEN, PosedMachine, to_pair
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels
 
 MAX_LABELS = 20  # with more of them, numbers stand for the words
 SEPARATOR = " / "  # between the names of one place
@@ -16,7 +21,7 @@ SAME_PLACE = 0.004  # of the figure's side: closer places are one
 def choose_labels(
     loads: Sequence[PlaceLabel], names: Sequence[PlaceLabel], side: float
 ) -> tuple[list[PlaceLabel], tuple[tuple[str, str], ...]]:
-    """Return the labels, and what the numbers stand for if there are any.
+    """Return the labels, and a legend (number, text) if numbers stand for the texts.
 
     loads: names with values, at the tips of arrows
     names: what else has a name; those at one place share a label
@@ -41,3 +46,45 @@ def _merge_places(labels: Sequence[PlaceLabel], tolerance: float) -> list[PlaceL
         elif label.text not in merged[k].text.split(SEPARATOR):
             merged[k] = merged[k]._replace(text=f"{merged[k].text}{SEPARATOR}{label.text}")
     return merged
+
+
+def iter_letters(first: str) -> Iterator[str]:
+    """Yield names without end from the first letter of the alphabet on, capital or small."""
+    alphabet = [chr(ord(first) + k) for k in range(26)]
+    for length in count(1):
+        yield from ("".join(word) for word in product(alphabet, repeat=length))
+
+
+def make_machine_labels(
+    posed_machine: PosedMachine, k: int, labels: Labels, labelled: Collection[str]
+) -> Iterator[PlaceLabel]:
+    """Yield the labels of joints, springs and actuators, and bodies; short forms are numbers, small letters and
+    capitals.
+
+    labelled: the words of loads that have a label
+    """
+    if not posed_machine.has_names:
+        return
+    for number, look in enumerate(posed_machine.machine.joints, 1):
+        ends = posed_machine.project(look.b, look.q, k), posed_machine.project(look.a, look.p, k)
+        place = 0.5 * (ends[0] + ends[1]) if TYPES[look.kind].keeps_distance else ends[0]
+        text = describe_object("joints", look.name, labels)
+        if text not in labelled:
+            yield PlaceLabel(*to_pair(place), text, str(number))
+    for letter, line in zip(iter_letters("a"), posed_machine.machine.lines, strict=False):
+        ends = posed_machine.project(line.a, line.p, k), posed_machine.project(line.b, line.q, k)
+        text = describe_object("forces", line.name, labels)
+        if text not in labelled and line.name not in posed_machine.guided_actuators:
+            yield PlaceLabel(*to_pair(0.5 * (ends[0] + ends[1])), text, letter, LOAD_PEN)
+    for letter, body in zip(iter_letters("A"), posed_machine.machine.bodies, strict=False):
+        place = posed_machine.project(body.name, posed_machine.centers[body.name], k)
+        text = describe_object("bodies", body.name, labels)
+        yield PlaceLabel(*to_pair(place), text, letter, posed_machine.pens[body.name])
+
+
+def make_mark_labels(posed_machine: PosedMachine, k: int) -> Iterator[PlaceLabel]:
+    """Yield the labels of stops and latches."""
+    for mark in posed_machine.machine.marks if posed_machine.has_names else ():
+        if mark.name:
+            x, y = to_pair(posed_machine.size * posed_machine.view.project(mark.locate(posed_machine.poses)[0][k]))
+            yield PlaceLabel(x, y, mark.name, mark.name)

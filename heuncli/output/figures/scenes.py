@@ -15,7 +15,7 @@ from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.figure import Arrow, Figure, Item, KeyArrow, Panel, PlaceLabel, Scaling, SpaceKey
 from heuncli.output.drawing.ticks import format_short
-from heuncli.output.figures import machine_items, rope_items, traces
+from heuncli.output.figures import body_items, joint_items, traces
 from heuncli.output.figures.acting_loads import (
     NO_LOADS,
     ActingLoads,
@@ -27,8 +27,8 @@ from heuncli.output.figures.acting_loads import (
     round_down,
 )
 from heuncli.output.figures.courses import FigureSource, require_claimed
-from heuncli.output.figures.machine_items import PosedMachine, to_pair
-from heuncli.output.figures.scene_labels import choose_labels
+from heuncli.output.figures.posed_machine import PosedMachine, to_pair
+from heuncli.output.figures.scene_labels import choose_labels, make_machine_labels, make_mark_labels
 from heuncli.output.figures.traces import PointPath
 from heuncli.output.figures.windows import Window, choose_window, clip_items
 from heuncli.output.figures.worst_instant import WorstInstant, find_worst_instant
@@ -143,13 +143,13 @@ def make_machine_figure(
     later = [
         item for k in range(len(posed_machine.poses.times) - 1, 0, -1) for item in _draw_later_instant(posed_machine, k)
     ]
-    strands = [line.ends.reshape(-1, 2) for line in rope_items.draw_ropes(posed_machine, 0)]
+    strands = [line.ends.reshape(-1, 2) for line in joint_items.draw_ropes(posed_machine, 0)]
     machine_window = choose_window(
         posed_machine,
         [
             *(traces.project_path(posed_machine, point_path) for point_path in point_paths),
             *strands,
-            *rope_items.iter_mark_places(posed_machine),
+            *joint_items.iter_mark_places(posed_machine),
         ],
     )
     view, size, side = posed_machine.view, posed_machine.size, machine_window.side
@@ -161,8 +161,8 @@ def make_machine_figure(
     labels = make_labels(posed_machine.spec)
     load_labels = list(label_loads(loads, view, size, side, scales, labels, units)) if posed_machine.has_names else []
     names = [
-        *machine_items.make_labels(posed_machine, 0, labels, {label.letter for label in load_labels}),
-        *rope_items.make_labels(posed_machine, 0),
+        *make_machine_labels(posed_machine, 0, labels, {label.letter for label in load_labels}),
+        *make_mark_labels(posed_machine, 0),
         *(traces.make_labels(posed_machine, point_paths) if has_point_names else ()),
     ]
     place_labels, numbers = choose_labels(load_labels, names, side)
@@ -188,26 +188,26 @@ def make_machine_figure(
 
 def _draw_first_instant(posed_machine: PosedMachine, drawn_names: Collection[str]) -> list[Item]:
     """Draw the first instant; drawn_names: of loads that have an arrow."""
-    items = [*machine_items.draw_bodies(posed_machine, 0), *machine_items.draw_mass_marks(posed_machine, 0)]
+    items = [*body_items.draw_bodies(posed_machine, 0), *body_items.draw_mass_marks(posed_machine, 0)]
     items += [
-        item for line in posed_machine.machine.lines for item in machine_items.draw_force_line(posed_machine, line, 0)
+        item for line in posed_machine.machine.lines for item in joint_items.draw_force_line(posed_machine, line, 0)
     ]
-    items += rope_items.draw_ropes(posed_machine, 0)
-    items += machine_items.draw_belt_strands(posed_machine, 0)
-    items += machine_items.draw_joint_actions(posed_machine, 0, drawn_names)
-    return [*items, *machine_items.draw_joints(posed_machine, 0), *rope_items.draw_marks(posed_machine, 0)]
+    items += joint_items.draw_ropes(posed_machine, 0)
+    items += joint_items.draw_belt_strands(posed_machine, 0)
+    items += joint_items.draw_joint_actions(posed_machine, 0, drawn_names)
+    return [*items, *joint_items.draw_joints(posed_machine, 0), *joint_items.draw_marks(posed_machine, 0)]
 
 
 def _draw_later_instant(posed_machine: PosedMachine, k: int) -> list[Item]:
     """Draw a later instant in thin, pale lines."""
-    items = machine_items.draw_bodies(posed_machine, k, thin=True)
+    items = body_items.draw_bodies(posed_machine, k, thin=True)
     items += [
         item
         for line in posed_machine.machine.lines
-        for item in machine_items.draw_force_line(posed_machine, line, k, thin=True)
+        for item in joint_items.draw_force_line(posed_machine, line, k, thin=True)
     ]
-    items += rope_items.draw_ropes(posed_machine, k, thin=True)
-    return items + machine_items.draw_joints(posed_machine, k, thin=True)
+    items += joint_items.draw_ropes(posed_machine, k, thin=True)
+    return items + joint_items.draw_joints(posed_machine, k, thin=True)
 
 
 def _label_instants(posed_machine: PosedMachine) -> Iterator[PlaceLabel]:

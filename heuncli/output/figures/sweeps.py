@@ -26,10 +26,10 @@ from heuncli.output.drawing.figure import (
     share_x_axis,
 )
 from heuncli.output.drawing.style import PANEL_HEIGHT, PENS
-from heuncli.output.figures.contours import draw_contours
-from heuncli.output.figures.error_bands import is_visible
+from heuncli.output.figures.curve_points import is_visible
 from heuncli.output.figures.history_curves import format_number
 from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.sweep_axes import MAX_NAMES, draw_contours, find_cell_edges, make_axis, make_measure_axis
 from heuncli.output.figures.sweep_tables import (
     SweepNumbers,
     SweepSelection,
@@ -38,7 +38,6 @@ from heuncli.output.figures.sweep_tables import (
     make_example,
     select_sweep,
 )
-from heuncli.output.figures.variable_axes import MAX_NAMES, find_cell_edges, make_axis, make_measure_axis
 from heuncli.results.results import Array, Indices
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.labels import Labels
@@ -147,7 +146,7 @@ def _choose_x_variable(picked_table: SweepSelection) -> tuple[SweepVariable, lis
 
 
 def _group_rows(picked_table: SweepSelection, others: Sequence[SweepVariable]) -> list[tuple[str, Indices]]:
-    """Return the name and the rows of each combination of the others. Raises NotDrawable if there are too many."""
+    """Return names and rows of groups with equal other values. Raises NotDrawable if there are too many."""
     if not others:
         return [("", np.arange(picked_table.table.n_rows))]
     combinations = np.unique(np.column_stack([variable.values for variable in others]), axis=0)

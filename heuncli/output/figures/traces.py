@@ -9,7 +9,7 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import PlaceLabel, Trace
 from heuncli.output.figures.courses import FigureSource, choose_instants
-from heuncli.output.figures.machine_items import PosedMachine, to_pair
+from heuncli.output.figures.posed_machine import PosedMachine, to_pair
 from heuncli.output.machine_geometry.poses import compute_poses
 from heuncli.results.results import Array
 

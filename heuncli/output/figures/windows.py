@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Arrow, Item, Polygon, Strokes
-from heuncli.output.figures.machine_items import PosedMachine
+from heuncli.output.figures.posed_machine import PosedMachine
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 
@@ -24,7 +24,7 @@ MIN_SIDES = np.array([0.4, 0.25])  # minimum sides as shares of the larger one, 
 
 
 class Window(NamedTuple):
-    """A window with its corners (2,) in the unit of the figure, and notes on what it does not show."""
+    """A cut-out of a figure: its corners (2,) in the figure's unit, and notes on parts outside it."""
 
     low: Array
     high: Array

@@ -16,11 +16,11 @@ from heuncli.output.snapshots.golden_file import (
     UNKNOWN,
     Value,
 )
-from heuncli.output.tables.cut_runs import CutRun, collect_runs
 from heuncli.output.tables.table_plans import AXIS, IMPULSES, MASS_EFFECT, PLANS, TablePlan
 from heuncli.results.results import Array, CutPosition, Results
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.quantities.channels import Channel, iter_channels
+from heuncli.study.quantities.cut_runs import CutRun, collect_runs
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
 

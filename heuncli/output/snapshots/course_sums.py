@@ -51,7 +51,7 @@ class CourseSums(NamedTuple):
 
     @property
     def without_words(self) -> CourseSums:
-        """The same sums, without the means if all of them are words."""
+        """The sums; without the means if none of these is a number."""
         return self if any(isinstance(mean, float) for mean in self.tenths) else self._replace(tenths=[])
 
 
@@ -101,7 +101,7 @@ def sum_tenths(values: Array, near_jump: Mask) -> CourseSums:
 
 
 class Pieces(NamedTuple):
-    """Pieces of a run in each of which a quantity is smooth.
+    """The intervals of a run between the jumps of a quantity.
 
     first, last: indices of the first and last instant of each piece, (m,)
     """
@@ -215,7 +215,7 @@ def find_instant_spread(times: Array, heights: Array, highest: float, time: floa
 
 
 def find_near_jumps(instants: Array, jumps: Array, jump_time_errors: Array) -> Mask:
-    """Mark the instants so near to a jump that it is not certain on which side of it they are.
+    """Mark the instants that are closer to a jump than its error: their side of it is not certain.
 
     jump_time_errors: the error of each jump's instant [s]
     """

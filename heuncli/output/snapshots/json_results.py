@@ -69,7 +69,7 @@ def read_instants(data: Mapping[str, Any]) -> Array:
 
 
 def find_common_instants(first: Mapping[str, Any], second: Mapping[str, Any]) -> tuple[list[int], list[int]]:
-    """Return the indices of the instants that two results share, in the one and in the other."""
+    """Return the indices of the common instants of two results, in each of them."""
     times, second_times = read_instants(first), read_instants(second)
     tolerance = SAME_INSTANT * max(float(np.ptp(times)), float(np.ptp(second_times)))
     nearest = (

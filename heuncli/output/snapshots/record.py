@@ -27,13 +27,13 @@ from heuncli.output.snapshots.golden_file import (
     SumSnapshot,
     Value,
 )
-from heuncli.output.tables.cut_runs import collect_runs
 from heuncli.output.tables.impulse_tables import MAX_LISTED, make_impact_results
 from heuncli.output.tables.page import Page
 from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, DeterminateSum, Results
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
+from heuncli.study.quantities.cut_runs import collect_runs
 from heuncli.study.quantities.digits import largest_magnitude
 
 

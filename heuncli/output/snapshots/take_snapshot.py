@@ -44,7 +44,7 @@ from heuncli.output.snapshots.record import (
     find_ending_error,
     make_run_snapshot,
 )
-from heuncli.output.snapshots.searches import search_stresses
+from heuncli.output.snapshots.tables import search_stresses
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, Extremes, Results
 from heuncli.results.results_schema import SHARES, add_shared_reports

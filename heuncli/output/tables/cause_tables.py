@@ -14,12 +14,13 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.documents.text_table import INDENT
-from heuncli.output.tables.cut_runs import CutRun, format_place
+from heuncli.output.tables.cut_runs import format_place
 from heuncli.output.tables.table_blocks import TableBlock
 from heuncli.results.path_words import BY_CAUSE
 from heuncli.results.results import Array, CutPosition, Extremes, Results
 from heuncli.results.results_schema import SECTION_FORCES, SECTION_MOMENTS, SHARES
 from heuncli.study.quantities.channels import Channel
+from heuncli.study.quantities.cut_runs import CutRun
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,

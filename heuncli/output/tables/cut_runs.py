@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_head
-from heuncli.results.results import Array, CutPosition, Extremes, Indices, Results
-from heuncli.results.results_schema import RESULTANTS, STRESSES
-from heuncli.study.quantities.channels import NO_UNITS, Channel, make_section_channels
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell, make_number_cells
+from heuncli.results.results import Array, CutPosition, Extremes, Indices
+from heuncli.results.results_schema import STRESSES
+from heuncli.study.quantities.cut_runs import (
+    CutRun,
+    choose_cuts,
+    find_sample_extremes,
+    merge_extremes,
+    select_extremes,
+    split_into_cuts,
+)
+from heuncli.study.quantities.cut_runs import collect_runs as collect_runs  # for output/summary
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,
@@ -25,73 +32,11 @@ from heuncli.study.quantities.digits import (
     write_numbers,
     write_times,
 )
-from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.table_units import DisplayUnit
 
 EXTREMES_NOTE = "extremes over the whole bar, also between the listed cuts"
-MAX_CUTS = 25  # in a diagram: evenly spaced cuts, with all jumps and extremes
-
 
 BOTH_BOUNDS = ("min", "max")
 BOUNDS = dict.fromkeys(STRESSES, ("max",)) | {"normal_min": ("min",)}  # those of interest at a cut; else both
-
-
-class CutRun(NamedTuple):
-    """One series of cuts.
-
-    s: positions along the body [m]
-    side: of each cut, which side of a load that acts there; None elsewhere
-    channels: section forces, then stresses, (n_t, n_cuts) each
-    length: the unit in which positions are shown
-    """
-
-    name: str
-    heading: str
-    s: Array
-    side: tuple[str | None, ...]
-    channels: tuple[Channel, ...]
-    length: DisplayUnit = ("m", 1.0)
-
-    @property
-    def loads(self) -> tuple[Channel, ...]:
-        """The section forces: N, Q1, Q2, T, M1, M2."""
-        return self.channels[: len(RESULTANTS)]
-
-    @property
-    def stresses(self) -> tuple[Channel, ...]:
-        """The stresses, after the section forces; none without section properties."""
-        return self.channels[len(RESULTANTS) :]
-
-
-def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] = NO_UNITS) -> list[CutRun]:
-    """Collect the series of cuts among the sections.
-
-    units: replacements of units, for impulses instead of forces
-    """
-    runs = []
-    for name, section in results.sections.items():
-        if "s" not in section:
-            continue
-        info = labels.sections.get(name)
-        subject = f"{name}, body {info.body}" if info else name
-        axis = f"e1 = {info.first_axis}, e2 = n × e1" if info else "e2 = n × e1"
-        reference_point = info.moment_point if info else "the cut's point"
-        meaning = f"{'impulse' if units else 'force'} of the far side on the near side of the cut; N > 0 tension"
-        heading = f"SECTION {subject}  {meaning}; {axis}; moments about {reference_point}"
-        side = tuple(section.get("side") or [None] * len(section["s"]))
-        s = np.asarray(section["s"], dtype=np.float64)
-        channels = make_section_channels(name, section, units)
-        runs.append(CutRun(name, heading, s, side, channels, labels.units.find("m")))
-    return runs
-
-
-def split_into_cuts(channels: Iterable[Channel], cuts: Indices) -> list[Channel]:
-    """Return the channels at some single cuts of a run, quantity by quantity."""
-    return [
-        channel._replace(component=str(cut), values=channel.values[:, cut], axes=())
-        for channel in channels
-        for cut in cuts.tolist()
-    ]
 
 
 def make_extremes_tables(
@@ -117,84 +62,48 @@ def make_extremes_tables(
     return [make_extremes_table(run, times, head, certain), envelope]
 
 
-def select_extremes(run: CutRun, extremes: Extremes) -> Extremes:
-    """Select the extremes of the section forces along a run, and of its stresses if these were searched."""
-    known = set(extremes.paths)
-    return extremes.find([channel.path for channel in run.channels if channel.path in known])
-
-
-def find_sample_extremes(times: Array, values: Array) -> Extremes:
-    """Return the lowest and highest of each column (n_t, n) among the samples."""
-    low = np.argmin(np.nan_to_num(values, nan=np.inf), axis=0)
-    high = np.argmax(np.nan_to_num(values, nan=-np.inf), axis=0)
-    column = np.arange(values.shape[1])
-    return Extremes(
-        values[low, column], times[low], column, values[high, column], times[high], column, is_searched=False
-    )
-
-
-def merge_extremes(run: CutRun, shown_cuts: Indices, head: Extremes, cuts: Extremes) -> tuple[Extremes, Extremes]:
-    """Merge the extremes of the whole length and of its cuts, so that each is the better result of two searches."""
-    ends, ends_at = np.stack([head.low, head.high]), np.stack([head.low_at, head.high_at])
-    bounds, instants = np.stack([cuts.low, cuts.high]), np.stack([cuts.low_at, cuts.high_at])
-    best_places = [list(both) for both in head.places]
-    for i in range(len(best_places)):
-        for side, sign in ((0, -1.0), (1, 1.0)):
-            columns = slice(i * len(shown_cuts), (i + 1) * len(shown_cuts))
-            best = int(np.argmax(np.nan_to_num(sign * bounds[side, columns], nan=-np.inf)))
-            cut = int(shown_cuts[best])
-            if sign * bounds[side, columns][best] > sign * ends[side, i]:
-                ends[side, i], ends_at[side, i] = bounds[side, columns][best], instants[side, columns][best]
-                best_places[i][side] = CutPosition(float(run.s[cut]), run.side[cut], cut)
-            elif best_places[i][side].cut in shown_cuts:
-                bounds[side, columns][shown_cuts == best_places[i][side].cut] = ends[side, i]
-    places = tuple((low, high) for low, high in best_places)
-    merged = head._replace(low=ends[0], high=ends[1], low_at=ends_at[0], high_at=ends_at[1], places=places)
-    return merged, cuts._replace(low=bounds[0], high=bounds[1])
-
-
 def _make_envelope(
     run: CutRun, bounds: Mapping[str, Array], shown_cuts: Indices, styles: Mapping[str, Style], notes: Sequence[str],
     certain: StatedErrors,
 ) -> OutputTable:  # fmt: skip
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
-    columns, texts, left_out = list[OutputColumn](), list[list[str]](), False
+    columns, cells, left_out = list[OutputColumn](), list[Sequence[Cell]](), False
     for i, channel in enumerate(run.channels):
         unit, size = certain.units.find(channel.unit)
         words: Sequence[str] = BOUNDS.get(channel.quantity, BOTH_BOUNDS)
-        both = [write_numbers((size * bounds[word][i]).tolist(), styles[channel.unit]) for word in words]
-        if {text for column in both for text in column} == {"0"}:
+        error = size * certain.find_error(channel)
+        both = [make_number_cells((size * bounds[word][i]).tolist(), styles[channel.unit], error) for word in words]
+        texts = [[cell.text for cell in column] for column in both]
+        if {text for column in texts for text in column} == {"0"}:
             left_out = True
             continue
-        words = words if len(both) > 1 and both[0] != both[1] else ("",)  # a constant value has one column
-        texts += both[: len(words)]
-        columns += [
-            OutputColumn(format_head(f"{channel.label} {word}".rstrip(), unit), vector=channel.label) for word in words
-        ]
+        words = words if len(texts) > 1 and texts[0] != texts[1] else ("",)  # a constant value has one column
+        cells += both[: len(words)]
+        columns += [OutputColumn(f"{channel.label} {word}".rstrip(), unit=unit, vector=channel.label) for word in words]
     if not columns:
         return OutputTable("", notes=(*notes, "all values 0"))
-    shown = {text for column in texts for text in column}
-    all_notes = [*notes, *[ZERO_NOTE] * left_out]
-    all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    return _make_cuts_table(run, shown_cuts, columns, texts, all_notes)
+    return _make_cuts_table(run, shown_cuts, columns, cells, [*notes, *[ZERO_NOTE] * left_out])
 
 
 def _make_cuts_table(
     run: CutRun,
     shown_cuts: Indices,
     columns: Sequence[OutputColumn],
-    texts: Sequence[Sequence[str]],
+    cells: Sequence[Sequence[Cell]],
     notes: Sequence[str],
 ) -> OutputTable:
-    """Make a table with a row for each cut that begins with its position and side."""
-    positions = _format_positions(run)
+    """Make a table with a row for each cut that begins with its position and side; cells: by columns."""
+    unit, size = run.length
+    positions = make_number_cells((size * run.s).tolist(), choose_style(size * largest_magnitude(run.s), 0.0))
     sides = any(side is not None for side in run.side)
     rows = tuple(
-        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in texts))
+        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in cells))
         for j, cut in enumerate(shown_cuts)
     )
-    heads = [OutputColumn(f"s [{run.length[0]}]"), *([OutputColumn("side", "text")] if sides else [])]
-    return OutputTable("", (*heads, *columns), rows, tuple(notes))
+    heads = [OutputColumn("s", unit=unit), *([OutputColumn("side", "text")] if sides else [])]
+    shown = {format_cell(cell) for column in cells for cell in column}
+    word_notes = (note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
+    return OutputTable("", (*heads, *columns), rows, (*notes, *word_notes))
 
 
 def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors) -> OutputTable:
@@ -204,32 +113,37 @@ def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: 
     extremes = select_extremes(run, extremes)
     styles = _choose_styles(run, certain, extremes)
     span = float(np.ptp(times))
-    rows: list[tuple[str, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     channels = run.channels[: len(extremes.low)]
     for i, channel in enumerate(channels):
         unit, size = certain.units.find(channel.unit)
-        low, high = write_numbers([size * float(extremes.low[i]), size * float(extremes.high[i])], styles[channel.unit])
-        if low == high == "0":
+        ends = [size * float(extremes.low[i]), size * float(extremes.high[i])]
+        low, high = make_number_cells(ends, styles[channel.unit], size * certain.find_error(channel))
+        if low.text == high.text == "0":
             continue
         label, unit = channel.label, unit if unit != "1" else ""
-        if low == high:
+        if low.text == high.text:
             rows.append((label, unit, low, "", "", high, "", ""))
             continue
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
-            "" if _is_constant(size * channel.values[:, _find_nearest_cut(run, place)], styles[channel.unit]) else t
+            "" if _is_constant(size * channel.values[:, run.find_nearest_cut(place)], styles[channel.unit]) else t
             for place, t in zip(extremes.places[i], clock, strict=True)
         )
         where = [format_place(place, run) for place in extremes.places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
-    position_head = f"at s [{run.length[0]}]"
-    heads = ("min", position_head, "t [s]", "max", position_head, "t [s]")
-    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *(OutputColumn(head) for head in heads))
+    ends_columns = [
+        column
+        for word in ("min", "max")
+        for column in (OutputColumn(word), OutputColumn("at s", unit=run.length[0]), OutputColumn("t", "instant", "s"))
+    ]
+    columns = (OutputColumn("", "text"), OutputColumn("", "text"), *ends_columns)
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
         return OutputTable(run.heading, notes=("all values 0",))
-    notes = (EXTREMES_NOTE, *[OPEN_NOTE] * any(OPEN in row for row in rows))
+    is_open = any(format_cell(cell) == OPEN for row in rows for cell in row)
+    notes = (EXTREMES_NOTE, *[OPEN_NOTE] * is_open)
     return OutputTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(channels))))
 
 
@@ -263,19 +177,6 @@ def make_instants_tables(
     return [_drop_zero_columns(run, OutputTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))]
 
 
-def choose_cuts(run: CutRun) -> Indices:
-    """Choose the cuts that a diagram shows, about MAX_CUTS: evenly spaced ones, both ends, all jumps and extremes."""
-    n = len(run.s)
-    if n <= MAX_CUTS:
-        return np.arange(n)
-    chosen = set(np.linspace(0, n - 1, MAX_CUTS // 2 + 1).round().astype(int).tolist())
-    chosen |= {i for i, side in enumerate(run.side) if side is not None}
-    for channel in run.channels:
-        values = np.nan_to_num(channel.values)
-        chosen |= {int(np.argmax(values.max(axis=0))), int(np.argmin(values.min(axis=0)))}
-    return np.array(sorted(chosen))
-
-
 def _make_diagram(
     run: CutRun,
     instant: int,
@@ -287,29 +188,29 @@ def _make_diagram(
     is_beyond: bool = False,
 ) -> OutputTable:
     """Make the diagram at an instant, by its index, a row for each cut; is_beyond: whether it is beyond the horizon."""
-    texts = []
-    for channel in run.channels:
-        row, size = channel.values[instant, shown_cuts], certain.units.find(channel.unit)[1]
-        column = write_numbers((size * row).tolist(), styles[channel.unit])
-        if is_beyond:
-            column = [
-                format_unclaimed(value, channel.unit, certain, text)
-                for value, text in zip(row.tolist(), column, strict=True)
+    cells, columns = list[Sequence[Cell]](), list[OutputColumn]()
+    for i, channel in enumerate(run.channels):
+        row, (unit, size) = channel.values[instant, shown_cuts], certain.units.find(channel.unit)
+        columns.append(OutputColumn(channel.label, unit=unit, vector="loads" if i < len(run.loads) else ""))
+        numbers = make_number_cells((size * row).tolist(), styles[channel.unit], size * certain.find_error(channel))
+        cells.append(
+            [
+                format_unclaimed(value, channel.unit, certain, cell.text)
+                for value, cell in zip(row.tolist(), numbers, strict=True)
             ]
-        texts.append(column)
-    shown = {text for column in texts for text in column}
-    all_notes = [note for note in notes if note]
-    all_notes += [note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
-    heads = [format_head(channel.label, certain.units.find(channel.unit)[0]) for channel in run.channels]
-    columns = [OutputColumn(head, vector="loads" if i < len(run.loads) else "") for i, head in enumerate(heads)]
-    return _make_cuts_table(run, shown_cuts, columns, texts, all_notes)
+            if is_beyond
+            else numbers
+        )
+    return _make_cuts_table(run, shown_cuts, columns, cells, [note for note in notes if note])
 
 
 def _drop_zero_columns(run: CutRun, table: OutputTable) -> OutputTable:
     """Drop the quantities that are zero throughout, unless all of them are."""
     cells = [row for row in table.rows if not isinstance(row, str)]
     lead = len(table.columns) - len(run.channels)
-    shown_columns = [i for i in range(len(table.columns)) if i < lead or {row[i] for row in cells} != {"0"}]
+    shown_columns = [
+        i for i in range(len(table.columns)) if i < lead or {format_cell(row[i]) for row in cells} != {"0"}
+    ]
     if len(shown_columns) in (lead, len(table.columns)):
         return table
     rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
@@ -333,21 +234,11 @@ def _is_constant(values: Array, number_style: Style) -> bool:
     return number_style.write(float(np.min(values))) == number_style.write(float(np.max(values)))
 
 
-def _find_nearest_cut(run: CutRun, place: CutPosition) -> int:
-    """Return the index of the cut at a place, or of the nearest one."""
-    return int(np.argmin(np.abs(run.s - place.s))) if place.cut is None else place.cut
-
-
 def format_place(place: CutPosition, run: CutRun) -> str:
     """Format a place: its distance, and between the ends the side of the load that acts there."""
     side = [place.side] if place.side and 0.0 < place.s < run.s[-1] else []
     size = run.length[1]
     return " ".join([*write_numbers([size * place.s], choose_style(size * largest_magnitude(run.s), 0.0)), *side])
-
-
-def _format_positions(run: CutRun) -> list[str]:
-    s = run.length[1] * run.s
-    return write_numbers(s.tolist(), choose_style(largest_magnitude(s), 0.0))
 
 
 def _format_hidden_cuts(run: CutRun, shown_cuts: Indices) -> str:

@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.document import Cell, OutputColumn, OutputTable
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
 from heuncli.output.documents.text_table import INDENT, select_columns
 from heuncli.output.tables.name_ranges import join_ranges
-from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, format_numbers
+from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, make_cells
 from heuncli.results.results import Array, Extremes
 from heuncli.study.quantities.digits import (
     OPEN,
@@ -115,7 +115,7 @@ def _make_full_table(
     full: bool,
 ) -> OutputTable:  # fmt: skip
     """Make the table with a row for each number, under a title for each group."""
-    rows: list[tuple[str, ...] | str] = []
+    rows: list[tuple[Cell, ...] | str] = []
     notes: set[str] = set()
     open_groups: dict[str, list[str]] = {}  # names of groups by their open components
     span = float(np.ptp(times))
@@ -143,8 +143,8 @@ def _make_full_table(
 COLUMNS = (
     OutputColumn("", "text"), OutputColumn("", "text"),
     OutputColumn("first", is_optional=True), OutputColumn("last", is_optional=True),
-    OutputColumn("min", vector="extremes"), OutputColumn("at [s]", vector="extremes"),
-    OutputColumn("max", vector="extremes"), OutputColumn("at [s]", vector="extremes"),
+    OutputColumn("min", vector="extremes"), OutputColumn("at", "instant", "s", vector="extremes"),
+    OutputColumn("max", vector="extremes"), OutputColumn("at", "instant", "s", vector="extremes"),
 )  # fmt: skip
 
 
@@ -152,7 +152,7 @@ def _merge_constants(table: OutputTable) -> OutputTable:
     """Show a constant number once, and leave out the columns that are then empty."""
     rows: list[Sequence[Cell] | str] = []
     for row in table.rows:
-        numbers = set() if isinstance(row, str) else {row[i] for i in (2, 3, 4, 6)}
+        numbers = set() if isinstance(row, str) else {format_cell(row[i]) for i in (2, 3, 4, 6)}
         rows.append((*row[:N_LEADING], "", "", "", "", row[6], CONSTANT) if len(numbers) == 1 else row)
     cells = [row for row in rows if not isinstance(row, str)]
     shown = [i for i in range(len(table.columns)) if i < N_LEADING or any(row[i] for row in cells)]
@@ -161,7 +161,7 @@ def _merge_constants(table: OutputTable) -> OutputTable:
 
 def _make_rows(
     part: GroupExtremes, span: float, certain: StatedErrors, kind: str, doubtful: DoubtfulInstants
-) -> tuple[list[tuple[str, ...] | str], list[str], set[str]]:
+) -> tuple[list[tuple[Cell, ...] | str], list[str], set[str]]:
     """Make the rows of a group, the labels of its numbers that are open throughout, and the notes they need.
 
     Numbers that are zero throughout get no row either.
@@ -169,8 +169,9 @@ def _make_rows(
     group, extremes = part.group, part.extremes
     instants = np.stack([extremes.low_at, extremes.high_at])
     notes: set[str] = set()
-    texts = _format_extremes(part, certain)
-    lines: list[tuple[str, ...] | str] = []
+    cells = _make_extreme_cells(part, certain)
+    texts = [[format_cell(cell) for cell in cells_of_row] for cells_of_row in cells]
+    lines: list[tuple[Cell, ...] | str] = []
     open_labels = [
         row.label for row, texts_of_row in zip(group.rows, texts, strict=True) if set(texts_of_row) == {OPEN}
     ]
@@ -192,27 +193,31 @@ def _make_rows(
         notes |= {UNKNOWN_NOTE} if UNKNOWN in (first, last, low, high) else set()
         low_at, high_at = ["", ""] if low == high else write_times(instants[:, i].tolist(), span)
         unit = certain.units.find(row.unit)[0] if row.unit != "1" else ""
-        ends = low, high
+        ends = cells[i][2:]
         if low != high:  # else it is constant
-            low, high = (
-                doubtful.add_mark(end, float(at), kind, unit) for end, at in zip(ends, instants[:, i], strict=True)
-            )
-        notes |= {doubtful.note} if (low, high) != ends else set()
-        lines.append((row.label + "*" * partly_open, unit, first, last, low, low_at, high, high_at))
+            marked = [
+                doubtful.add_mark(text, float(at), kind, unit)
+                for text, at in zip((low, high), instants[:, i], strict=True)
+            ]
+            notes |= {doubtful.note} if marked != [low, high] else set()
+            ends = [cell if end == text else end for cell, end, text in zip(ends, marked, (low, high), strict=True)]
+        lines.append((row.label + "*" * partly_open, unit, *cells[i][:2], ends[0], low_at, ends[1], high_at))
     if open_labels:
         notes.add(OPEN_NOTE)
     return lines, open_labels, notes
 
 
-def _format_extremes(part: GroupExtremes, certain: StatedErrors) -> list[list[str]]:
-    """Format the first, last, lowest and highest value of each row."""
+def _make_extreme_cells(part: GroupExtremes, certain: StatedErrors) -> list[list[Cell]]:
+    """Make the cells of the first, last, lowest and highest value of each row."""
     rows = part.group.rows
     first, last = (np.array([row.values[i] for row in rows]) for i in (0, -1))
-    texts = format_numbers(part.group, np.stack([first, last, part.extremes.low, part.extremes.high]), certain)
-    for row, texts_of_row in zip(rows, texts, strict=True):
+    numbers = np.stack([first, last, part.extremes.low, part.extremes.high])
+    cells: list[list[Cell]] = [[*cells_of_row] for cells_of_row in make_cells(part.group, numbers, certain)]
+    for row, cells_of_row in zip(rows, cells, strict=True):
         if row.path in part.last_values:
-            texts_of_row[1] = format_unclaimed(part.last_values[row.path], row.unit, certain, texts_of_row[1])
-    return texts
+            text = format_cell(cells_of_row[1])
+            cells_of_row[1] = format_unclaimed(part.last_values[row.path], row.unit, certain, text)
+    return cells
 
 
 def _make_short_table(

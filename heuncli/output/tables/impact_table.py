@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
-from heuncli.output.documents.document import OutputColumn, OutputTable
-from heuncli.output.tables.instants_tables import format_group
+from heuncli.output.documents.document import OutputColumn, OutputTable, format_cell
+from heuncli.output.tables.instants_tables import make_group_cells
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
@@ -60,8 +60,8 @@ def _iter_rows(
 ) -> Iterator[tuple[str, ...]]:
     """Yield for each vector, and each other number: name, label, unit, components, value, and the group's note."""
     texts = {
-        label: cells_of_label[0]
-        for label, cells_of_label in format_group(block, group, times, horizon, certain).items()
+        label: format_cell(cells_of_label[0])
+        for label, cells_of_label in make_group_cells(block, group, times, horizon, certain).items()
     }
     magnitudes = {row.family: texts[row.label] for row in group.rows if row.is_magnitude and row.vector}
     for _, vector_rows in groupby(group.rows, key=lambda row: row.vector or row.label):

@@ -24,6 +24,7 @@ from heuncli.results.path_words import IMPULSE_BLOCKS, IMPULSE_UNITS, find_quant
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results.results_schema import SHARES
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
+from heuncli.study.quantities.cut_runs import CutRun, collect_runs
 from heuncli.study.quantities.digits import (
     UNKNOWN,
     StatedErrors,
@@ -57,7 +58,7 @@ class ImpactReport(NamedTuple):
 
 
 def make_impulse_tables(report: ImpactReport, *, show_all: bool = False) -> list[OutputTable]:
-    """Make the list of all impacts, if there are several, and the tables of each, or of the largest."""
+    """Make a list of the impacts if there are several, and tables of each, or only of the largest if there are many."""
     impulses = report.results.impulses
     if not impulses:
         return []
@@ -150,7 +151,7 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
         share_tables += make_share_tables(named, view, channels, certain, horizon) if by_cause else []
     tables[:0] = [make_impact_table(title, blocks, view.time, horizon, certain)] if blocks else []
     run_extremes = report.run_extremes[number] if report.run_extremes else {}
-    for run in cut_runs.collect_runs(view, labels, IMPULSE_UNITS):
+    for run in collect_runs(view, labels, IMPULSE_UNITS):
         run_tables = cut_runs.make_instants_tables(run, view.time, horizon, certain, every_cut=show_all)
         if run.name in run_extremes:
             table = cut_runs.make_extremes_table(run, view.time, run_extremes[run.name], certain)
@@ -175,7 +176,7 @@ def make_share_tables(
 
 
 def make_run_share_tables(
-    run: cut_runs.CutRun, view: Results, certain: StatedErrors, horizon: float | None
+    run: CutRun, view: Results, certain: StatedErrors, horizon: float | None
 ) -> list[OutputTable]:
     """Make the tables of what each cause contributes to the impulses along a series of cuts; none if shares are not
     requested.

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.output.documents.document import OutputColumn, OutputTable, format_head
-from heuncli.output.tables.table_blocks import RowGroup, TableBlock, format_numbers
+from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
+from heuncli.output.tables.table_blocks import RowGroup, TableBlock, make_cells
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import (
     OPEN,
@@ -19,7 +19,7 @@ from heuncli.study.quantities.digits import (
     write_times,
 )
 
-Cells = dict[str, dict[str, list[str]]]  # group -> label -> a text for each instant
+Cells = dict[str, dict[str, list[Cell]]]  # group -> label -> a cell for each instant
 
 
 def make_instants_tables(
@@ -33,16 +33,16 @@ def make_instants_tables(
     notes = list(block.notes)
     layout = _layout_single_instant if len(times) == 1 else _layout_instants
     for groups in _split_by_units(block.groups):
-        cells = {group.name: format_group(block, group, times, horizon, certain) for group in groups}
+        cells = {group.name: make_group_cells(block, group, times, horizon, certain) for group in groups}
         units = {row.label: certain.units.find(row.unit)[0] for group in groups for row in group.rows}
         labels = _find_nonzero_labels(groups, cells) if word == OPEN else _order_labels(groups)
         if len(labels) < len(units):
             notes.append(ZERO_NOTE if labels else f"all values 0: {', '.join(group.name for group in groups)}")
         vectors = {row.label: row.vector for group in groups for row in group.rows}
-        columns = [OutputColumn(format_head(label, units[label]), vector=vectors[label]) for label in labels]
+        columns = [OutputColumn(label, unit=units[label], vector=vectors[label]) for label in labels]
         lead, rows = layout(block, groups, labels, cells, times)
         tables += [OutputTable("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
-    shown = {text for table in tables for row in table.rows if not isinstance(row, str) for text in row}
+    shown = {format_cell(cell) for table in tables for row in table.rows if not isinstance(row, str) for cell in row}
     notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     if not tables:
         return [OutputTable(block.heading, notes=("all values 0",))]
@@ -51,11 +51,11 @@ def make_instants_tables(
 
 def _layout_single_instant(
     block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
-) -> tuple[list[OutputColumn], list[tuple[str, ...] | str]]:
+) -> tuple[list[OutputColumn], list[tuple[Cell, ...] | str]]:
     """Return the leading columns, and a row for each group."""
     has_names = any(group.name for group in groups)
     has_notes = any(group.note for group in groups)
-    rows: list[tuple[str, ...] | str] = []
+    rows: list[tuple[Cell, ...] | str] = []
     for group in groups:
         leading_cells = [group.name] * has_names + [group.note] * has_notes
         rows.append((*leading_cells, *(cells[group.name].get(label, [""])[0] for label in labels)))
@@ -66,16 +66,16 @@ def _layout_single_instant(
 
 def _layout_instants(
     block: TableBlock, groups: Sequence[RowGroup], labels: Sequence[str], cells: Cells, times: Array
-) -> tuple[list[OutputColumn], list[tuple[str, ...] | str]]:
+) -> tuple[list[OutputColumn], list[tuple[Cell, ...] | str]]:
     """Return the leading columns, and a row for each instant of each group."""
     clock = write_times(times.tolist(), float(np.ptp(times)))
-    empty = [""] * len(times)
-    rows: list[tuple[str, ...] | str] = []
+    empty: list[Cell] = [""] * len(times)
+    rows: list[tuple[Cell, ...] | str] = []
     for group in groups:
         rows += [group.title] if group.name else []
         columns = [cells[group.name].get(label, empty) for label in labels]
         rows += list(zip(clock, *columns, strict=True))
-    return [OutputColumn("t [s]")], rows
+    return [OutputColumn("t", "instant", "s")], rows
 
 
 def _order_labels(groups: Sequence[RowGroup]) -> list[str]:
@@ -90,20 +90,20 @@ def _order_labels(groups: Sequence[RowGroup]) -> list[str]:
     return order
 
 
-def format_group(
+def make_group_cells(
     block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: StatedErrors
-) -> dict[str, list[str]]:
-    """Format the cells of a group by label, one for each instant."""
+) -> dict[str, list[Cell]]:
+    """Make the cells of a group by label, one for each instant; a word where a number is not known."""
     numbers = np.stack([row.values for row in group.rows], axis=1)
     within_horizon = [horizon is None or t < horizon for t in times.tolist()]
     words = [{OPEN: UNKNOWN if t in certain.singular_times else block.missing[0]} for t in times.tolist()]
-    cells = {}
-    for row, texts in zip(group.rows, format_numbers(group, numbers, certain), strict=True):
-        texts_of_row = [
-            text if is_known else format_unclaimed(value, row.unit, certain, text)
-            for value, text, is_known in zip(row.values.tolist(), texts, within_horizon, strict=True)
+    cells: dict[str, list[Cell]] = {}
+    for row, numbers_of_row in zip(group.rows, make_cells(group, numbers, certain), strict=True):
+        cells_of_row: list[Cell] = [
+            cell if is_known else format_unclaimed(value, row.unit, certain, cell.text)
+            for value, cell, is_known in zip(row.values.tolist(), numbers_of_row, within_horizon, strict=True)
         ]
-        cells[row.label] = [word.get(text, text) for word, text in zip(words, texts_of_row, strict=True)]
+        cells[row.label] = [word.get(format_cell(cell), cell) for word, cell in zip(words, cells_of_row, strict=True)]
     return cells
 
 
@@ -112,9 +112,9 @@ def _find_nonzero_labels(groups: Sequence[RowGroup], cells: Cells) -> list[str]:
     vector_of_label = {row.label: row.vector or row.label for group in groups for row in group.rows}
     shown = {
         vector_of_label[label]
-        for texts_of_label in cells.values()
-        for label, texts in texts_of_label.items()
-        if set(texts) != {"0"}
+        for cells_by_label in cells.values()
+        for label, cells_of_label in cells_by_label.items()
+        if set(map(format_cell, cells_of_label)) != {"0"}
     }
     return [label for label in _order_labels(groups) if vector_of_label[label] in shown]
 

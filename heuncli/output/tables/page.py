@@ -25,6 +25,7 @@ from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Results
 from heuncli.results.results_schema import REPORT_OF, REPORTS
 from heuncli.study.quantities.channels import ChannelSelection, iter_channels
+from heuncli.study.quantities.cut_runs import CutRun, collect_runs
 from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.search.columns import ChannelSearch
@@ -90,7 +91,7 @@ class Page(NamedTuple):
         for block in self.make_blocks(self.results, only_searched=True):
             part = search_result.find(block.paths)
             tables += make_extremes_tables(block, times, part, self.certain, last_values, self.doubtful, full=self.full)
-        for run in cut_runs.collect_runs(self.results, self.labels):
+        for run in collect_runs(self.results, self.labels):
             cuts = self.cut_extremes.get(run.name)
             tables += cut_runs.make_extremes_tables(run, times, search_result, self.certain, cuts)
         share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
@@ -107,7 +108,7 @@ class Page(NamedTuple):
         span, tables = float(np.ptp(self.results.time)), list[OutputTable]()
         for block in blocks:
             tables += cause_tables.make_extremes_tables(block, numbers, instants, found, self.certain, span)
-        for run in cut_runs.collect_runs(self.results, self.labels):
+        for run in collect_runs(self.results, self.labels):
             tables += self._make_run_share_tables(run, search_result, shares)
         return tables
 
@@ -116,9 +117,7 @@ class Page(NamedTuple):
 
         return cause_tables.collect_shares(iter_channels(results, self.labels), results)
 
-    def _make_run_share_tables(
-        self, run: cut_runs.CutRun, search_result: Extremes, shares: ShareSource
-    ) -> list[OutputTable]:
+    def _make_run_share_tables(self, run: CutRun, search_result: Extremes, shares: ShareSource) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes along a series of cuts."""
         from heuncli.output.tables import cause_tables
 
@@ -145,7 +144,7 @@ class Page(NamedTuple):
         tables: list[OutputTable] = []
         for block in self.make_blocks(results):
             tables += make_instants_tables(block, results.time, horizon, certain)
-        for run in cut_runs.collect_runs(results, self.labels):
+        for run in collect_runs(results, self.labels):
             if search_result is not None:
                 tables.append(cut_runs.make_extremes_table(run, results.time, search_result, self.certain))
             run_tables = cut_runs.make_instants_tables(run, results.time, horizon, self.certain, every_cut=every_cut)
@@ -164,7 +163,7 @@ class Page(NamedTuple):
         numbers, tables = self._collect_shares(results), list[OutputTable]()
         for block in self.make_blocks(results):
             tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
-        for run in cut_runs.collect_runs(results, self.labels):
+        for run in collect_runs(results, self.labels):
             if search_result is not None:
                 tables += self._make_run_share_tables(run, search_result, shares)
             else:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.document import NumberCell, trim_cells
 from heuncli.output.tables.table_plans import MASS_EFFECT, TablePlan
 from heuncli.results.results import Array, Results
 from heuncli.results.results_schema import XYZ
@@ -22,7 +23,6 @@ from heuncli.study.quantities.digits import (
     StatedErrors,
     Style,
     largest_magnitude,
-    write_numbers,
 )
 from heuncli.study.quantities.labels import Labels
 
@@ -96,20 +96,26 @@ def _find_family(row: Channel) -> tuple[str, ...]:
     return row.family, row.error_kind, row.unit
 
 
-def format_numbers(group: RowGroup, numbers: Array, certain: StatedErrors) -> list[list[str]]:
-    """Format the numbers of each row, SI, (n, n_rows) -> n_rows lists of n; the rows of a family show the same
-    decimals.
+def make_cells(group: RowGroup, numbers: Array, certain: StatedErrors) -> list[list[NumberCell]]:
+    """Make the cells of each row from its numbers, SI, (n, n_rows) -> n_rows lists of n; the rows of a family show the
+    same decimals.
     """
-    texts: list[list[str]] = [[] for _ in group.rows]
+    cells: list[list[NumberCell]] = [[] for _ in group.rows]
     styles = choose_styles(group.rows, numbers, certain)
-    shown = numbers * np.array([certain.units.find(row.unit)[1] for row in group.rows])
+    sizes = [certain.units.find(row.unit)[1] for row in group.rows]
+    shown = numbers * np.array(sizes)
+    errors = [size * certain.find_error(row) for size, row in zip(sizes, group.rows, strict=True)]
     families = [_find_family(row) for row in group.rows]
     for family in dict.fromkeys(families):
         members = [i for i, other in enumerate(families) if other == family]
-        flat = write_numbers(shown[:, members].ravel().tolist(), styles[members[0]])
+        style = styles[members[0]]
+        numbers_of_family = shown[:, members].tolist()
+        flat = trim_cells(
+            [(value, errors[i], style) for row in numbers_of_family for i, value in zip(members, row, strict=True)]
+        )
         for column, member in enumerate(members):
-            texts[member] = flat[column :: len(members)]
-    return texts
+            cells[member] = flat[column :: len(members)]
+    return cells
 
 
 def build_block(plan: TablePlan, results: Results, labels: Labels, channels: Iterable[Channel]) -> TableBlock | None:

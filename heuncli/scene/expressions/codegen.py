@@ -120,7 +120,7 @@ BRANCHING_OPERATIONS = frozenset({*TRUTH_OPERATIONS, "sign", "abs", "min", "max"
 
 
 class Part(NamedTuple):
-    """The code of a part of an expression, the variables that it uses, and its value if it is constant.
+    """A compiled part of an expression: its code, the variables it reads, and its value if it is constant.
 
     is_truth: it is 1 or 0, and changes only where a branch in its own code changes
     measure: its dimension

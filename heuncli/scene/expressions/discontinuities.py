@@ -126,7 +126,7 @@ def find_first_not_positive(value: Expression, last: float) -> float | None:
 
 
 def find_first_negative(value: Expression, last: float) -> float | None:
-    """Find the first of the same instants at which a value is below 0 by more than rounding."""
+    """Find the first of these instants at which the value is negative by more than rounding."""
     samples = [(t, value.value(t)) for t in sample_instants(value, last)]
     rounding = tolerances.SAME_VALUE * max((abs(x) for _, x in samples), default=0.0)
     return next((t for t, x in samples if x < -rounding), None)

@@ -9,20 +9,13 @@ scope. Raises Finding.
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Collection, Mapping
 from functools import partial
-from types import MappingProxyType
-from typing import Any
 
 from heuncli.base.errors import Finding
-from heuncli.base.joint_kinds import RATES, TYPES
-from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.records import record
-from heuncli.base.spelling import find_similar, suggest
-from heuncli.base.units import RATE, UNITS, Dimension, canonical_symbol, describe, parse_unit, si_expression_hint
+from heuncli.base.spelling import suggest
+from heuncli.base.units import RATE, UNITS, Dimension, canonical_symbol, parse_unit
 from heuncli.results.results_schema import REPORT_OF
-from heuncli.scene.expressions.codegen import COMPARISONS, CalculationCache, CodeGenerator, Part
+from heuncli.scene.expressions.codegen import COMPARISONS, CodeGenerator, Part
 from heuncli.scene.expressions.dimensions import (
     FACTOR,
     FREE,
@@ -36,77 +29,28 @@ from heuncli.scene.expressions.names import (
     CONSTANTS,
     LAW_HINT,
     LIBRARIES,
-    OTHER_NAMES,
     POINT_FORM_HINT,
     REACTIONS,
     RESERVED,
     RESULT_BLOCKS,
     WORDS,
     resolve_point,
-    tokenize,
 )
-from heuncli.scene.expressions.programs import OWN, POINTS, Expression, TableFunction
+from heuncli.scene.expressions.programs import OWN, POINTS, Expression
+from heuncli.scene.expressions.scope import (
+    COORDINATES_BY_TYPE,
+    DependentError,
+    Scope,
+    describe_dimensions,
+    find_dimension,
+    unknown_name_finding,
+)
+from heuncli.scene.expressions.token_reader import TokenReader
 
 MAX_LENGTH, MAX_DEPTH = 2000, 48
 MAX_WHOLE_POWER = 64  # whole powers up to this are multiplied out
-
-COORDINATES_BY_TYPE = {  # by joint type, of the joints with one coordinate
-    kind.name: (quantity, RATES[quantity])
-    for kind in TYPES.values()
-    for quantity in kind.coordinates
-    if kind.coordinates == (quantity,)
-}
 BINARY = {"+": (1, "add"), "-": (1, "sub"), "*": (2, "mul"), "/": (2, "div")}
-
-NO_NAMES: Mapping[str, Any] = MappingProxyType({})
-
-
-@record
-class Scope:
-    """The names that an expression may use. A parameter or table with value None is known, but was itself in error.
-
-    joints: the type of each joint
-    points: the points of each body and of the ground
-    in_time: whether time, coordinates and points may be used
-    given: the parameters that have a dimension, as they are written
-    with_units: numbers may have units, and compared values need the same dimension
-    calculations: cache of numbers of parameters alone, from a spec with the same names
-    own: the quantities of the load itself by name, such as `length` of a spring
-    """
-
-    parameters: Mapping[str, float | None] = NO_NAMES
-    joints: Mapping[str, str] = NO_NAMES
-    tables: Mapping[str, TableFunction | None] = NO_NAMES
-    in_time: bool = False
-    given: Mapping[str, DimensionedParameter] = NO_NAMES
-    points: Mapping[str, Collection[str]] = NO_NAMES
-    with_units: bool = False
-    calculations: CalculationCache | None = None
-    own: Mapping[str, str] = NO_NAMES
-
-
 FIXED_VALUE_HINT = "this value is read once, before the run: use only numbers and parameters"
-
-
-NO_COORDINATE_HINT = "only pins and slides have coordinates: shaft.angle, guide.travel"
-
-
-class DimensionedParameter(NamedTuple):
-    """A parameter with a dimension, as it is written."""
-
-    dimension: Dimension
-    text: str
-
-    def describe_dimension(self, name: str) -> str:
-        """Describe the dimension in words."""
-        return f"{name} = {self.text} is {describe(self.dimension)}"
-
-
-class DependentError(Finding):
-    """A value on which this one depends is in error; that error is reported, and this one is not."""
-
-    def __init__(self) -> None:
-        super().__init__("follows", "depends on a value with an error", "correct that error first")
 
 
 def compile_expression(text: str, scope: Scope) -> Expression:
@@ -129,12 +73,6 @@ def compile_expression(text: str, scope: Scope) -> Expression:
         raise Finding(finding.code, f"'{text.strip()}' {finding.message}", hint) from None
 
 
-def find_dimension(scope: Scope, name: str) -> Dimension | None:
-    """Return the dimension of a parameter, if it has one."""
-    parameter = scope.given.get(name)
-    return parameter.dimension if parameter is not None else None
-
-
 def require_length(text: str) -> None:
     """Raise Finding [expression-limit] for a text too long to be an expression, or a number with a unit."""
     if len(text) > MAX_LENGTH:
@@ -144,25 +82,17 @@ def require_length(text: str) -> None:
         )
 
 
-def describe_dimensions(text: str, scope: Scope) -> str | None:
-    """Describe the dimensions of the parameters in a text, as a hint."""
-    names = dict.fromkeys(found[0] for found in re.finditer(r"[^\W\d]\w*", text) if found[0] in scope.given)
-    return ", ".join(scope.given[name].describe_dimension(name) for name in names) or None
-
-
 def too_deep_finding() -> Finding:
     """Make the error of an expression with too many nested parentheses."""
     message = f"an expression nested more than {MAX_DEPTH} levels deep"
     return Finding("expression-limit", message, "define its inner parts under parameters, or simplify it")
 
 
-class _Parser:
+class _Parser(TokenReader):
     """Parses one text."""
 
     def __init__(self, text: str, scope: Scope) -> None:
-        self.text, self.scope = text, scope
-        self.tokens, self.kinds, self.words = tokenize(text)
-        self.position = 0
+        super().__init__(text, scope)
         self.depth = 0
         self.codegen = CodeGenerator(strict=scope.with_units)
 
@@ -173,104 +103,6 @@ class _Parser:
         if self.position < len(self.tokens):
             raise self.unexpected_token_error()
         return self.codegen.make_expression(self.text, part)
-
-    # tokens
-
-    @property
-    def token(self) -> str:
-        """The next token; empty at the end."""
-        return self.words[self.position]
-
-    @property
-    def kind(self) -> str:
-        return self.kinds[self.position]
-
-    def take_token(self, token: str) -> bool:
-        if self.words[self.position] == token:
-            self.position += 1
-            return True
-        return False
-
-    def expect_token(self, token: str, purpose: str) -> None:
-        if not self.take_token(token):
-            found = f", found '{self.token}'" if self.token else ""
-            hint = f"put '{token}' before it" if found else "inside { } and [ ] an expression with a comma needs quotes"
-            raise self.syntax_error(f"expected '{token}' {purpose}{found}", hint)
-
-    def syntax_error(self, message: str, hint: str) -> Finding:
-        place = (
-            self.tokens[self.position][2] - len(self.token) + 1
-            if self.position < len(self.tokens)
-            else len(self.text) + 1
-        )
-        return Finding("expression-syntax", f"'{self.text.strip()}' at character {place}: {message}", hint)
-
-    def unexpected_token_error(self) -> Finding:
-        """Make the error of a token that does not belong here, with a hint for what was probably meant."""
-        hints = {
-            "^": "write ** for a power", "%": "write x - n*y; there is no remainder operator", "//": "write /",
-            "&&": "write and", "||": "write or", "&": "write and", "|": "write or", "!": "write not",
-            "=": "compare with > or <, or with == in a choice",
-            ":": "for cases write a if c else b", "?": "for cases write a if c else b",
-            "×": "write *", "·": "write *", "÷": "write /", "−": "write a plain minus sign -",
-        }  # fmt: skip
-        if not self.token:
-            return self.syntax_error("it ends too early", "a value is missing, e.g. 2*L or 5*sin(t)")
-        hint = hints.get(self.token)
-        if self.token == "%" and self.position == len(self.tokens) - 1:
-            hint = "write 0.5 for 50 %"
-        if hint is None and self.kind == "name" and self.position and self.tokens[self.position - 1][0] != "number":
-            hint = self.suggest_product()
-        if (
-            hint is None
-            and self.token not in WORDS
-            and self.kind in ("name", "number")
-            and self.position
-            and self.tokens[self.position - 1][0] in ("name", "number")
-        ):
-            before = self.tokens[self.position - 1][1]
-            known = self.token in self.scope.parameters or self.token in RESERVED
-            hint = (
-                None if known else si_expression_hint(before, self.token)
-            ) or f"for a product write {before}*{self.token}"
-        if hint is None:
-            hint = self.suggest_product() if self.position else None
-        if hint is None and self.token == ",":
-            hint = self.suggest_decimal_point(self.position)
-        if hint is None and self.token == "if":
-            hint = "for cases write a if c else b"
-        if hint is None and self.token == "[":
-            hint = "put points in a table: tables: {NAME: {x: [0, 1], y: [5, 7]}}, and write table(NAME, x) here"
-        if hint is None and self.token == "." and self.position and self.tokens[self.position - 1][1] == ")":
-            hint = "only joints have coordinates: shaft.angle, guide.travel"
-        plain = "an expression consists of numbers, names, + - * / ** and ( )"
-        return self.syntax_error(f"'{self.token}' is not expected here", hint or plain)
-
-    def suggest_product(self) -> str | None:
-        """Make a hint for 2(t + 1), and for a unit after an expression."""
-        kind, before, _ = self.tokens[self.position - 1]
-        if self.token == "(" and (kind == "number" or before == ")"):
-            return f"for a product write {before}*("
-        if before in (")", "t") and self.kind == "name" and si_expression_hint("", self.token) is not None:
-            return f"an expression is in SI units: leave out {self.token}"
-        return None
-
-    def suggest_decimal_point(self, comma: int) -> str | None:
-        """Make a hint for 1,5: the comma stands right between two numbers."""
-        around = self.tokens[max(comma - 1, 0) : comma + 2]
-        if [kind for kind, _, _ in around] != ["number", "mark", "number"]:
-            return None
-        (_, whole, _), (_, _, end), (_, part, last) = around
-        if last - len(part) != end or not part.isdigit():
-            return None
-        return f"use a decimal point: {whole}.{part}"
-
-    def text_since(self, begin: int) -> str:
-        """Return the text from token number `begin` to the last one taken."""
-        first = self.tokens[begin]
-        return self.text[first[2] - len(first[1]) : self.tokens[self.position - 1][2]]
-
-    # the grammar
 
     def parse_expression(self) -> Part:
         """Parse a value, perhaps by cases."""
@@ -451,7 +283,7 @@ class _Parser:
         if name in self.scope.tables:
             raise Finding("unknown-name", f"'{name}' is a table, not a function", f"write table({name}, ...)")
         if name not in ARITY:
-            raise self.unknown_name_finding(name, "function")
+            raise unknown_name_finding(self.scope, name, "function")
         if name == "table":
             return self.parse_table()
         parts: list[Part] = []
@@ -576,22 +408,4 @@ class _Parser:
         if name in ARITY:
             arguments = "a, b" if ARITY[name][0] > 1 else "t"
             raise Finding("function-arguments", f"{name} is a function", f"write {name}(...), e.g. {name}({arguments})")
-        raise self.unknown_name_finding(name, "parameter")
-
-    def unknown_name_finding(self, name: str, kind: str) -> Finding:
-        if name in OTHER_NAMES:
-            return Finding("unknown-name", f"'{name}' is not a {kind}", f"write {OTHER_NAMES[name]}")
-        if kind == "parameter" and name in self.scope.joints:
-            words = COORDINATES_BY_TYPE.get(self.scope.joints[name])
-            hint = f"write {name}.{words[0]} or {name}.{words[1]}" if words else NO_COORDINATE_HINT
-            return Finding("unknown-name", f"'{name}' is a joint, not a number", hint)
-        known = (self.scope.parameters, RESERVED) if kind == "parameter" else (ARITY,)
-        message, suggestion = f"'{name}' is not a {kind}", find_similar(name, *known)
-        is_near = suggestion is not None and suggestion.lower() == name.lower()
-        if not is_near and kind == "parameter" and (unit := si_expression_hint("", name)) is not None:
-            return Finding("unknown-name", message, f"write e.g. 20 {name}" if self.scope.with_units else unit)
-        if kind == "parameter" and self.scope.own and suggestion is None:
-            return Finding("unknown-name", message, f"quantities of the load itself: {', '.join(self.scope.own)}")
-        listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
-        hint = f"did you mean {suggestion}?" if suggestion else suggest(name, listed, f"{kind}s")
-        return Finding("unknown-name", message, hint)
+        raise unknown_name_finding(self.scope, name, "parameter")

@@ -17,8 +17,8 @@ from heuncli.base.errors import Finding
 from heuncli.base.records import record, replace
 from heuncli.base.spelling import spend_effort, suggest
 from heuncli.base.units import is_in_range
-from heuncli.scene.expressions.grammar import NO_NAMES
 from heuncli.scene.expressions.programs import Expression, TableFunction
+from heuncli.scene.expressions.scope import NO_NAMES
 from heuncli.scene.file_format.entries import Entry, OneOf, Preprocessor, Tag
 from heuncli.scene.file_format.foreign_words import FORM_HINTS
 from heuncli.scene.file_format.labels import MAX_TEXT, check_plain_text

@@ -26,110 +26,38 @@ from heuncli.scene.file_format.fields import (
     AreaMoment,
     BodyOrEnd,
     Count,
-    Damping,
     Direction,
     Either,
-    EitherInTime,
     Expected,
-    ForceInTime,
     FormatVersion,
     Impulse,
     Inertia,
     Length,
     LengthInTime,
     LengthLimits,
-    LineForceInTime,
     Mass,
-    MomentInTime,
     Number,
-    OwnDamperForce,
-    OwnDamperTorque,
-    OwnSpringForce,
-    OwnTurnTorque,
     PartList,
     PointOrName,
     Position,
     Pressure,
     Rate,
     RateInTime,
-    Stiffness,
     StrikeInTime,
     Switch,
     Tensor,
     Text,
     Time,
     TruthInTime,
-    TurningDamping,
-    TurningStiffness,
     Velocity,
     VelocityInTime,
 )
 from heuncli.scene.file_format.foreign_words import AMBIGUOUS_WORDS
 from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry, RollingEntry
-from heuncli.scene.file_format.format_joints import (
-    JOINTS as JOINTS,
-)
-from heuncli.scene.file_format.format_joints import (
-    AnyJoint as AnyJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    BallJoint as BallJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    Bearing as Bearing,
-)
-from heuncli.scene.file_format.format_joints import (
-    BearingEntry as BearingEntry,
-)
-from heuncli.scene.file_format.format_joints import BushingEntry, JointLoadEntry, MotorEntry, PairEntry
-from heuncli.scene.file_format.format_joints import (
-    ConstantVelocityJoint as ConstantVelocityJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    CurveJoint as CurveJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    CylinderJoint as CylinderJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    JointEntry as JointEntry,
-)
-from heuncli.scene.file_format.format_joints import (
-    LineJoint as LineJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    PinJoint as PinJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    PlaneJoint as PlaneJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    RodJoint as RodJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    SlideJoint as SlideJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    Sliding as Sliding,
-)
-from heuncli.scene.file_format.format_joints import (
-    StiffnessParts as StiffnessParts,
-)
-from heuncli.scene.file_format.format_joints import (
-    Turning as Turning,
-)
-from heuncli.scene.file_format.format_joints import (
-    TurningAndSliding as TurningAndSliding,
-)
-from heuncli.scene.file_format.format_joints import (
-    UniversalJoint as UniversalJoint,
-)
-from heuncli.scene.file_format.format_joints import (
-    WeldJoint as WeldJoint,
-)
-from heuncli.scene.file_format.format_shapes import Orientation, ShapeEntry
+from heuncli.scene.file_format.format_joints import JOINTS, JointEntry
+from heuncli.scene.file_format.format_loads import LOADS, LoadEntry
+from heuncli.scene.file_format.format_shapes import Frame, Orientation, ShapeEntry
 
-Frame = Literal["world", "body"]
 Report = Literal[
     "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"
 ]  # fmt: skip
@@ -210,104 +138,6 @@ class DriveEntry(Entry):
     rate: RateInTime | None = None
     speed: VelocityInTime | None = None
     zero: Literal["assembled"] | None = None
-
-
-class ForceEntry(Entry):
-    type: Literal["force"]
-    on: AnEnd
-    vector: tuple[ForceInTime, ForceInTime, ForceInTime]
-    frame: Frame = "world"
-
-
-class CoupleEntry(Entry):
-    type: Literal["couple"]
-    on: BodyOrEnd
-    vector: tuple[MomentInTime, MomentInTime, MomentInTime]
-    frame: Frame = "world"
-
-
-class TorqueEntry(JointLoadEntry):
-    type: Literal["torque"]
-    value: EitherInTime
-
-
-class ActuatorEntry(PairEntry):
-    type: Literal["actuator"]
-    value: ForceInTime
-
-
-class SpringEntry(PairEntry):
-    """A spring by its numbers, or by a law."""
-
-    type: Literal["spring"]
-    stiffness: Stiffness | None = None
-    length: Length | None = None
-    damping: Damping | None = None
-    force: OwnSpringForce | None = None
-
-
-class TurnSpringEntry(JointLoadEntry):
-    type: Literal["turn_spring"]
-    stiffness: TurningStiffness | None = None
-    angle: Angle | None = None
-    damping: TurningDamping | None = None
-    torque: OwnTurnTorque | None = None
-
-
-class DistributedEntry(Entry):
-    type: Literal["distributed"]
-    on: str
-    from_: PointOrName = key(alias="from")
-    to: PointOrName
-    vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime]
-    to_vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime] | None = None
-    frame: Frame = "world"
-
-
-class DamperEntry(JointLoadEntry):
-    type: Literal["damper"]
-    coefficient: Either | None = None
-    sliding: Damping | None = None
-    torque: OwnDamperTorque | None = None
-    force: OwnDamperForce | None = None
-
-
-class FrictionEntry(JointLoadEntry):
-    type: Literal["friction"]
-    torque: MomentInTime | None = None
-    force: ForceInTime | None = None
-    coefficient: Number | None = None
-    radius: Length | None = None
-    length: Length | None = None
-    speed: Either
-
-
-LoadEntry = (
-    ForceEntry
-    | CoupleEntry
-    | TorqueEntry
-    | ActuatorEntry
-    | SpringEntry
-    | TurnSpringEntry
-    | DistributedEntry
-    | DamperEntry
-    | FrictionEntry
-    | MotorEntry
-    | BushingEntry
-)
-LOADS: dict[str, type[LoadEntry]] = {
-    "force": ForceEntry,
-    "couple": CoupleEntry,
-    "torque": TorqueEntry,
-    "actuator": ActuatorEntry,
-    "spring": SpringEntry,
-    "turn_spring": TurnSpringEntry,
-    "distributed": DistributedEntry,
-    "damper": DamperEntry,
-    "friction": FrictionEntry,
-    "motor": MotorEntry,
-    "bushing": BushingEntry,
-}
 
 
 class ImpulseEntry(Entry):
@@ -404,7 +234,7 @@ class TableEntry(Entry):
 
 
 class ResultConditionEntry(Entry):
-    """A condition on a number of the results."""
+    """A condition that compares a number of the results with a bound."""
 
     of: str
     below: Either | None = None

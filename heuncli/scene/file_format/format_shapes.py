@@ -17,9 +17,11 @@ from heuncli.scene.file_format.fields import (
     Position,
 )
 
+Frame = Literal["world", "body"]
+
 
 class Orientation(Entry):
-    """An attitude, in one of its forms."""
+    """An orientation in one of its five forms."""
 
     axis: Direction | None = None
     angle: Angle | None = None

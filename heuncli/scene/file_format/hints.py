@@ -83,7 +83,7 @@ def misplaced_key_hint(key: str, known_keys: Collection[str]) -> str | None:
 
 
 def misplaced_word_hint(word: str) -> str | None:
-    """Return a hint on where or how the format expresses a word, if not where it was written."""
+    """Return a hint where a word belongs in the format, if it was written in the wrong place."""
     word = word.lower()
     return MISPLACED_KEYS.get(word) or (MISPLACED_KEYS["stops"] if KEY_WORDS.get(word) == "stops" else None)
 

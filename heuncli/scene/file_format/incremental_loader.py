@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from heuncli.base.errors import SourceLocation
 from heuncli.base.records import replace
-from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
+from heuncli.scene.expressions.scope import DimensionedParameter
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.document import DocumentReader
 from heuncli.scene.file_format.entries import Entry

@@ -25,6 +25,8 @@ from pydantic.json_schema import models_json_schema
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
+from heuncli.scene.file_format import format_joints as fj
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import Entry, Field, cached_by_model, fields_of
 from heuncli.scene.file_format.fields import TEXT_SCHEMA
@@ -42,12 +44,12 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     "Shapes": fs.SHAPES,
     "Orientation": fs.Orientation,
     "Piece": f.PieceEntry,
-    "Joints": f.JOINTS,
-    "Bearing of joints": f.BearingEntry,
-    "Initial": {"pin": f.Turning, "slide": f.Sliding, "cylinder": f.TurningAndSliding},
-    "Stiffness of joints": f.StiffnessParts,
+    "Joints": fj.JOINTS,
+    "Bearing of joints": fj.BearingEntry,
+    "Initial": {"pin": fj.Turning, "slide": fj.Sliding, "cylinder": fj.TurningAndSliding},
+    "Stiffness of joints": fj.StiffnessParts,
     "Drives": f.DriveEntry,
-    **f.LOADS,
+    **fl.LOADS,
     "Impulses": f.ImpulseEntry,
     "Stops": f.StopEntry,
     "Latches": f.LatchEntry,
@@ -253,7 +255,7 @@ def _accept_type_aliases(definitions: dict[str, Any]) -> None:
 
 def _make_planar_directions_optional(definitions: dict[str, Any]) -> Iterator[tuple[str, list[str]]]:
     """Make those directions of joints optional that a planar scene implies; yield them by type of joint."""
-    for kind, model in f.JOINTS.items():
+    for kind, model in fj.JOINTS.items():
         block = definitions[model.__name__]
         required = [key for key in block["required"] if key in PLANAR_DIRECTIONS]
         block["required"] = [key for key in block["required"] if key not in PLANAR_DIRECTIONS]

@@ -36,7 +36,7 @@ NO_LABELS: Mapping[str, str] = {}
 
 
 class LabelError(NamedTuple):
-    """What is wrong with a label, and its path in the spec."""
+    """A problem of a label, with its path in the spec."""
 
     path: Path_
     finding: Finding

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.records import replace
 from heuncli.base.spelling import reset_effort, suggest
-from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
+from heuncli.scene.expressions.scope import DimensionedParameter
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.document import DocumentReader
 from heuncli.scene.file_format.fields import ReadContext

@@ -19,7 +19,7 @@ GIVEN_FIELDS = "="  # the fields that the spec gave
 
 
 class Lookup(NamedTuple):
-    """A key that was looked up, and the name of the mapping; KEYS: which keys there are, in which order."""
+    """The record of one lookup: the mapping's name and the key; KEYS: which keys there are, in which order."""
 
     container: str
     key: str

@@ -16,7 +16,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.base.spelling import suggest
 from heuncli.results.results_schema import parse_index
-from heuncli.scene.expressions.grammar import DimensionedParameter
+from heuncli.scene.expressions.scope import DimensionedParameter
 from heuncli.scene.file_format.names import NAMED_BLOCKS, as_mapping
 from heuncli.scene.file_format.quantity import DependentError, ParameterValue, Scope, read_function
 from heuncli.scene.file_format.source import Path_, SourceFile, parse_plain_scalar, parse_source

@@ -14,8 +14,8 @@ from heuncli.base.errors import SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.scene.expressions.codegen import CalculationCache
-from heuncli.scene.expressions.grammar import DimensionedParameter
 from heuncli.scene.expressions.programs import TableFunction
+from heuncli.scene.expressions.scope import DimensionedParameter
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.document import DocumentReader
 from heuncli.scene.file_format.entries import Entry
@@ -37,7 +37,7 @@ MAX_PLANS = 1024  # cached plans, by the set of differing lookups
 
 
 class EntryRecord(NamedTuple):
-    """An entry, the data it was read from, and the lookups made for it."""
+    """An entry with the data it was read from and the lookups that reading made."""
 
     entry: Any
     data: Any
@@ -79,7 +79,7 @@ class VerdictPlan(NamedTuple):
 
 
 class MeaningRecord(NamedTuple):
-    """The meaning of a part of the document, and the lookups made for it."""
+    """A resolved part of the document with the lookups that resolving it made."""
 
     value: Any
     lookups: frozenset[Lookup]

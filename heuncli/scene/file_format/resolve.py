@@ -11,9 +11,12 @@ from typing import TYPE_CHECKING, Any, Literal
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.records import record
-from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.programs import Expression, TableFunction
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_joints as fj
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format import loads
 from heuncli.scene.file_format import models as m
@@ -224,7 +227,7 @@ class Resolver:
             shapes=tuple(self.shape(shape) for shape in body.shapes) if body.shapes is not None else None,
         )
 
-    def joint(self, name: str, joint: f.JointEntry) -> m.Joint[str, m.Vec]:
+    def joint(self, name: str, joint: fj.JointEntry) -> m.Joint[str, m.Vec]:
         """Resolve a joint: its ends to bodies and points; keys that its kind does not have to their defaults."""
         a, b = self.end(joint.from_), self.end(joint.to)
         axis = getattr(joint, "axis", None) or getattr(joint, "normal", None) or m.Z
@@ -252,11 +255,11 @@ class Resolver:
             bearing=bearing_area(getattr(joint, "bearing", None)),
             p_name=a.name,
             q_name=b.name,
-            path=self.make_path(joint) if isinstance(joint, f.CurveJoint) else None,
+            path=self.make_path(joint) if isinstance(joint, fj.CurveJoint) else None,
             one_sided=getattr(joint, "one_sided", False),
         )
 
-    def make_path(self, joint: f.CurveJoint) -> Path:
+    def make_path(self, joint: fj.CurveJoint) -> Path:
         """Return the path of a curve joint's point, or of its roller's centre next to it."""
         from heuncli.scene.expressions.paths import (  # loads NumPy, which other specs do not need
             make_path,
@@ -274,7 +277,7 @@ class Resolver:
         value = self.attach_location(driven.value, f"drives.{name}.{driven.key}")
         return m.Drive(name, drive.joint, driven.quantity, value, drive.zero == "assembled", driven.by_rate)
 
-    def force(self, name: str, load: f.LoadEntry) -> m.Force:
+    def force(self, name: str, load: fl.LoadEntry) -> m.Force:
         return resolve_load(self, name, load)
 
     def impulse(self, name: str, blow: f.ImpulseEntry) -> m.AppliedImpulse[str, m.Vec]:
@@ -383,12 +386,12 @@ def make_framed_vector(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) 
     return m.FramedVector(value, False)
 
 
-def bearing_area(bearing: f.BearingEntry | None) -> float | None:
+def bearing_area(bearing: fj.BearingEntry | None) -> float | None:
     """Return diameter times width of a bearing [m^2], the area of the mean pressure."""
     return bearing.diameter * bearing.width if bearing is not None else None
 
 
-def expand_stiffness(value: float | f.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | None:
+def expand_stiffness(value: float | fj.StiffnessParts | None) -> tuple[m.Vec, m.Vec] | None:
     """Return the stiffness of force and of moment along the three axes; a single number is that of force in all
     directions.
     """

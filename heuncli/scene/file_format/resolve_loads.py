@@ -17,8 +17,7 @@ from heuncli.scene.expressions.composition import (
     scale_coordinate,
 )
 from heuncli.scene.expressions.programs import LOADS, OWN, Expression
-from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import loads
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.resolve_couplings import ReferenceResolver
@@ -26,48 +25,48 @@ from heuncli.scene.file_format.rotations import IDENTITY
 from heuncli.scene.file_format.semantics import find_point, make_torque_curve, orientation_matrix
 
 
-def resolve_load(resolver: ReferenceResolver, name: str, load: f.LoadEntry) -> m.Force:
+def resolve_load(resolver: ReferenceResolver, name: str, load: fl.LoadEntry) -> m.Force:
     """Resolve an entry of `forces`; `name` gives the locations of its expressions."""
     resolved: m.Force = MEANINGS[load.type](resolver, name, load)
     return resolved
 
 
-def resolve_force(resolver: ReferenceResolver, name: str, load: f.ForceEntry) -> loads.PointForce:
+def resolve_force(resolver: ReferenceResolver, name: str, load: fl.ForceEntry) -> loads.PointForce:
     """Resolve a force at a point."""
     return loads.PointForce(resolver.end(load.on), resolver.attach_locations(load.vector, f"forces.{name}"), load.frame)
 
 
-def resolve_couple(resolver: ReferenceResolver, name: str, load: f.CoupleEntry) -> loads.Couple:
+def resolve_couple(resolver: ReferenceResolver, name: str, load: fl.CoupleEntry) -> loads.Couple:
     """Resolve a couple on a body."""
     on = resolver.end(load.on) if load.on.at is not None else None
     return loads.Couple(load.on.body, on, resolver.attach_locations(load.vector, f"forces.{name}"), load.frame)
 
 
-def resolve_torque(resolver: ReferenceResolver, name: str, load: f.TorqueEntry) -> loads.Torque:
+def resolve_torque(resolver: ReferenceResolver, name: str, load: fl.TorqueEntry) -> loads.Torque:
     """Resolve a torque about a pin's axis or a thrust along a slide's."""
     return loads.Torque(load.joint, resolver.attach_location(load.value, f"forces.{name}.value"))
 
 
-def resolve_actuator(resolver: ReferenceResolver, name: str, load: f.ActuatorEntry) -> loads.Actuator:
+def resolve_actuator(resolver: ReferenceResolver, name: str, load: fl.ActuatorEntry) -> loads.Actuator:
     """Resolve a given force between two points."""
     value = resolver.attach_location(load.value, f"forces.{name}.value")
     return loads.Actuator(resolver.end(load.from_), resolver.end(load.to), value)
 
 
-def resolve_spring(resolver: ReferenceResolver, name: str, load: f.SpringEntry) -> loads.Spring:
+def resolve_spring(resolver: ReferenceResolver, name: str, load: fl.SpringEntry) -> loads.Spring:
     """Resolve a spring between two points, by its numbers or by its law."""
     law = bind_law(resolver, load.force, f"forces.{name}.force", f"{LOADS}.{name}")
     numbers = load.stiffness or 0.0, load.length or 0.0, load.damping or 0.0
     return loads.Spring(resolver.end(load.from_), resolver.end(load.to), *numbers, law)
 
 
-def resolve_turn_spring(resolver: ReferenceResolver, name: str, load: f.TurnSpringEntry) -> loads.TurnSpring:
+def resolve_turn_spring(resolver: ReferenceResolver, name: str, load: fl.TurnSpringEntry) -> loads.TurnSpring:
     """Resolve a spring in a joint, by its numbers or by its law."""
     law = bind_law(resolver, load.torque, f"forces.{name}.torque", load.joint)
     return loads.TurnSpring(load.joint, load.stiffness or 0.0, load.angle or 0.0, load.damping or 0.0, law)
 
 
-def resolve_damper(resolver: ReferenceResolver, name: str, load: f.DamperEntry) -> loads.Damper:
+def resolve_damper(resolver: ReferenceResolver, name: str, load: fl.DamperEntry) -> loads.Damper:
     """Resolve a damper in a joint, by its coefficients or by its law."""
     coefficient = constant_value(load.coefficient) if load.coefficient is not None else 0.0
     torque, force = (
@@ -76,7 +75,7 @@ def resolve_damper(resolver: ReferenceResolver, name: str, load: f.DamperEntry) 
     return loads.Damper(load.joint, coefficient, load.sliding, torque or force)
 
 
-def resolve_friction(resolver: ReferenceResolver, name: str, load: f.FrictionEntry) -> loads.Friction:
+def resolve_friction(resolver: ReferenceResolver, name: str, load: fl.FrictionEntry) -> loads.Friction:
     """Resolve friction in a joint."""
     torque, force = (
         resolver.attach_location(value, f"forces.{name}.{k}") if (value := getattr(load, k)) is not None else None
@@ -86,7 +85,7 @@ def resolve_friction(resolver: ReferenceResolver, name: str, load: f.FrictionEnt
     return loads.Friction(load.joint, torque, force, speed, load.coefficient, load.radius, load.length)
 
 
-def resolve_motor(resolver: ReferenceResolver, name: str, load: fe.MotorEntry) -> loads.Torque:
+def resolve_motor(resolver: ReferenceResolver, name: str, load: fl.MotorEntry) -> loads.Torque:
     """Resolve a motor: ratio * value * curve(ratio * rate), within the limit of the motor itself."""
     path = f"forces.{name}"
     curve = resolver.attach_location(make_torque_curve(load), f"{path}.curve")
@@ -101,7 +100,7 @@ def resolve_motor(resolver: ReferenceResolver, name: str, load: fe.MotorEntry) -
     return loads.Torque(load.joint, bound, load.type)
 
 
-def resolve_distributed(resolver: ReferenceResolver, name: str, load: f.DistributedEntry) -> loads.Distributed:
+def resolve_distributed(resolver: ReferenceResolver, name: str, load: fl.DistributedEntry) -> loads.Distributed:
     """Resolve a load along a line on a body."""
     body, path = resolver.document.bodies[load.on], f"forces.{name}"
     start, end = find_point(body, load.from_), find_point(body, load.to)
@@ -112,7 +111,7 @@ def resolve_distributed(resolver: ReferenceResolver, name: str, load: f.Distribu
     return loads.Distributed(load.on, start, end, vector, to_vector, load.frame)
 
 
-def resolve_bushing(resolver: ReferenceResolver, name: str, load: fe.BushingEntry) -> loads.Bushing:
+def resolve_bushing(resolver: ReferenceResolver, name: str, load: fl.BushingEntry) -> loads.Bushing:
     """Resolve a bushing between two bodies."""
     rotation = orientation_matrix(load.orientation) if load.orientation is not None else IDENTITY
     to_rotation = orientation_matrix(load.to_orientation) if load.to_orientation is not None else rotation
@@ -184,7 +183,7 @@ def expand_to_axes(value: Any) -> tuple[Any, Any, Any]:
     """Expand a value to three axes: one value for all, a list, or values by axis name; None is zero."""
     if value is None:
         return m.ZERO
-    if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
+    if isinstance(value, fl.ShiftLaws | fl.TurnLaws):
         return value.x, value.y, value.z
     return value if isinstance(value, tuple) else (value, value, value)
 

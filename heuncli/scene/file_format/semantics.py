@@ -21,7 +21,7 @@ from heuncli.scene.expressions.composition import add_expressions, multiply_expr
 from heuncli.scene.expressions.programs import OWN, VAR, Expression
 from heuncli.scene.file_format import couplings as c
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format import loads, rotations
 from heuncli.scene.file_format import models as m
@@ -211,7 +211,7 @@ def run_duration(analysis: f.AnalysisEntry) -> float:
 
 
 def find_reduction_end(reduce_to: str | EndEntry) -> EndEntry | None:
-    """Return the point that a section is reduced to, if it is one."""
+    """Return the point about which a section's moments are taken; None for a word such as `centroid`."""
     if isinstance(reduce_to, EndEntry):
         return reduce_to
     body, dot, point = reduce_to.partition(".")
@@ -228,7 +228,7 @@ def find_point(body: f.BodyEntry, point: object) -> m.Vec | None:
 RATE_EXPRESSION = Expression(source="rate", constant=None, uses=((OWN, "rate"),), code=(VAR, 1))
 
 
-def make_torque_curve(motor: fe.MotorEntry) -> Expression:
+def make_torque_curve(motor: fl.MotorEntry) -> Expression:
     """Return the motor's torque over its own speed: the given curve, or the line from stall to no-load speed."""
     if motor.curve is not None:
         return motor.curve
@@ -254,10 +254,10 @@ class Rotors(NamedTuple):
     locations: dict[str, SourceLocation]
 
 
-def iter_rotor_motors(document: f.Document) -> Iterator[tuple[str, fe.MotorEntry]]:
+def iter_rotor_motors(document: f.Document) -> Iterator[tuple[str, fl.MotorEntry]]:
     """Yield the motors of a document that have a rotor, with their names."""
     for name, load in document.forces.items():
-        if isinstance(load, fe.MotorEntry) and load.rotor is not None:
+        if isinstance(load, fl.MotorEntry) and load.rotor is not None:
             yield name, load
 
 
@@ -281,7 +281,7 @@ def make_rotors(
     return found
 
 
-def make_disc(name: str, rotor: fe.RotorEntry, axis: m.Vec) -> m.Body[m.Vec, loads.Matrix]:
+def make_disc(name: str, rotor: fl.RotorEntry, axis: m.Vec) -> m.Body[m.Vec, loads.Matrix]:
     """Make a thin disc about an axis; its inertia about a diameter is half of that about the axis."""
     n = unit_vector(axis)
     rows: Any = tuple(tuple(0.5 * rotor.inertia * ((i == k) + n[i] * n[k]) for k in range(3)) for i in range(3))

@@ -44,7 +44,7 @@ EXAMPLE_UNITS = {  # one meaning of each ambiguous unit
 
 @record
 class TableProblem:
-    """A finding at a key of the entry, or at a location in its file; a warning does not prevent the table's use."""
+    """A problem of a table, at a key of its entry or a place in its file; a warning does not prevent its use."""
 
     keys: tuple[str | int, ...]
     finding: Finding

@@ -288,7 +288,7 @@ def _is_pierced(faces: TriangleFaces, a: IndexArray, b: IndexArray, tolerance: f
 
 
 def _is_joined(faces: TriangleFaces, a: IndexArray, corner: IndexArray, b: IndexArray) -> Mask:
-    """Return whether a corner of a is one with any corner of b, or joined to it."""
+    """Return whether any corner of a coincides with, or is joined to, a corner of b."""
     return np.asarray((faces.joined_corners[corner, a] == faces.joined_corners.take(b, axis=1)).any(axis=0))
 
 

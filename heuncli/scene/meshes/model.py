@@ -46,7 +46,7 @@ class TriangleMesh:
 
 @record
 class TriangleSoup:
-    """Triangles as a file has them, each with corners of its own or sharing those of a list: (n, 3) and (m, 3)."""
+    """The triangles of a mesh file, as indices (m, 3) into corners (n, 3), which need not be shared."""
 
     corners: Array
     triangles: IndexArray

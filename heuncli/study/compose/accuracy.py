@@ -126,9 +126,7 @@ NumericLeaves = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]
 
 
 def require_finite(results: Results) -> Results:
-    """Return the results if all that is not indeterminate in them is finite. Raises SolveError with the first path that
-    is not.
-    """
+    """Return the results. Raises SolveError with the first path whose number is neither finite nor indeterminate."""
     unknown = results.accuracy.get("unknown", ())
     is_known = ~np.isin(results.time, unknown) if len(unknown) else np.ones(len(results.time), dtype=bool)
     blocks = vars(results)

@@ -257,7 +257,7 @@ class Recovery:
 
     @cached_property
     def magnitudes(self) -> Magnitudes:
-        """The sizes of the terms that the numbers are summed from."""
+        """The magnitudes of the terms that results are sums of; rounding errors follow from these."""
         scene = self.setup.scene
         energy = self.energy if ENERGY_REPORTS & self.setup.selection.reports else {}
         return find_magnitudes(scene.mechanism, self.states, self.inertia, self.actions, energy, scene.layout.size)

@@ -49,7 +49,7 @@ def require_positive(option: str, value: float | None) -> float | None:
 
 
 def require_tolerance(value: float | None, dashes: str = "--") -> float | None:
-    """Return the tolerance if it is one that can be met, by the same rule as in a spec, or None. Raises UsageError."""
+    """Return the tolerance. Raises UsageError if it is out of the range that specs accept."""
     problem = find_tolerance_problem(value) if value is not None else None
     if problem is not None:
         raise UsageError(Problem("bad-option", f"{dashes}{problem.message}", hint=problem.hint))

@@ -180,7 +180,7 @@ def list_motions(motions: tuple[NamedMotion, ...]) -> str:
 
 
 def describe_motion(motion: NamedMotion) -> str:
-    """Describe a motion by what moves in it, and by how much relative to the first."""
+    """Describe a motion: what moves, and by how much relative to the first."""
     if len(motion.names) == 1:
         return motion.names[0]
     units = motion.units if len(set(motion.units)) > 1 else ("",) * len(motion.units)

@@ -88,7 +88,7 @@ LABELLED_BLOCKS = {
     "latches": ("stops",), "system_vector": ("bodies",),
 }  # fmt: skip
 MAX_NAME_WORDS = 3  # of a name with dots: drives.motor, crank.pin
-SIDES = {"before": ", before the load", "beyond": ", beyond the load"}
+SIDE_PHRASES = {"before": ", before the load", "beyond": ", beyond the load"}
 UNITLESS = frozenset({"", "1"})
 
 
@@ -245,7 +245,7 @@ def _describe_cut(word: str, *, has_cuts: bool) -> str:
         text = f" at the {position['at'].lower()}"
     else:
         text = f" at {position['at']} {position['unit'] or 'm'}"
-    return text + SIDES.get(word.partition(":")[2], "")
+    return text + SIDE_PHRASES.get(word.partition(":")[2], "")
 
 
 def _describe_entry(path: str, labels: Labels) -> str:

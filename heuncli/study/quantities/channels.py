@@ -45,7 +45,7 @@ from heuncli.study.quantities.labels import Labels
 LENGTH = "length"  # the component that is a vector's magnitude
 POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length has no meaning
 NO_UNITS: Mapping[str, str] = MappingProxyType({})
-SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # as numbers, in CSV
+CSV_SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # opposite to the signs of cuts
 
 
 # Vector -> the symbol with which its components begin. Others keep their own name.
@@ -296,7 +296,7 @@ class _Walk(NamedTuple):
             elif row.shape == (CUT,) and np.ndim(value) == 1:  # in a search nodes may move with a load
                 yield self.make_cut_channel(keys, key, row.select_unit(), np.asarray(value, dtype=np.float64))
             elif key == "side" and any(value):
-                yield self.make_cut_channel(keys, key, "1", np.array([SIDES[side] for side in value]))
+                yield self.make_cut_channel(keys, key, "1", np.array([CSV_SIDES[side] for side in value]))
 
     def make_timed_channel(self, keys: tuple[str, ...], key: str, row: Quantity, value: Any, is_run: bool) -> Channel:
         """Make the channel of a quantity that changes over the instants."""

@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from heuncli.base.errors import Finding
+from heuncli.base.errors import Finding, Problem, UsageError
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.study.quantities import table_units
 
 DisplayUnit = tuple[str, float]  # a unit, and how many of it make one SI unit
 STRESS: Mapping[str, DisplayUnit] = MappingProxyType({"Pa": ("MPa", 1e-6)})
@@ -101,3 +102,13 @@ def spell_unit(word: str) -> str:
     for typed, written in (("**", "^"), ("*", "·"), (" ", "·"), ("^2", "²"), ("^3", "³")):
         word = word.replace(typed, written)
     return word
+
+
+def read_display_units(option: str, words: str | None) -> Units:
+    """Return the display units that replace SI units, from words such as `kN,mm`. Raises UsageError."""
+    if words is None:
+        return Units()
+    try:
+        return table_units.parse_units(words)
+    except Finding as finding:
+        raise UsageError(Problem("bad-option", f"{option} {words}: {finding.message}", hint=finding.hint)) from None

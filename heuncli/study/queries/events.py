@@ -186,7 +186,7 @@ class WatchedNumber(NamedTuple):
         return np.concatenate([self._sample_chunk(times[i : i + most]) for i in range(0, len(times), most)])
 
     def sample_column(self, times: Array) -> Array:
-        """Return the same as the only column of a search, (n, 1)."""
+        """Return the values as a search's single column, (n, 1)."""
         return self.sample(times)[:, None]
 
     def _sample_chunk(self, times: Array) -> Array:

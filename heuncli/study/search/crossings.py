@@ -120,7 +120,7 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
 
 
 def select_hidden(pool: Intervals) -> Intervals:
-    """Return the intervals at both ends of which zero is not passed, on the side that they are searched for."""
+    """Select the intervals at whose ends zero is not passed: a pair of roots may be hidden in them."""
     return pool.select((pool.f[:, 1] <= 0.0) & (pool.f[:, 2] <= 0.0))
 
 

@@ -17,9 +17,9 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
-from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts, list_attachment_points, list_distributed_loads
+from heuncli.loads.kinetostatics.cuts import Cuts, list_attachments, list_distributed_loads
 from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, find_peaks, make_cuts_at, make_stretch
-from heuncli.results.results import Array, Block, CutPosition, Extremes
+from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array, Block, CutPosition, Extremes
 from heuncli.results.results_schema import RESULTANTS
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
@@ -37,10 +37,9 @@ def replace_runs(setup: Setup, bent: bool) -> Setup:
     def whole(cuts: Cuts) -> Cuts | Stretch:
         if cuts.s is None or cuts.form is None:
             return cuts
-        points = [point for _, point in list_attachment_points(mechanism, cuts.body)]
-        return make_stretch(
-            cuts, points, [line for _, line in list_distributed_loads(mechanism, cuts.body)], min_halvings=halved
-        )
+        points = [attachment.place for attachment in list_attachments(mechanism, cuts.body)]
+        lines = [line.place for line in list_distributed_loads(mechanism, cuts.body)]
+        return make_stretch(cuts, points, lines, min_halvings=halved)
 
     return replace(setup, cuts=tuple(map(whole, setup.cuts)))
 
@@ -59,7 +58,7 @@ def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setu
 def cut_at_places(setup: Setup, name: str, places: Sequence[CutPosition]) -> Setup:
     """Return the setup with only one series of cuts, cut at these places, on the sides that they name."""
     run = next(cuts for cuts in setup.cuts if cuts.name == name)
-    side = np.array([{"before": BEFORE, "beyond": BEYOND}.get(place.side or "", 0.0) for place in places])
+    side = np.array([SIDE_SIGNS[place.side] for place in places])
     return replace(setup, cuts=(make_cuts_at(run, np.array([place.s for place in places]), side),))
 
 

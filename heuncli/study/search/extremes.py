@@ -156,7 +156,7 @@ def find_best(times: Array, values: Array, targets: Targets) -> Best:
 def find_intervals(
     times: Array, values: Array, targets: Targets, best: Best, sides: tuple[float, ...] = BOTH_SIDES
 ) -> Intervals:
-    """Return the intervals of the grid that promise more than the best on it, on these sides."""
+    """Return the grid intervals that may hold a higher value than the best sample, for each side."""
     heights = best.height + targets.min_gain(best.height)
     return find_intervals_above(times, values, targets, lambda b, c, target: heights[target], sides)
 

@@ -139,7 +139,7 @@ def concatenate_intervals(parts: Sequence[Intervals]) -> Intervals:
 
 
 def fill_missing(kappa_before: Array, kappa_after: Array) -> tuple[Array, Array]:
-    """Replace a bend that is nan, for want of a neighbour, by the other one; 0 where both are."""
+    """Replace an undefined bend (nan, at an end of the grid) by that of the other side; 0 where both are."""
     known = np.isfinite(kappa_before), np.isfinite(kappa_after)
     if known[0].all() and known[1].all():
         return kappa_before, kappa_after

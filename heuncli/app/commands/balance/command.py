@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from heuncli.analyses.balancing.study import balance
 from heuncli.app.cli.documents import emit_document
-from heuncli.app.cli.figure_files import require_save_form
+from heuncli.app.cli.figure_options import require_save_form
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.output import save

@@ -12,7 +12,7 @@ from heuncli.base.errors import Finding, Problem
 from heuncli.base.spelling import suggest
 from heuncli.base.units import LENGTH, RATE, TIME, Dimension
 from heuncli.results.results import Array
-from heuncli.scene.expressions.grammar import Scope
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.quantity import read_number
 

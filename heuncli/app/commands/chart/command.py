@@ -9,7 +9,7 @@ from heuncli.analyses.work_precision.study import chart
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.figure_files import require_save_form
+from heuncli.app.cli.figure_options import require_save_form
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.output import save

@@ -112,7 +112,7 @@ def group_runs(runs: Sequence[ChartRun]) -> Iterator[list[ChartRun]]:
 
 
 def format_title(name: str) -> str:
-    """Return the name of a method, and what it is."""
+    """Format a method's name with its description."""
     row = find_method(name)
     return name if row is None else f"{row.name}  order {row.order}, {row.kind}, {row.steps}: {row.purpose}"
 

@@ -17,10 +17,9 @@ from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.commands.check import goldens
 from heuncli.app.commands.check.check_result import FAILED, CheckResult
 from heuncli.app.commands.check.checking import CheckTask, check_spec
-from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs
+from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs, select_specs
 from heuncli.app.commands.check.page import CheckSummary, make_document, render_github
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
-from heuncli.app.commands.check.spec_selection import select_specs
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.text_safety import escape

@@ -1,4 +1,4 @@
-"""Find the specs in folders and their subfolders, each folder once. Impure: reads folders.
+"""Find the specs in folders and their subfolders, each folder once, or those that `-k` selects. Impure: reads folders.
 
 A link may lead from a folder to one of its parents, or to the same folder many times; so folders are identified by
 device and inode, not by path. A folder that cannot be read is reported in its place, and the others are still searched.
@@ -7,15 +7,19 @@ device and inode, not by path. A folder that cannot be read is reported in its p
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from heuncli.base.errors import Problem, SourceLocation
+from heuncli.app.cli.entry import UsageError
+from heuncli.base.errors import Finding, HeunError, Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.file_format.reading import STANDARD_INPUT
+from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
+from heuncli.scene.file_format.source import MAX_SIZE, read_source
 
 SPECS = frozenset({".yaml", ".yml"})
 SKIPPED_FOLDER = "broken"  # folders of deliberately invalid specs
+PLAIN_TITLE = re.compile(r"^title:[ \t]+(?![|>&*!\"'\[{])([^#\n]*)", re.MULTILINE)
 
 
 class FoundSpec(NamedTuple):
@@ -90,3 +94,28 @@ def make_unreadable_problem(path: str, error: OSError) -> Problem:
     hint = "check its permissions, or give the other folders; these are checked"
     message = f"the folder cannot be read: {error.strerror or error}"
     return Problem("unreadable", message, SourceLocation(path, 1, 1), hint)
+
+
+def select_specs(specs: Sequence[FoundSpec], text: str) -> list[FoundSpec]:
+    """Return the specs with the text in path or title. Raises UsageError if there is none."""
+    needle = text.casefold()
+    chosen = [one for one in specs if needle in one.path.casefold() or needle in read_title(one).casefold()]
+    if not chosen:
+        hint = "it is looked for in paths and titles, in capitals or not"
+        raise UsageError(Problem("nothing-to-check", f"-k {text}: none of {len(specs)} specs", hint=hint))
+    return chosen
+
+
+def read_title(one: FoundSpec) -> str:
+    """Return the title of a spec; empty if it has none or cannot be read, which the check reports later."""
+    if one.problem is not None or one.path == STANDARD_INPUT:
+        return ""
+    try:
+        text = read_bytes(one.path, MAX_SIZE).decode("utf-8", "replace")
+        if (plain := PLAIN_TITLE.search(text)) is not None:
+            return plain[1]
+        data = read_source(one.path, None).data if "title" in text else {}
+    except (Finding, HeunError):
+        return ""
+    title = data.get("title") if isinstance(data, dict) else None
+    return title if isinstance(title, str) else ""

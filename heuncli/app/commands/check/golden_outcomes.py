@@ -7,8 +7,7 @@ from typing import Any
 
 from heuncli.app.commands.check.check_result import GoldenUpdate
 from heuncli.app.commands.check.request import CheckRequest
-from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.change_words import describe_failure, format_value
+from heuncli.output.snapshots.change import Change, describe_failure, format_value
 from heuncli.output.snapshots.changes import EXTRA, MISSING, find_changes
 from heuncli.output.snapshots.golden_file import GoldenFile, RunSnapshot, format_golden_file
 from heuncli.output.snapshots.outcomes import GOLDEN, Outcome

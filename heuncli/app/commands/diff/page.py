@@ -7,8 +7,7 @@ from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputDocument, OutputTable, Part, Sentence, make_text_columns
-from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.change_words import format_difference, format_value
+from heuncli.output.snapshots.change import Change, format_difference, format_value
 from heuncli.output.snapshots.changes import EXTRA, MISSING, THROUGHOUT
 from heuncli.output.tables.plurals import format_count
 from heuncli.output.tables.workflow_lines import Annotation, iter_lines

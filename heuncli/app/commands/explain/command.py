@@ -7,12 +7,12 @@ import re
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.pager import write_paged
 from heuncli.app.cli.registry import find_command
-from heuncli.app.commands.explain.codes import parse_codes
 from heuncli.app.commands.explain.pages import (
     PAGES,
     find_section,
     list_sections,
     make_request,
+    parse_codes,
     read_page,
     read_sections,
     read_summary,
@@ -58,7 +58,7 @@ def explain_topic(topic: str) -> str:
     page = find_page(name)
     if page is not None and separator and (section := find_section(page, heading)) is not None:
         return section.text
-    from heuncli.app.commands.explain.word import explain_word
+    from heuncli.app.commands.explain.lookup import explain_word
 
     if (text := explain_word(topic)) is not None:
         return text
@@ -69,8 +69,7 @@ def explain_topic(topic: str) -> str:
 
 def _list_places(word: str) -> str:
     """List what to type to see the places that treat a word which is also an error code."""
-    from heuncli.app.commands.explain.lookup import find_places
-    from heuncli.app.commands.explain.word import list_requests
+    from heuncli.app.commands.explain.lookup import find_places, list_requests
 
     return list_requests(find_places(word))
 
@@ -95,7 +94,7 @@ def _explain_path(topic: str) -> str | None:
 
 
 def _make_unknown_section(page: str, heading: str) -> Problem:
-    """Describe a section that a page does not have."""
+    """Make the problem for a section that does not exist on the page."""
     names = [section.heading.lower() for section in read_sections(page)[1:]]
     near = find_similar(heading.lower(), names)
     known = f"its sections: {list_words(names)}"

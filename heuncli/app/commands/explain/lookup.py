@@ -7,7 +7,7 @@ then headings, then keys, types, results, units and options; last those that con
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from heuncli.app.commands.explain.pages import (
     PAGES,
@@ -17,6 +17,7 @@ from heuncli.app.commands.explain.pages import (
     read_page,
     read_sections,
 )
+from heuncli.app.commands.explain.paths import explain_path
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results_schema import NOT_YET, ROWS, is_share
 
@@ -26,6 +27,7 @@ LINK = re.compile(r"\[([^]]*)\]\((\w+)\.md(?:#([\w-]+))?\)")
 SUBJECTS, RESULTS, OPTIONS = "Subjects", "Paths", "Options"
 UNITS = "Units, functions, methods"
 MAX_MENTIONS = 3
+MAX_ALSO = 8
 
 
 class Place(NamedTuple):
@@ -186,3 +188,32 @@ def contains(text: str, word: str) -> bool:
     """Whether a text contains a word, or its plural, as a whole."""
     pattern = rf"(?<!\w){re.escape(word)}s?(?!\w)"
     return re.search(pattern, text, re.IGNORECASE) is not None
+
+
+def explain_word(word: str) -> str | None:
+    """Return the section that treats a word, and a list of the others; None if the word is unknown."""
+    places = find_places(word)
+    if not places:
+        return None
+    main, *others = places
+    end = "" if main.path else f"\nThis is from: {make_request(main.page)}\n"
+    return "".join(map(show_term, find_terms(word, main))) + read_place(main) + end + list_requests(others)
+
+
+def list_requests(places: Sequence[Place]) -> str:
+    """List what to type to see other places; nothing if there are none."""
+    return "\nSee also:\n" + "".join(f"  {place.request}\n" for place in places[:MAX_ALSO]) if places else ""
+
+
+def show_term(row: Row) -> str:
+    """Return a row of the page of words: the term and what it is in heun."""
+    meaning, _, _ = row.text.rpartition(" | ")
+    return f"term     {row.name}\nin heun  {meaning}\n\n"
+
+
+def read_place(place: Place) -> str:
+    """Return the text of a page, a section or the explanation of a path."""
+    if place.path:
+        return explain_path(place.path) or read_page("results")
+    section = find_section(place.page, place.heading) if place.heading else None
+    return read_page(place.page) if section is None else section.text

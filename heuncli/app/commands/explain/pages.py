@@ -1,4 +1,4 @@
-"""The pages of the manual and their sections: read a page, find a section, list the sections of a page."""
+"""The pages of the manual: read one, find a section, list its sections, parse the error codes of the page on codes."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ PAGES = tuple(dict.fromkeys((
 FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^(#+) (.*)$", re.MULTILINE)
 CONTENTS_WIDTH = 100
+SECTION = re.compile(r"^### (\S+)\n\n(.*?)(?=^### |\Z)", re.MULTILINE | re.DOTALL)
+ROW = re.compile(r"^\| `([a-z0-9-]+)` \| (.*?) \| (.*?) \|$", re.MULTILINE)
+LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 
 
 class ManualSection(NamedTuple):
@@ -102,3 +105,10 @@ def _list_group(group: Sequence[ManualSection]) -> Iterator[str]:
     yield main
     if inner:
         yield f": {', '.join(inner)}"
+
+
+def parse_codes(page: str) -> dict[str, str]:
+    """Return every code with its explanation."""
+    rows = {code: f"{says}\n\nRemedy: {cure}\n" for code, says, cure in ROW.findall(page)}
+    texts = rows | dict(SECTION.findall(page))
+    return {code: f"# {code}\n\n" + LINK.sub(r"\1", text) for code, text in texts.items()}

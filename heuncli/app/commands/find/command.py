@@ -17,9 +17,8 @@ from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, require_tolerance
-from heuncli.app.cli.target import choose_format
-from heuncli.app.cli.units import note_si_format, parse_units
-from heuncli.app.cli.variant_warnings import print_variant_warnings
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units
+from heuncli.app.cli.variant_workers import print_variant_warnings
 from heuncli.app.commands.find.page import FindPage, make_document
 from heuncli.app.commands.find.request import FindRequest
 from heuncli.base.errors import Problem, SolveError

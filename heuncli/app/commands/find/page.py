@@ -296,7 +296,7 @@ def _make_crossing_block(page: FindPage, each: Crossing) -> dict[str, Any]:
 
 
 def _make_place_block(page: FindPage, sample: Sample) -> dict[str, Any]:
-    """Return a value of the unknown and the measure there, as the JSON has it."""
+    """Make the JSON of a value of the unknown with the measure there."""
     size = parse_unit(page.interval.unit or "1")[0]
     block = {"x": sample.x, "si": sample.x * size}
     if sample.gap is None:

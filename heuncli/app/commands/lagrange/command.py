@@ -9,8 +9,7 @@ from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
-from heuncli.app.cli.target import choose_format
-from heuncli.app.cli.units import note_si_format, parse_units
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units
 from heuncli.app.commands.lagrange import course_page, forms, page
 from heuncli.app.commands.lagrange.options import (
     parse_names,

@@ -15,7 +15,7 @@ from heuncli.base.errors import Finding, Problem
 from heuncli.base.joint_kinds import JOINTS, is_length
 from heuncli.base.spelling import suggest
 from heuncli.base.units import LENGTH, NUMBER, Dimension
-from heuncli.scene.expressions.grammar import Scope
+from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.quantity import read_number
 

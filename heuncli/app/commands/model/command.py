@@ -59,6 +59,6 @@ def require_sketch(request: ModelRequest, form: str) -> None:
         message = f"{', '.join(drawing_options)}: only for a drawing, which is not requested"
         raise UsageError(Problem("bad-option", message, hint="add --sketch"))
     if request.view is not None:
-        from heuncli.app.cli.views import require_view
+        from heuncli.app.cli.figure_options import require_view
 
         require_view(request.view)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.app.cli.text_figures import render_text, require_width
+from heuncli.app.cli.figure_options import render_text, require_width
 from heuncli.app.commands.model.request import ModelRequest
 from heuncli.output.figures.scenes import make_assembly_figure
 from heuncli.scene.file_format.models import Spec

@@ -5,11 +5,10 @@ from __future__ import annotations
 from importlib import import_module
 
 from heuncli.app.cli.captions import check_text
-from heuncli.app.cli.figure_files import require_figure_form
+from heuncli.app.cli.figure_options import render_text, require_figure_form, require_width
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, save
-from heuncli.app.cli.text_figures import render_text, require_width
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.kinds import require_applicable_options
 from heuncli.app.commands.plot.plot_target import parse_words
 from heuncli.app.commands.plot.request import PlotRequest

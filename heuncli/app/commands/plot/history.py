@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from functools import partial
 
 from heuncli.app.cli.solving import collect_results
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_joint_paths, solve_source
 from heuncli.output.drawing.figure import Figure
+from heuncli.output.figures.curve_points import MeasuredPoints
 from heuncli.output.figures.histories import make_history
-from heuncli.output.figures.measured_points import MeasuredPoints
 from heuncli.output.snapshots import measure
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.models import Spec

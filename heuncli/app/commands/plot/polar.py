@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import require_choice
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_joint_paths, solve_source

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.app.cli.units import parse_units
-from heuncli.app.cli.views import require_view
+from heuncli.app.cli.figure_options import require_view
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import list_extreme_paths, load_specs, parse_instants, solve_source

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import list_extreme_paths, load_specs, parse_instants, solve_source

@@ -52,7 +52,7 @@ def _choose_names(files: Sequence[str]) -> list[str]:
 
 
 def _load_cases(file: str, name: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
-    """Yield a spec as it is, or in its cases, each with its name."""
+    """Yield the spec, or each of its load cases, with its name."""
     settings = parse_overrides(request.set)
     if request.case is None:
         yield name, apply_captions(load(file, overrides=settings, checking=False), request)

@@ -62,11 +62,11 @@ def _make_table(head: SweepHead, rows: Iterable[SweptRow]) -> SweepTable:
     results: list[list[MeasureValue]] = [[] for _ in head.measures]
     codes: list[str] = []
     for row in rows:
-        codes.append(row.answer.code)
+        codes.append(row.result.code)
         for column, one in zip(cells, parameters, strict=True):
             column.append(to_cell(row.values[one.name]))
         for k, measure in enumerate(results):
-            measure.append(row.answer.get_measure(k))
+            measure.append(row.result.get_measure(k))
     variables = tuple(
         _make_variable(one.name, one.unit or "", column) for one, column in zip(parameters, cells, strict=True)
     )

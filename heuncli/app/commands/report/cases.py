@@ -8,7 +8,7 @@ from heuncli.app.cli import memory, timeout
 from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.report.request import ReportRequest
 from heuncli.base.errors import Finding, HeunError, Problem
 from heuncli.base.records import replace

@@ -10,7 +10,7 @@ from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import select_exit_code
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
-from heuncli.app.cli.units import TABLES, note_si_format
+from heuncli.app.cli.target import TABLES, note_si_format
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, render_parts, solve_and_render
 from heuncli.output.documents.as_json import dump_json
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable

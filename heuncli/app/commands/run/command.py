@@ -12,8 +12,7 @@ from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, require_choice
-from heuncli.app.cli.target import choose_format
-from heuncli.app.cli.units import TABLES, note_si_format, parse_units
+from heuncli.app.cli.target import TABLES, choose_format, note_si_format, parse_units
 from heuncli.app.commands.run.request import FORMATS, RunRequest
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
 from heuncli.base.records import replace

@@ -9,7 +9,7 @@ from heuncli.app.cli.documents import is_rich, render_document, render_rich_docu
 from heuncli.app.cli.entry import UsageError, select_exit_code
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
-from heuncli.app.cli.units import note_si_format
+from heuncli.app.cli.target import note_si_format
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.app.commands.run.scene import RunTask, finish, make_query
 from heuncli.base.errors import Problem

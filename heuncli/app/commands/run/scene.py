@@ -11,7 +11,7 @@ from heuncli.app.api import solve_spec
 from heuncli.app.cli.documents import is_rich, render_document, render_rich_document
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import format_timings, parse_instants, print_warnings
-from heuncli.app.cli.units import TABLES, note_si_format
+from heuncli.app.cli.target import TABLES, note_si_format
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace

@@ -224,7 +224,7 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
 
 
 def to_block(page: SensitivityPage) -> dict[str, Any]:
-    """Return all as the JSON has it; measures in SI, derivatives per unit as written and per SI unit."""
+    """Make the JSON block; measures in SI, derivatives per unit as written and per SI unit."""
     measures = [
         {
             "measure": text, "unit": unit, "value": findings.base.value, "error": findings.base.error,

@@ -10,8 +10,7 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, save
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_cases
-from heuncli.app.cli.target import require_writable
-from heuncli.app.cli.units import parse_units
+from heuncli.app.cli.target import parse_units, require_writable
 from heuncli.app.commands.show.film import FORMATS, FilmFormat, draw_film, find_format, find_programs, make_film
 from heuncli.app.commands.show.moving_glb import make_glb
 from heuncli.app.commands.show.request import ShowRequest

@@ -1,5 +1,5 @@
 """The axes of a sweep as they were given, by words of the command line or columns of a table, each value with its
-location.
+location; and the part of a sweep that `--shard K/N` requests for external schedulers.
 """
 
 from __future__ import annotations
@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from heuncli.analyses.variants.parameters import CASE, ParameterAxis, RandomVariable, parse_axis_values
+from heuncli.app.cli.entry import UsageError
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.names import ALL_CASES
@@ -85,3 +86,15 @@ class AxisArgument(NamedTuple):
 def parse_axis(word: str) -> AxisArgument:
     """Parse one word of the command line. Raises AxisError."""
     return AxisArgument(parse_axis_values(word), word)
+
+
+def parse_shard(word: str | None) -> tuple[int, int]:
+    """Return the number of the part, and of how many. Raises UsageError."""
+    if word is None:
+        return 1, 1
+    k, slash, n = word.partition("/")
+    numbers = [int(text) for text in (k, n) if text.isascii() and text.isdecimal() and len(text) < 10]
+    if not slash or len(numbers) < 2 or not 1 <= numbers[0] <= numbers[1]:
+        message = f"--shard {word}: expected K/N, the K-th part of N"
+        raise UsageError(Problem("bad-option", message, hint="for example --shard 2/8; the last is 8/8"))
+    return numbers[0], numbers[1]

@@ -11,21 +11,25 @@ from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator, varie
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.analyses.variants.measures import MeasureLabel
 from heuncli.analyses.variants.parameters import CASE, HINT, AxisError, ParameterAxis, RandomVariable
-from heuncli.analyses.variants.plans import Draws, Plan, make_axes_plan
+from heuncli.analyses.variants.plans import (
+    SAMPLES_HINT,
+    Draws,
+    Plan,
+    make_axes_plan,
+    make_draws,
+    make_imbalance_warning,
+)
 from heuncli.app.cli import jobs, memory
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
-from heuncli.app.cli.target import choose_format, require_writable
-from heuncli.app.cli.units import parse_units
-from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis
+from heuncli.app.cli.target import choose_format, parse_units, require_writable
+from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis, parse_shard
 from heuncli.app.commands.sweep.checks import find_problems, find_warnings
 from heuncli.app.commands.sweep.output.writer import SweepOutput, require_writable_form
-from heuncli.app.commands.sweep.random_sampling import draw_samples
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep
-from heuncli.app.commands.sweep.shards import parse_shard
 from heuncli.app.commands.sweep.showing import show_stored
 from heuncli.app.commands.sweep.table import read_axes
 from heuncli.base.errors import Problem, SpecError
@@ -37,6 +41,7 @@ from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.version import VERSION
 
 USAGE = "heun sweep SPEC NAME=VALUES --measure WHAT"
+RANDOM_HINT = "for example d=normal(100,0.1)mm, r=uniform(20,60)mm, lhs(a,b) or sobol(a,b)"
 
 
 def main(request: SweepRequest) -> int:
@@ -171,3 +176,26 @@ def _require_files(request: SweepRequest, path: str) -> None:
     require_other_file(request.store, [path], "--store")
     if request.output is not None and is_same_file(request.store, request.output):
         raise UsageError(Problem("bad-option", "--store and -o name the same file", hint="name another file"))
+
+
+def draw_samples(laws: Sequence[RandomVariable], request: SweepRequest) -> Draws | None:
+    """Draw the values of the random parameters; None if there are none. Raises UsageError, AxisError."""
+    if not laws:
+        options = {"--samples": request.samples is not None, "--seed": request.seed is not None}
+        for option, is_given in (options | {"--indices": request.indices}).items():
+            if is_given:
+                raise UsageError(Problem("bad-option", f"{option}: no parameter is random", hint=RANDOM_HINT))
+        return None
+    if request.samples is None:
+        message = f"{', '.join(law.name for law in laws)}: the number of samples is missing"
+        raise UsageError(Problem("bad-option", message, hint=SAMPLES_HINT))
+    draws = make_draws(laws, request.samples, request.seed or 0, indices=request.indices)
+    imbalance = make_imbalance_warning(laws, request.samples)
+    if imbalance and not request.quiet:
+        print_stderr(f"warning: {imbalance}")
+    if request.indices and not request.quiet:
+        d = len(laws)
+        print_stderr(
+            f"heun: Sobol indices of {d} parameters: {request.samples:,} x ({d} + 2) = {len(draws.values):,} variants"
+        )
+    return draws

@@ -20,7 +20,7 @@ from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import BUG
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.progress import ReportProgress, show_progress
-from heuncli.app.cli.units import note_si_format
+from heuncli.app.cli.target import note_si_format
 from heuncli.app.commands.sweep.output.sweep_warnings import SweepWarnings, collect_warnings, print_warnings_summary
 from heuncli.app.commands.sweep.output.writer import SweepOutput, write_sweep
 from heuncli.app.commands.sweep.request import SweepRequest
@@ -202,5 +202,5 @@ def _raise_common_error(sweep: SweepTask, rows: StoredRows) -> None:
     try:
         sweep.evaluator.load(first.values)
     except SpecError as error:
-        if error.problems[0].code == first.answer.code:
+        if error.problems[0].code == first.result.code:
             raise

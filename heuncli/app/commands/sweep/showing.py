@@ -8,12 +8,12 @@ from heuncli.analyses.sweep_store import choose_sweep, format_sweep, open_store,
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file
 from heuncli.app.cli.output import print_stderr
-from heuncli.app.cli.units import note_si_format
+from heuncli.app.cli.target import note_si_format
+from heuncli.app.commands.sweep.axis_arguments import parse_shard
 from heuncli.app.commands.sweep.output.sweep_warnings import collect_warnings, print_warnings_summary
 from heuncli.app.commands.sweep.output.writer import SweepOutput, write_sweep
 from heuncli.app.commands.sweep.request import SweepRequest
 from heuncli.app.commands.sweep.running import choose_exit_code
-from heuncli.app.commands.sweep.shards import parse_shard
 from heuncli.base.errors import Problem
 from heuncli.base.text_safety import escape
 

@@ -15,12 +15,10 @@ from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tolerance
-from heuncli.app.cli.target import choose_format, require_writable
-from heuncli.app.cli.units import note_si_format, parse_units
-from heuncli.app.commands.tune.history import make_history
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_writable
 from heuncli.app.commands.tune.page import make_document
 from heuncli.app.commands.tune.request import FORMATS, TuneRequest
-from heuncli.app.commands.tune.result_block import TunedScene, format_command
+from heuncli.app.commands.tune.result_block import TunedScene, format_command, make_history
 from heuncli.app.commands.tune.trial_solver import TrialSolver
 from heuncli.app.commands.tune.tuning_options import TuningOptions, make_task, parse_options
 from heuncli.base.errors import LimitError, Problem, SolveError

@@ -67,5 +67,5 @@ def solve_variant(evaluator: VariantEvaluator, values: Values) -> VariantResult:
 
 
 def solve_in_worker(evaluator: VariantEvaluator, values: Values) -> VariantResult:
-    """Solve a variant in a process of its own, which has no time limit but the one set here."""
+    """Solve a variant in a worker process under the time limit set here."""
     return solve_contained(evaluator, values, "tune", timeout.remaining_time())

@@ -98,7 +98,7 @@ def make_task(request: TuneRequest, options: TuningOptions, evaluator: VariantEv
 
 
 def add_spec_value(variable: DesignVariable, spec: Spec) -> DesignVariable:
-    """Return the variable with its value in the spec, if it is a parameter."""
+    """Add the value that the spec gives a variable, if the variable is a parameter."""
     value = spec.parameters.get(variable.name)
     return variable if value is None else variable._replace(spec_value=value / parse_unit(variable.unit or "1")[0])
 

@@ -1,7 +1,7 @@
 """Handle contact events: what is struck at an instant of a run, by which impulses, and what is held from then on.
 
 touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses, resting.py
-the contacts that stay closed.
+the contacts that stay closed, contact_problem.py the errors, contact_notes.py the sentences.
 """
 
 from __future__ import annotations
@@ -10,7 +10,17 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
-from heuncli.base.records import record, replace
+from heuncli.base.records import replace
+from heuncli.motion.integration.contacts.contact_notes import ContactNotes
+from heuncli.motion.integration.contacts.contact_problem import (
+    ContactOutcome,
+    ContactProblem,
+    UnrefinedImpulses,
+    require_caught,
+    require_energy,
+    require_smooth,
+    require_yielding,
+)
 from heuncli.motion.integration.contacts.impulses import (
     GivenImpulse,
     ImpulseEvent,
@@ -37,7 +47,6 @@ from heuncli.motion.integration.contacts.resting import (
 )
 from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
-    chattering_error,
     find_coupled_groups,
     solve_contact_impulses,
 )
@@ -50,51 +59,15 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     LoadedContact,
     SharedImpulse,
     find_shared_impulses,
-    join_names,
     list_bilateral_contacts,
     select_loaded,
 )
 from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.response import Columns, solve_impulses
-from heuncli.multibody.response import ImpulseColumns as Answered
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
 from heuncli.multibody.tree.tables import Table
-from heuncli.results.results import Array, Indices, Mask
+from heuncli.results.results import Array, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
-
-MAX_SIMULTANEOUS = 16  # events at one instant, plus four per contact; more count as endless
-
-
-@record
-class ContactProblem:
-    """The touching contacts, and how their rates respond to impulses.
-
-    A (k, k): rates of opening from unit impulses (restitution.py)
-    moves (k,): whether a bearing contact moves anything
-    rates (k,): rates of opening that given impulses and drives add
-    """
-
-    touching: TouchingContacts
-    A: Array
-    moves: Mask
-    rates: Array
-
-
-@record
-class ContactOutcome:
-    """The impulses, the contacts held, those at rest because their rebound would never be seen, and the state after.
-
-    columns: of what is given, and of the touching contacts with their impulses
-    work: of all impulses [J]
-    """
-
-    impulses: ContactImpulses
-    holding: Array
-    at_rest: Mask
-    columns: Columns
-    after_state: Array
-    work: float
 
 
 def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
@@ -102,98 +75,6 @@ def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
     contacts = Contacts(evaluator, t)
     contacts.handle_event(GivenImpulse(t, t, (), {}), state, t, None)
     return contacts.holding
-
-
-def require_energy(jump: ImpulseEvent, energy_scale: float) -> None:
-    """Raise SolveError if the energies before and after an impulse and the work of its impulses do not add up.
-
-    energy_scale: energy that the impulses would bring alone, which joints and others may take back
-    """
-    before, after = jump.kinetic
-    size = max(before, after, abs(jump.work), tolerances.UNBALANCED * energy_scale)
-    if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
-        message = f"at t = {jump.time:.9g} s the energy balance of the impulse on {', '.join(jump.names)} is not met"
-        raise SolveError(
-            Problem(
-                "blow-unbalanced", message, None, "a singular position, or nearly identical contacts", jump.names[0]
-            )
-        )
-
-
-def require_smooth(layout: Layout, given_impulse: GivenImpulse, is_closed: Mask) -> None:
-    """Raise SolveError for a rope that may go slack and is taut where the rate of its length jumps."""
-    for k, contact in enumerate(layout.contacts):
-        if is_closed[k] and contact.is_rope and contact.joint in given_impulse.drives:
-            first, then = given_impulse.drives[contact.joint]
-            message = (
-                f"at t = {given_impulse.after_time:.9g} s the rate of the length of {contact.name} "
-                f"jumps from {first:.6g} to "
-                f"{then:.6g} m/s while it is taut: heun cannot solve this jump of a rope that may go slack"
-            )
-            hint = (
-                "change the rate over a short time, as max(t - 0.2, 0)**2; or leave out restitution: it then stays taut"
-            )
-            raise SolveError(Problem("rope-jerked", message, None, hint, layout.mechanism.owner_path(contact.joint)))
-
-
-def require_caught(
-    evaluator: Evaluator, sides: RightSides, solution: Answered, catches: list[LatchCatch], t: float
-) -> None:
-    """Raise SolveError for latches that catch a joint that cannot stop, because drives and joints prescribe its
-    rate.
-    """
-    allowed_residual = float(evaluator.allowed_residual(sides.still.gap)[0])
-    moving_catches = [catch for catch in catches if catch.rate != 0.0]
-    first = len(sides.loads) - len(moving_catches)
-    for k, catch in enumerate(moving_catches):
-        if not solution.unmet[first + k] <= allowed_residual:
-            contact = evaluator.layout.contacts[catch.contact]
-            joint = evaluator.layout.mechanism.joints[contact.joint].name
-            message = (
-                f"at t = {t:.9g} s {contact.name} catches the joint {joint}, but drives or other latches keep it moving"
-            )
-            hint = "stop the drive there, release the other latch before, or catch later: when"
-            raise SolveError(Problem("latch-contradicts", message, None, hint, f"latches.{contact.name}"))
-
-
-def require_yielding(layout: Layout, problem: ContactProblem, opening: Array, noise: Array, t: float) -> None:
-    """Raise SolveError for contacts that close on, though nothing that they load can move: drives prescribe it.
-
-    opening (k,): the rates, or the accelerations, at which the contacts open
-    """
-    mechanism = layout.mechanism
-    is_driven_on = ~problem.moves & (opening < -noise)
-    if not (is_driven_on.any() and mechanism.laws):
-        return
-    contact = layout.contacts[problem.touching.indices[np.flatnonzero(is_driven_on)[0]]]
-    owner = mechanism.owner_path(contact.joint)
-    drives = join_names([law.name for law in mechanism.laws])
-    if contact.is_rope:
-        message = f"at t = {t:.9g} s the rope {contact.name} is taut, and the prescribed motion ({drives}) stretches it"
-        hint = "end the prescribed motion before, or give the rope a stiffness"
-    else:
-        message = f"at t = {t:.9g} s the drive ({drives}) pushes against the stop {contact.name} of {owner}"
-        hint = "end the prescribed motion before the stop, or drive by a force or torque, which yield"
-    raise SolveError(
-        Problem(
-            "stop-contradicts", message, hint=hint, entry_path=owner if contact.is_rope else f"stops.{contact.name}"
-        )
-    )
-
-
-@record
-class UnrefinedImpulses:
-    """Impulses as the contact problem gives them, and the columns of unit impulses.
-
-    basis: the bearing contacts that are solved for by their rates
-    others: those of a sequence whose impulses stay, because their rates follow from those of the basis
-    """
-
-    touching: TouchingContacts
-    impulses: ContactImpulses
-    units: Columns
-    basis: Indices
-    others: Indices
 
 
 class Contacts:
@@ -204,17 +85,7 @@ class Contacts:
         self.layout = evaluator.layout
         self.holding = self.layout.open_contacts
         self.latches = Latches(self.layout, last)
-        self.strike_counts: dict[str, int] = {}
-        self.notes: dict[str, None] = {}
-        self.last_event_time, self.simultaneous_count = -1.0, 0
-
-    def count_event(self, t: float) -> None:
-        """Count an event at an instant. Raises SolveError for too many at one instant."""
-        near = tolerances.KERNEL["least_step"] * self.last
-        self.simultaneous_count = self.simultaneous_count + 1 if t - self.last_event_time <= near else 0
-        self.last_event_time = t
-        if self.simultaneous_count > MAX_SIMULTANEOUS + 4 * len(self.layout.contacts):
-            raise chattering_error(t, max(self.strike_counts, key=lambda name: self.strike_counts[name], default=""))
+        self.notes = ContactNotes(self.layout, last)
 
     def handle_event(
         self,
@@ -248,14 +119,16 @@ class Contacts:
         self.holding[contacts_touching.indices] = outcome.holding
         self.holding[unwatched] = UNWATCHED
         shared_impulses = self.find_shared(problem, outcome, catches)
-        self.add_notes(time, contacts_touching, outcome, shared_impulses)
-        self.add_latch_notes(time, released, catches)
+        self.notes.add_notes(time, contacts_touching, outcome, shared_impulses)
+        self.notes.add_latch_notes(time, released, catches)
         bearing, n = np.flatnonzero(outcome.impulses.impulses), len(sides.loads)
         if not len(bearing) and not n:
             return None
         causes = (*sides.causes, *(self.layout.contacts[i].name for i in contacts_touching.indices[bearing]))
         used_columns = np.array([*range(n), *(n + bearing)], dtype=int)
-        solution = Answered(outcome.columns.select(used_columns), solution.unmet[used_columns], solution.massless_count)
+        solution = ImpulseColumns(
+            outcome.columns.select(used_columns), solution.unmet[used_columns], solution.massless_count
+        )
         sides = replace(sides, still=self.with_active_contacts(sides.still, problem, outcome.impulses))
         struck_names = tuple(
             self.layout.contacts[i].name for i in contacts_touching.indices[outcome.impulses.takes_part]
@@ -274,7 +147,7 @@ class Contacts:
 
     def make_problem(
         self, given_impulse: GivenImpulse, sides: RightSides, contacts_touching: TouchingContacts
-    ) -> tuple[Answered, ContactProblem]:
+    ) -> tuple[ImpulseColumns, ContactProblem]:
         """Compute the columns of what is given and of each touching contact, and the contact problem they make."""
         self.evaluator.workspace.hold(self.latches.holding())
         n, n_u = len(sides.loads), len(self.layout.freedoms) + len(self.layout.rows)
@@ -497,38 +370,3 @@ class Contacts:
         for name in ("chosen", "closed"):
             rows[name] = active_rows[name]
         return replace(still, rows=rows)
-
-    def add_notes(
-        self,
-        t: float,
-        contacts_touching: TouchingContacts,
-        outcome: ContactOutcome,
-        shared_impulses: tuple[SharedImpulse, ...],
-    ) -> None:
-        """Record notes on contacts that are struck together or come to rest."""
-        contacts = [self.layout.contacts[i] for i in contacts_touching.indices.tolist()]
-        struck_contacts = [
-            contacts[k] for k in np.flatnonzero(outcome.impulses.takes_part & (contacts_touching.rate < 0.0))
-        ]
-        for contact in struck_contacts:
-            self.strike_counts[contact.name] = self.strike_counts.get(contact.name, 0) + 1
-        when = f"at t = {t:.6g} s"
-        if len(struck_contacts) > 1 and not shared_impulses:
-            names = join_names([contact.name for contact in struck_contacts])
-            self.notes[f"{when} {names} impact at the same time, and do not load each other"] = None
-        for k in np.flatnonzero(outcome.at_rest):
-            name = contacts[k].name
-            count = self.strike_counts.get(name, 0)
-            if not count:
-                continue
-            self.notes[
-                f"contact at {name} comes to rest {when} after {count} impact{'s' * (count > 1)}; "
-                "further impacts are negligible"
-            ] = None
-
-    def add_latch_notes(self, t: float, released_names: list[str], catches: list[LatchCatch]) -> None:
-        """Record notes on what latches catch and release."""
-        for name in released_names:
-            self.notes[f"{name} releases at t = {t:.6g} s"] = None
-        for catch in catches:
-            self.notes[f"{self.layout.contacts[catch.contact].name} catches at t = {t:.6g} s"] = None

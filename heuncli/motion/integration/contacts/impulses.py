@@ -23,8 +23,7 @@ from heuncli.motion.integration.contacts.shared_impulses import (
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.integration.integrated_scene import just_before
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.response import Columns, solve_impulses
-from heuncli.multibody.response import ImpulseColumns as Answered
+from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array
@@ -233,7 +232,7 @@ class ImpulseResult:
     """
 
     time: float
-    solution: Answered
+    solution: ImpulseColumns
     causes: tuple[str, ...]
     after_state: Array
     work: float

@@ -95,7 +95,7 @@ class Interruptions:
         if self.contacts is None:
             return
         if row is not None:
-            self.contacts.count_event(t)
+            self.contacts.notes.count_event(t)
             row = self.scene.layout.contacts[self.integrated_scene.find_contact(row)].row
         event = self.solve_event(GivenImpulse(t, t, (), {}), t, row, latch_conditions)
         if event is not None:
@@ -127,7 +127,7 @@ def collect_notes(layout: Layout, events: Sequence[ImpulseEvent], contacts: Cont
     if any(jump.shared_impulses for jump in events):
         sentences += format_sharing([(jump.time, jump.shared_impulses) for jump in events], layout.mechanism.impacts)
     if contacts is not None:
-        sentences += [*contacts.notes, *(f"{name} did not catch" for name in contacts.latches.unused_names)]
+        sentences += [*contacts.notes.sentences, *(f"{name} did not catch" for name in contacts.latches.unused_names)]
     return tuple(sentences)
 
 
@@ -149,7 +149,7 @@ def make_contacts(evaluator: Evaluator, last: float) -> Contacts | None:
 
 @record
 class SingleInstant:
-    """The events at the only instant of a scene: the impulse, if there is one, and notes on the contacts."""
+    """The impulse at the only instant of a scene: the impulse, if there is one, and notes on the contacts."""
 
     events: tuple[ImpulseEvent, ...] = ()
     notes: tuple[str, ...] = ()

@@ -22,7 +22,7 @@ MAX_SIMULTANEOUS = 4  # impulses of a condition at one instant; more count as en
 
 
 class DueTriggers(NamedTuple):
-    """Impulses that are due at an instant, and the conditions of latches there, if there are any."""
+    """The impulses that are due at an instant, and the values of the latches' conditions there."""
 
     blows: tuple[int, ...]
     latch_conditions: LatchConditions | None

@@ -144,7 +144,7 @@ def _load_departures(plane_view: PlaneView, height: float) -> Iterator[Departure
                 plane_view, mechanism.joints[load.joint]
             ):
                 yield Departure(f"{name} acts about an axis in the plane", 1.0, True)
-        elif not load.row.resists and load.value is not None and load.value.constant != 0.0:
+        elif not load.row.opposed_motion and load.value is not None and load.value.constant != 0.0:
             joint = mechanism.joints[load.joint]
             turns = "turning" in JOINTS[joint.kind].motions
             if turns != plane_view.orientations[load.joint].is_normal and not _cannot_tilt(plane_view, joint):

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from heuncli.base.method_rows import SMOOTH_ONLY, find_method
 from heuncli.scene.expressions.discontinuities import find_jumps
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.file_format.format import CurveJoint, RodJoint
 from heuncli.scene.file_format.format_couplings import RopeEntry
+from heuncli.scene.file_format.format_joints import CurveJoint, RodJoint
 from heuncli.scene.file_format.methods import find_tolerance_problem, iter_method_problems
 from heuncli.scene.file_format.rules.conditions import iter_conditions
 from heuncli.scene.file_format.rules.joints import iter_drives

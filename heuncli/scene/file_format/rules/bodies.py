@@ -8,7 +8,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import format_joints as fj
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.rotations import symmetric_eigenvalues
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
@@ -93,7 +94,7 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
         yield from require_positive(path, joint, "length", "radius")
-        if isinstance(joint, f.Bearing) and joint.bearing is not None:
+        if isinstance(joint, fj.Bearing) and joint.bearing is not None:
             yield from require_positive((*path, "bearing"), joint.bearing, "diameter", "width")
         if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:
             message = f"a stiffness must be greater than 0, but is {joint.stiffness:g}"
@@ -107,9 +108,9 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "stiffness"), message, "with 0 the other joints carry the load there")
     for name, load in draft.document.forces.items():
         path = ("forces", name)
-        if isinstance(load, f.FrictionEntry):
+        if isinstance(load, fl.FrictionEntry):
             yield from require_positive(path, load, "radius", "length")
-        if isinstance(load, f.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
+        if isinstance(load, fl.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
             yield Violation(
                 (*path, "speed"), f"speed must be greater than 0, but is {load.speed.constant:g}", FULL_FRICTION_HINT
             )
@@ -160,11 +161,11 @@ def check_not_negative(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}", hint)
 
 
-def iter_resistances(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
+def iter_resistances(load: fl.LoadEntry) -> Iterator[tuple[str, object]]:
     """Yield every number that says how strongly a load resists; laws are left out, because their sign says nothing."""
     for key in LOAD_KINDS[load.type].not_negative:
         value = getattr(load, key)
-        if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
+        if isinstance(value, fl.ShiftLaws | fl.TurnLaws):
             value = (value.x, value.y, value.z)
         for part in value if isinstance(value, tuple) else (value,):
             yield key, getattr(part, "constant", part)
@@ -308,7 +309,7 @@ def iter_orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientat
             if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
     for name, load in draft.document.forces.items():
-        for key in ("orientation", "to_orientation") if isinstance(load, fe.BushingEntry) else ():
+        for key in ("orientation", "to_orientation") if isinstance(load, fl.BushingEntry) else ():
             if getattr(load, key) is not None:
                 yield ("forces", name, key), getattr(load, key)
 

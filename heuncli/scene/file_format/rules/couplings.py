@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from heuncli.base.joint_kinds import TYPES, format_kind_names
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format_couplings as f
-from heuncli.scene.file_format.format import FrictionEntry
 from heuncli.scene.file_format.format_couplings import (
     BeltEntry,
     DifferentialEntry,
@@ -20,6 +19,7 @@ from heuncli.scene.file_format.format_couplings import (
     ScrewEntry,
     ThreadFrictionEntry,
 )
+from heuncli.scene.file_format.format_loads import FrictionEntry
 from heuncli.scene.file_format.rules.bodies import FULL_FRICTION_HINT
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 

@@ -15,6 +15,7 @@ from heuncli.base.errors import Finding
 from heuncli.results.results_schema import INDEX, INSTANT, first_element_suffix, independent_axes
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_joints as fj
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import find_analysis_type, list_instants
 
@@ -163,9 +164,9 @@ def format_count(instants: int) -> str:
 
 def count_output_instants(draft: DraftDocument, requested: int) -> int | None:
     """Return how many instants the output will have; None if a rope, a path or a condition may end the run earlier."""
-    rods = [joint for joint in draft.document.joints.values() if isinstance(joint, f.RodJoint)]
+    rods = [joint for joint in draft.document.joints.values() if isinstance(joint, fj.RodJoint)]
     may_stop = any(rod.tension_only and rod.restitution is None for rod in rods)
-    curves = [joint for joint in draft.document.joints.values() if isinstance(joint, f.CurveJoint)]
+    curves = [joint for joint in draft.document.joints.values() if isinstance(joint, fj.CurveJoint)]
     may_stop |= any(curve.one_sided and curve.restitution is None for curve in curves)
     may_stop |= draft.document.analysis.until is not None
     return None if may_stop and requested > 1 else requested

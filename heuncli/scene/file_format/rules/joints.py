@@ -13,9 +13,8 @@ from heuncli.base.joint_kinds import RATES, TYPES, format_kind_names
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_not_positive, find_jumps
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
-from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import (
@@ -75,13 +74,13 @@ def check_same_point(draft: DraftDocument) -> Iterator[Violation]:
     A spring within one body moves nothing, but the sections between its points carry its force.
     """
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.DistributedEntry):
+        if isinstance(load, fl.DistributedEntry):
             owner = draft.document.bodies.get(load.on)
             start = None if owner is None else find_point(owner, load.from_)
             if owner is not None and start is not None and start == find_point(owner, load.to):
                 message = "from and to are the same point"
                 yield Violation(("forces", name, "to"), message, "for a force at one point use type: force, in N")
-        if not isinstance(load, fe.PairEntry) or load.from_.body != load.to.body:
+        if not isinstance(load, fl.PairEntry) or load.from_.body != load.to.body:
             continue
         if LOAD_KINDS[load.type].place == "bodies":
             hint = f"a {load.type} acts between two different bodies"
@@ -236,7 +235,7 @@ CURVE_HINT = "give curve: torque over speed; or stall and idle: the torque at st
 def check_motor_form(draft: DraftDocument) -> Iterator[Violation]:
     """A motor has one curve, or a torque that falls towards the no-load speed; its sizes are above zero."""
     for name, motor in draft.document.forces.items():
-        if not isinstance(motor, fe.MotorEntry):
+        if not isinstance(motor, fl.MotorEntry):
             continue
         path = ("forces", name)
         line_keys = [key for key in ("stall", "idle") if getattr(motor, key) is not None]

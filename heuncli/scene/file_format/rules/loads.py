@@ -10,8 +10,7 @@ from heuncli.base.joint_kinds import FREE, POINT, TYPES, JointKind, format_kind_
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_negative
 from heuncli.scene.expressions.programs import Expression, out_of_range_texts
-from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 from heuncli.scene.file_format.semantics import find_analysis_type, run_duration
@@ -21,10 +20,10 @@ FRICTION_KEYS = {"turning": "torque", "sliding": "force"}  # the key of each mot
 DAMPER_LAW_KEYS = {"turning": "torque", "sliding": "force"}  # the key of a law of a damper
 
 
-def iter_joint_loads(draft: DraftDocument) -> Iterator[tuple[str, fe.JointLoadEntry, JointKind]]:
+def iter_joint_loads(draft: DraftDocument) -> Iterator[tuple[str, fl.JointLoadEntry, JointKind]]:
     """Yield the loads in joints that exist, with the kind of the joint; an unknown kind takes no load."""
     for name, load in draft.document.forces.items():
-        if isinstance(load, fe.JointLoadEntry) and load.joint in draft.names.joints:
+        if isinstance(load, fl.JointLoadEntry) and load.joint in draft.names.joints:
             joint_type = draft.names.joints[load.joint]
             yield name, load, TYPES.get(joint_type, JointKind(joint_type, POINT, FREE))
 
@@ -34,16 +33,16 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
     """A joint has the motion that the load drives or resists."""
     for name, load, kind in iter_joint_loads(draft):
         path = ("forces", name)
-        if isinstance(load, f.TorqueEntry):
+        if isinstance(load, fl.TorqueEntry):
             if not kind.accepts_load("torque"):
                 where = " or ".join(f"{TORQUE_WORDS[k.motions[0]]} {k.name}" for k in kinds_accepting_load("torque"))
                 hint = "between two points use an actuator, on a body a couple"
                 yield Violation((*path, "joint"), f"type: torque acts {where}, not in a {kind.name}", hint)
-        elif isinstance(load, fe.MotorEntry):
+        elif isinstance(load, fl.MotorEntry):
             if kind.coordinates != ("angle",):
                 hint = "in a slide use a force of type torque, with a value in guide.speed"
                 yield Violation((*path, "joint"), f"a motor acts in a pin, not in a {kind.name}", hint)
-        elif isinstance(load, f.TurnSpringEntry):
+        elif isinstance(load, fl.TurnSpringEntry):
             if load.torque is not None and kind.coordinates != ("angle",):
                 message = f"a turn_spring with a law for its torque acts in a pin, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "only a pin has one angle; otherwise give a stiffness")
@@ -51,7 +50,7 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 allowed = format_kind_names(kinds_accepting_load("turn_spring"), "or")
                 message = f"a turn_spring acts in a {allowed}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring")
-        elif isinstance(load, f.DamperEntry):
+        elif isinstance(load, fl.DamperEntry):
             two_motion_kinds = [k for k in kinds_accepting_load("damper") if len(k.motions) == 2]
             if not kind.accepts_load("damper"):
                 hint = "between two points use a spring with damping"
@@ -64,14 +63,14 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             if load.sliding is not None and kind not in two_motion_kinds:
                 message = f"sliding is for a {format_kind_names(two_motion_kinds, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
-        elif isinstance(load, f.FrictionEntry):
+        elif isinstance(load, fl.FrictionEntry):
             yield from check_friction_form(name, load, kind)
         elif not kind.accepts_load(load.type):
             allowed = format_kind_names(kinds_accepting_load(load.type), "or")
             yield Violation((*path, "joint"), f"a {load.type} has no effect in a {kind.name}", f"use a {allowed}")
 
 
-def check_friction_form(name: str, load: f.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
+def check_friction_form(name: str, load: fl.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
     """Friction has a size that fits its joint, or a coefficient."""
     path = ("forces", name)
     given_keys = [key for key in (*FRICTION_KEYS.values(), "coefficient") if getattr(load, key) is not None]
@@ -97,7 +96,7 @@ def check_friction_form(name: str, load: f.FrictionEntry, kind: JointKind) -> It
         yield Violation((*path, given_keys[0]), message, f"write {allowed_keys[0]}", key=True)
 
 
-def check_damper_law(name: str, load: f.DamperEntry, kind: JointKind) -> Iterator[Violation]:
+def check_damper_law(name: str, load: fl.DamperEntry, kind: JointKind) -> Iterator[Violation]:
     """A damper by a law of the rate has a torque in a pin, a force in a slide."""
     path = ("forces", name)
     given_key = "torque" if load.torque is not None else "force"
@@ -129,7 +128,7 @@ def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
                 f"put the whole law in {law_keys[0]}, or leave {law_keys[0]} out",
                 key=True,
             )
-        if isinstance(load, fe.BushingEntry) and all(
+        if isinstance(load, fl.BushingEntry) and all(
             getattr(load, key) is None
             for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
         ):
@@ -154,7 +153,7 @@ def check_brake(draft: DraftDocument) -> Iterator[Violation]:
     """Friction of given size depends on time alone and is never negative."""
     duration = run_duration(draft.document.analysis)
     for name, load in draft.document.forces.items():
-        for key in FRICTION_KEYS.values() if isinstance(load, f.FrictionEntry) else ():
+        for key in FRICTION_KEYS.values() if isinstance(load, fl.FrictionEntry) else ():
             value = getattr(load, key)
             if value is None or value.constant is not None:
                 continue
@@ -173,9 +172,9 @@ def check_brake(draft: DraftDocument) -> Iterator[Violation]:
 def check_bushing_table(draft: DraftDocument) -> Iterator[Violation]:
     """The tables of a bushing have a value at zero deflection."""
     for name, load in draft.document.forces.items():
-        for key in ("stiffness", "turning") if isinstance(load, fe.BushingEntry) else ():
+        for key in ("stiffness", "turning") if isinstance(load, fl.BushingEntry) else ():
             laws = getattr(load, key)
-            parts = (laws.x, laws.y, laws.z) if isinstance(laws, fe.ShiftLaws | fe.TurnLaws) else laws
+            parts = (laws.x, laws.y, laws.z) if isinstance(laws, fl.ShiftLaws | fl.TurnLaws) else laws
             for law in parts if isinstance(parts, tuple) else (parts,):
                 if isinstance(law, Expression) and math.isnan(law.value(0.0, (0.0,))):
                     message, hint = out_of_range_texts(law.tables[0])
@@ -183,7 +182,7 @@ def check_bushing_table(draft: DraftDocument) -> Iterator[Violation]:
                     yield Violation(("forces", name, key), full_message, hint)
 
 
-def check_friction_coefficient(name: str, load: f.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
+def check_friction_coefficient(name: str, load: fl.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
     """Friction by a coefficient acts in a pin, which needs a radius, or in a slide, which may have a length."""
     path = ("forces", name)
     if len(kind.motions) != 1:
@@ -210,12 +209,12 @@ def check_load_dimension(draft: DraftDocument) -> Iterator[Violation]:
     """Where the joint decides between turning and sliding, the unit fits."""
     for name, load, kind in iter_joint_loads(draft):
         sliding = kind.motions == ("sliding",)
-        if isinstance(load, f.TorqueEntry):
+        if isinstance(load, fl.TorqueEntry):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
-        elif isinstance(load, f.DamperEntry):
+        elif isinstance(load, fl.DamperEntry):
             coefficients = [load.coefficient] if load.coefficient is not None else []
             checks = [("coefficient", value, u.DAMPING if sliding else u.TURNING_DAMPING) for value in coefficients]
-        elif not isinstance(load, f.FrictionEntry):
+        elif not isinstance(load, fl.FrictionEntry):
             checks = []
         else:
             is_sliding = load.force is not None or (load.coefficient is not None and sliding)
@@ -234,7 +233,7 @@ def check_couple_point(draft: DraftDocument) -> Iterator[Violation]:
     on_bodies = [
         (("forces", name, "on"), load.on.body)
         for name, load in draft.document.forces.items()
-        if isinstance(load, f.CoupleEntry) and load.on.at is None
+        if isinstance(load, fl.CoupleEntry) and load.on.at is None
     ]
     for name, blow in draft.document.impulses.items():
         if blow.couple is not None and blow.on is None and blow.body is not None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from heuncli.base import tolerances
 from heuncli.scene.expressions.programs import TableFunction
-from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_joints as fj
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 
 if TYPE_CHECKING:
@@ -24,11 +24,11 @@ def check_path_form(draft: DraftDocument) -> Iterator[Violation]:
     it.
     """
     for name, joint in draft.document.joints.items():
-        if isinstance(joint, f.CurveJoint):
+        if isinstance(joint, fj.CurveJoint):
             yield from check_path(name, joint, draft.document.head.space == "planar")
 
 
-def check_path(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violation]:
+def check_path(name: str, joint: fj.CurveJoint, planar: bool) -> Iterator[Violation]:
     """Yield what prevents a joint's tables from forming a path."""
     path = ("joints", name)
     tables = {axis: table for axis in AXES if isinstance(table := getattr(joint, axis), TableFunction)}
@@ -58,7 +58,7 @@ def check_path(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violati
         yield Violation((*path, "initial", "travel"), message, "start it on the path, or leave it out")
 
 
-def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) -> Iterator[Violation]:
+def check_path_side(name: str, joint: fj.CurveJoint, planar: bool, path: Path) -> Iterator[Violation]:
     """Yield what prevents a path from having a left and a right side, for a roller or a one-sided path: it must be
     plane.
     """
@@ -87,7 +87,7 @@ def check_path_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) ->
         yield from check_roller(joint_path, joint, path, normal)
 
 
-def check_roller(joint_path: Path_, joint: f.CurveJoint, path: Path, normal: Direction) -> Iterator[Violation]:
+def check_roller(joint_path: Path_, joint: fj.CurveJoint, path: Path, normal: Direction) -> Iterator[Violation]:
     """Yield what prevents a roller from following a path: too high a curvature, or another part of the path too
     close.
     """
@@ -116,7 +116,7 @@ def check_path_restitution(draft: DraftDocument) -> Iterator[Violation]:
     free.
     """
     for name, joint in draft.document.joints.items():
-        if not isinstance(joint, f.CurveJoint) or joint.restitution is None:
+        if not isinstance(joint, fj.CurveJoint) or joint.restitution is None:
             continue
         path = ("joints", name, "restitution")
         if not joint.one_sided:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.base.load_kinds import LOAD_KINDS
-from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.rotations import IDENTITY, unit_vector
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
@@ -51,7 +51,7 @@ def check_planar(draft: DraftDocument) -> Iterator[Violation]:
                 value = getattr(load, key, None)
                 vector = tuple(x.constant for x in value or ())
                 yield from _check_components(("forces", name, key), vector, FORBIDDEN_LOAD[kind.unit or "N"])
-        elif isinstance(load, fe.BushingEntry):
+        elif isinstance(load, fl.BushingEntry):
             yield from _check_bushing(("forces", name), load)
     for name, impulse in draft.document.impulses.items():
         for key, forbidden in FORBIDDEN_IMPULSE.items():
@@ -67,7 +67,7 @@ def _check_components(path: Path_, vector: tuple[float | None, ...], forbidden: 
             yield Violation((*path, i), f"in a planar model {path[2]} has no {letter} component", SPATIAL_HINT)
 
 
-def _check_bushing(path: Path_, load: fe.BushingEntry) -> Iterator[Violation]:
+def _check_bushing(path: Path_, load: fl.BushingEntry) -> Iterator[Violation]:
     """One axis of a bushing is the z axis, and its preload lies in the plane."""
     for key in ("orientation", "to_orientation"):
         orientation = getattr(load, key)

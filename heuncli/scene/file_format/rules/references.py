@@ -12,9 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator
 
 from heuncli.base.spelling import suggest
-from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
-from heuncli.scene.file_format import format_joints as fe
+from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.names import GROUND, NAMED_BLOCKS, RESERVED_NAMES, as_mapping, is_name
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
@@ -30,9 +29,9 @@ def iter_ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
         yield ("joints", name, "from"), joint.from_
         yield ("joints", name, "to"), joint.to
     for name, load in document.forces.items():
-        if isinstance(load, f.ForceEntry | f.CoupleEntry):
+        if isinstance(load, fl.ForceEntry | fl.CoupleEntry):
             yield ("forces", name, "on"), load.on
-        elif isinstance(load, fe.PairEntry):
+        elif isinstance(load, fl.PairEntry):
             yield ("forces", name, "from"), load.from_
             yield ("forces", name, "to"), load.to
     for name, impulse in document.impulses.items():
@@ -89,7 +88,7 @@ def iter_body_references(draft: DraftDocument) -> Iterator[tuple[Path_, str, boo
     for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.DistributedEntry):
+        if isinstance(load, fl.DistributedEntry):
             yield ("forces", name, "on"), load.on, False
     for name, impulse in draft.document.impulses.items():
         if impulse.body is not None:
@@ -159,7 +158,7 @@ def iter_body_points(draft: DraftDocument) -> Iterator[tuple[Path_, str, object]
         for key, value in (("at", section.at), ("from", section.from_), ("to", section.to)):
             yield ("sections", name, key), section.body, value
     for name, load in draft.document.forces.items():
-        if isinstance(load, f.DistributedEntry) and load.on != GROUND:
+        if isinstance(load, fl.DistributedEntry) and load.on != GROUND:
             for key, value in (("from", load.from_), ("to", load.to)):
                 yield ("forces", name, key), load.on, value
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base import tolerances
-from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_joints as fj
 from heuncli.scene.file_format.format_couplings import AXLES, CamEntry, RollingEntry, find_axle_direction, find_centre
 from heuncli.scene.file_format.names import GROUND
 from heuncli.scene.file_format.rotations import unit_vector
@@ -144,13 +144,13 @@ def check_cam_joints(draft: DraftDocument) -> Iterator[Violation]:
             continue
         joints = [draft.document.joints.get(joint) for joint in cam.of]
         shaft, follower = joints
-        if shaft is not None and not isinstance(shaft, f.PinJoint):
+        if shaft is not None and not isinstance(shaft, fj.PinJoint):
             yield Violation((*path, 0), f"{cam.of[0]} is not a pin", "the disc rotates on a pin: of: [shaft, follower]")
-        if follower is not None and not isinstance(follower, f.PinJoint | f.SlideJoint):
+        if follower is not None and not isinstance(follower, fj.PinJoint | fj.SlideJoint):
             yield Violation(
                 (*path, 1), f"{cam.of[1]} is neither a pin nor a slide", "a follower moves on a pin or a slide"
             )
-        if not isinstance(shaft, f.PinJoint) or not isinstance(follower, f.PinJoint | f.SlideJoint):
+        if not isinstance(shaft, fj.PinJoint) or not isinstance(follower, fj.PinJoint | fj.SlideJoint):
             continue
         if shaft.from_.body != follower.from_.body:
             message = f"{cam.of[0]} is from {shaft.from_.body}, but {cam.of[1]} from {follower.from_.body}"
@@ -161,8 +161,8 @@ def check_cam_joints(draft: DraftDocument) -> Iterator[Violation]:
             )
         elif shaft.to.body == follower.to.body:
             yield Violation(path, f"disc and follower are both {shaft.to.body}", "the follower must be another body")
-        elif not are_aligned(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
-            relation = "parallel" if isinstance(follower, f.PinJoint) else "perpendicular"
+        elif not are_aligned(shaft.axis, follower.axis, isinstance(follower, fj.PinJoint)):
+            relation = "parallel" if isinstance(follower, fj.PinJoint) else "perpendicular"
             message = f"the axis of joint {cam.of[1]} is not {relation} to that of joint {cam.of[0]}"
             yield Violation(path, message, "a follower must move perpendicular to the disc's axis")
         if cam.at.body != follower.to.body:
@@ -248,7 +248,7 @@ def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterat
         yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
         return
     shaft = draft.document.joints.get(cam.of[0]) if cam.of else None
-    start_angle = shaft.initial.angle if isinstance(shaft, f.PinJoint) and shaft.initial is not None else None
+    start_angle = shaft.initial.angle if isinstance(shaft, fj.PinJoint) and shaft.initial is not None else None
     if start_angle is not None and not first + cam.phase <= start_angle <= last + cam.phase:
         covered = f"{math.degrees(first + cam.phase):.6g} to {math.degrees(last + cam.phase):.6g} deg"
         message = f"angle {math.degrees(start_angle):.6g} deg is outside the lift of cam {name}, which covers {covered}"

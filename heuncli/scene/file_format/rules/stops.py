@@ -13,6 +13,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_couplings as fc
+from heuncli.scene.file_format import format_joints as fj
 from heuncli.scene.file_format.names import CAUSE_NAMES
 from heuncli.scene.file_format.rules import paths
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
@@ -145,7 +146,7 @@ def check_restitution(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(("stops", name, "restitution"), message, hint)
     for name, joint in draft.document.joints.items():
         path = ("joints", name, "restitution")
-        if not isinstance(joint, f.RodJoint) or joint.restitution is None:
+        if not isinstance(joint, fj.RodJoint) or joint.restitution is None:
             continue
         if not joint.tension_only:
             message = "restitution given, but this rod carries tension and compression: it has no impacts"
@@ -157,7 +158,7 @@ def check_restitution(draft: DraftDocument) -> Iterator[Violation]:
 
 def list_impact_joints(draft: DraftDocument) -> list[str]:
     """List the joints that open and close with impacts: ropes, and curves that push on one side."""
-    opening = f.RodJoint | f.CurveJoint
+    opening = fj.RodJoint | fj.CurveJoint
     return [n for n, j in draft.document.joints.items() if isinstance(j, opening) and j.restitution is not None]
 
 

@@ -44,15 +44,15 @@ class BodyFrames(NamedTuple):
     origins: tuple[Vec, ...]
 
     def transform_point(self, body: int, point: Any) -> Vec:
-        """Transform a point from a body's own axes to those of the body that it is part of."""
+        """Transform a point from a body's axes to those of its compound body."""
         return add_vectors(self.origins[body], rotate_vector(self.attitudes[body], to_vec(point)))
 
     def transform_direction(self, body: int, axis: Any) -> Vec:
-        """Transform a direction from a body's own axes to those of the body that it is part of."""
+        """Transform a direction from a body's axes to those of its compound body."""
         return rotate_vector(self.attitudes[body], to_vec(axis))
 
     def find_parts(self, owner: int) -> list[int]:
-        """List the bodies that are part of one."""
+        """List the parts of a compound body."""
         return [body for body, body_owner in enumerate(self.owners) if body_owner == owner]
 
 
@@ -96,7 +96,7 @@ class PartMass(NamedTuple):
 
 
 def mass_properties(model: Any, frames: BodyFrames, owner: int) -> PartMass:
-    """Compute the mass properties of a body with all that is part of it.
+    """Compute the mass properties of a body together with its parts.
 
     I = sum of I_k + m_k (|d_k|^2 1 - d_k d_k^T), d_k from the common centre to that of part k.
     """

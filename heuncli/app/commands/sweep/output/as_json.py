@@ -79,11 +79,11 @@ def _make_row_block(row: SweptRow, columns: SweepColumns) -> dict[str, Any]:
         "number": row.number,
         "set": {name: to_cell(value) for name, value in row.values.items()},
     }
-    measures = row.answer.measures or (NO_VALUE,) * len(columns.measures)
+    measures = row.result.measures or (NO_VALUE,) * len(columns.measures)
     values = [(to_finite(one.value), to_finite(one.error), to_finite(one.time)) for one in measures]
     block["values"] = [dict(zip(("value", "error", "at"), one, strict=True)) for one in values]
-    block |= {"code": row.answer.code, "reason": explain_missing(row, columns.measures)}
-    return block | ({"warnings": list(row.answer.warnings)} if row.answer.warnings else {})
+    block |= {"code": row.result.code, "reason": explain_missing(row, columns.measures)}
+    return block | ({"warnings": list(row.result.warnings)} if row.result.warnings else {})
 
 
 def _make_statistics_block(statistics: MeasureStatistics, head: SweepHead) -> dict[str, Any]:

@@ -36,9 +36,9 @@ class ColumnBuffer:
     def add(self, row: SweptRow) -> None:
         """Add a variant."""
         self._numbers.append(row.number)
-        if row.answer.code:
-            self.failures[row.answer.code] += 1
-        results = row.answer.measures or (None,) * len(self._values)
+        if row.result.code:
+            self.failures[row.result.code] += 1
+        results = row.result.measures or (None,) * len(self._values)
         for place, one in enumerate(results):
             self._values[place].append(np.nan if one is None or one.value is None else one.value)
             self._errors[place].append(np.nan if one is None or one.error is None else one.error)

@@ -6,14 +6,13 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, SweptRow, make_parameter_columns, to_cell
+from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, make_parameter_columns, to_cell
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
-from heuncli.app.commands.sweep.output.extremes import MeasureExtremes
-from heuncli.app.commands.sweep.output.top_k import ShownRows
-from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.app.commands.sweep.output.top_k import MeasureExtremes, ShownRows
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, format_cell, trim_cells
 from heuncli.output.tables.plurals import format_count
 from heuncli.scene.file_format.quantity import ParameterValue
-from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, choose_style, largest_magnitude, trim_zeros
+from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, Style, choose_style, largest_magnitude
 from heuncli.study.quantities.table_units import Units
 
 LEAST, GREATEST = "min", "max"
@@ -29,17 +28,21 @@ def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> Outpu
     parameters = make_parameter_columns(head.plan)
     has_numbers = len(parameters) > 1
     columns = [OutputColumn("variant", "text")] * has_numbers + [make_parameter_column(one) for one in parameters]
-    cells = [[str(row.number)] * has_numbers + make_parameter_cells(row, parameters) for row in selection.rows.values()]
+    cells: list[list[Cell]] = [
+        [row.number] * has_numbers + [to_cell(row.values[one.name]) for one in parameters]
+        for row in selection.rows.values()
+    ]
     for measure in range(len(head.measures)):
-        measure_columns, texts = _make_measure_columns(head, selection, measure, units)
+        measure_columns, cells_of_measure = _make_measure_columns(head, selection, measure, units)
         columns += measure_columns
-        for line, measure_cells in zip(cells, texts, strict=True):
+        for line, measure_cells in zip(cells, cells_of_measure, strict=True):
             line += measure_cells
-    if any(row.answer.code for row in selection.rows.values()):
+    if any(row.result.code for row in selection.rows.values()):
         columns.append(OutputColumn("not solved", "text"))
         for line, row in zip(cells, selection.rows.values(), strict=True):
-            line.append(f"{row.answer.code}: {row.answer.reason}" if row.answer.code else "")
-    notes = tuple(note for word, note in NOTES.items() if any(word in line for line in cells))
+            line.append(f"{row.result.code}: {row.result.reason}" if row.result.code else "")
+    texts = {format_cell(cell) for line in cells for cell in line}
+    notes = tuple(note for word, note in NOTES.items() if word in texts)
     size = (
         f"{selection.size:,} of {head.plan.size:,} variants"
         if selection.size < head.plan.size
@@ -56,21 +59,15 @@ def format_variant_count(number: int) -> str:
 
 def make_parameter_column(one: ParameterColumn) -> OutputColumn:
     """Make the column of a parameter."""
-    return OutputColumn(one.heading, "text" if one.unit is None else "number")
-
-
-def make_parameter_cells(row: SweptRow, parameters: Sequence[ParameterColumn]) -> list[str]:
-    """Format the values of a variant to six digits."""
-    return [format_parameter(row.values[one.name]) for one in parameters]
+    return OutputColumn(one.label, "text" if one.unit is None else "number", one.unit or "")
 
 
 def format_parameter(value: ParameterValue) -> str:
-    """Format a value without its unit."""
-    cell = to_cell(value)
-    return cell if isinstance(cell, str) else f"{cell:.6g}"
+    """Format a value to six digits, without its unit."""
+    return format_cell(to_cell(value))
 
 
-def insert_gaps(places: Sequence[int], cells: Sequence[Sequence[str]], size: int) -> Iterator[tuple[str, ...] | str]:
+def insert_gaps(places: Sequence[int], cells: Sequence[Sequence[Cell]], size: int) -> Iterator[tuple[Cell, ...] | str]:
     """Yield the rows, with a line across where rows are left out."""
     previous = -1
     for place, line in zip(places, cells, strict=True):
@@ -84,19 +81,20 @@ def insert_gaps(places: Sequence[int], cells: Sequence[Sequence[str]], size: int
 
 def _make_measure_columns(
     head: SweepHead, selection: ShownRows, k: int, units: Units
-) -> tuple[list[OutputColumn], list[list[str]]]:
+) -> tuple[list[OutputColumn], list[list[Cell]]]:
     """Make the columns of a measure (value, instant and mark) and their cells; no instants if all are the same."""
     measure, vector_name = head.measures[k], f"measure {k}"
     unit, size = units.find(measure.unit)
-    columns = [OutputColumn(f"{measure.text} [{unit}]" if unit else measure.text, vector=vector_name)]
+    heading = f"{measure.text} [{unit}]" if unit else measure.text  # also of a plain number, whose unit is 1
+    columns = [OutputColumn(heading, vector=vector_name)]
     scale = size * largest_magnitude(selection.columns.values(k))
-    results = [row.answer.get_measure(k) for row in selection.rows.values()]
-    cells = [[text] for text in trim_zeros([format_measure(one, size, scale) for one in results])]
+    results = [row.result.get_measure(k) for row in selection.rows.values()]
+    cells: list[list[Cell]] = [[cell] for cell in _make_measure_cells(results, size, scale)]
     instants = {one.time for one in results if one.time is not None}
     if len(instants) > 1:
-        columns.append(OutputColumn("at [s]", vector=vector_name))
+        columns.append(OutputColumn("at", "instant", "s", vector=vector_name))
         for line, one in zip(cells, results, strict=True):
-            line.append("" if one.time is None else f"{one.time:.5g}")
+            line.append(None if one.time is None else NumberCell(one.time, write="{:.5g}".format))
     best = selection.extremes[k]
     if best is not None and not best.is_constant:
         marks = pad_words(["", *(choose_mark(best, place) for place in selection.rows)])
@@ -122,21 +120,23 @@ def choose_mark(best: MeasureExtremes, place: int) -> str:
     return GREATEST if best.may_be_greatest[place] else ""
 
 
-def format_measure(one: MeasureValue, size: float, scale: float) -> str:
-    """Format a measure with the digits that its error supports.
+def _make_measure_cells(results: Sequence[MeasureValue], size: float, scale: float) -> list[Cell]:
+    """Make the cells of a measure with the digits that their errors support; a word where there is no value.
 
     size: factor to the display unit
     scale: the largest value, in that unit
-
-    A value not above its error is 0 relative to a larger one, and unknown if there is none.
     """
-    if one.value is None:
-        return MISSING_KINDS[one.word].mark if one.word else ""
-    return format_number(size * one.value, size * (one.error or 0.0), scale)
+    known = [(size * one.value, size * (one.error or 0.0)) for one in results if one.value is not None]
+    numbers = iter(trim_cells([(value, error, choose_number_style(value, error, scale)) for value, error in known]))
+    words = [MISSING_KINDS[one.word].mark if one.word else "" for one in results]
+    return [next(numbers) if one.value is not None else word for one, word in zip(results, words, strict=True)]
 
 
-def format_number(value: float, error: float, scale: float) -> str:
-    """Format a number with the digits that its error supports, as in `format_measure`."""
+def choose_number_style(value: float, error: float, scale: float) -> Style:
+    """Choose the style of a number with the digits that its error supports.
+
+    A value not above its error is 0 relative to a larger one, the `scale`, and unknown if there is none.
+    """
     if value == 0.0 or not np.isfinite(value):
-        return choose_style(0.0, 0.0).write(value)
-    return choose_style(abs(value) if abs(value) > error else scale, error).write(value)
+        return choose_style(0.0, 0.0)
+    return choose_style(abs(value) if abs(value) > error else scale, error)

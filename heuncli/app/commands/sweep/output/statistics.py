@@ -28,7 +28,7 @@ INDEPENDENT = 2  # of the variants of a sample for Sobol indices: A and B
 
 
 class MeasureStatistics(NamedTuple):
-    """The statistics of one measure at one combination of the other axes.
+    """The statistics of one measure for fixed values of the axes that are not random.
 
     combination: its values
     measure: index of the measure

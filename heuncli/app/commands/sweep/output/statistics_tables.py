@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from heuncli.analyses.sweep_rows import SweepHead, make_parameter_columns
 from heuncli.analyses.variants.parameters import RandomVariable
 from heuncli.analyses.variants.sample_statistics import CONFIDENCE, MIN_INDEX_BOUNDED, BoundedEstimate
-from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, format_variant_count
+from heuncli.app.commands.sweep.output.shown_rows import choose_number_style, format_parameter, format_variant_count
 from heuncli.app.commands.sweep.output.statistics import MeasureStatistics
-from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable
 from heuncli.output.tables.plurals import format_count
 from heuncli.study.quantities.digits import format_error
 from heuncli.study.quantities.table_units import Units
@@ -57,7 +57,7 @@ def _make_statistics_table(
     head: SweepHead, statistics: Sequence[MeasureStatistics], units: Units, omitted: int
 ) -> OutputTable:
     columns = (OutputColumn("", "text"), OutputColumn("value"), OutputColumn("from"), OutputColumn("to"))
-    rows: list[tuple[str, ...] | str] = []
+    rows: list[tuple[Cell, ...] | str] = []
     notes = _make_notes(head)
     for one in statistics:
         unit, size = units.find(head.measures[one.measure].unit)
@@ -97,13 +97,15 @@ def has_large_errors(one: MeasureStatistics) -> bool:
     return mean is not None and mean.low is not None and one.error > ERROR_SHARE * (mean.value - mean.low)
 
 
-def _make_row(label: str, one: BoundedEstimate, size: float) -> tuple[str, ...]:
-    """Format a statistic with the digits that its interval supports."""
+def _make_row(label: str, one: BoundedEstimate, size: float) -> tuple[Cell, ...]:
+    """Make the row of a statistic with the digits that its interval supports."""
     ends = [one.value if end is None else end for end in (one.low, one.high)]
     half_width = 0.5 * size * (ends[1] - ends[0])
     scale = size * max(abs(one.value), *map(abs, ends))
-    texts = (format_number(size * end, 0.01 * half_width, scale) if end is not None else "-" for end in one)
-    return (label, *texts)
+    error = 0.01 * half_width
+    numbers = [None if end is None else size * end for end in one]
+    cells = ("-" if x is None else NumberCell(x, error, choose_number_style(x, error, scale).write) for x in numbers)
+    return (label, *cells)
 
 
 def _make_index_table(
@@ -111,7 +113,7 @@ def _make_index_table(
 ) -> OutputTable:
     names = ("", "first order", "from", "to", "total", "from", "to")
     columns = tuple(OutputColumn(name, "text" if not name else "number") for name in names)
-    rows: list[tuple[str, ...] | str] = []
+    rows: list[tuple[Cell, ...] | str] = []
     notes: list[str] = ["first order: of the parameter alone; total: including its interactions"]
     for one in statistics:
         if one.indices is None:
@@ -120,9 +122,9 @@ def _make_index_table(
             continue
         rows.append(f"{format_label(head, one)}: {format_count(one.samples, 'sample')}")
         for law, index_pair in zip(laws, one.indices, strict=True):
-            rows.append(
-                (law.name, *("-" if end is None else f"{end:.3f}" for estimated in index_pair for end in estimated))
-            )
+            ends = [end for estimated in index_pair for end in estimated]
+            cells = ("-" if end is None else NumberCell(end, write="{:.3f}".format) for end in ends)
+            rows.append((law.name, *cells))
         if one.samples < MIN_INDEX_BOUNDED:
             notes.append(UNBOUNDED.format(format_label(head, one), one.samples))
     return OutputTable(INDICES, columns, tuple(rows), tuple(notes))

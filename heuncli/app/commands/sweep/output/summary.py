@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, make_parameter_columns
 from heuncli.analyses.variants.plans import Plan
-from heuncli.app.commands.sweep.output.shown_rows import format_number, format_parameter, pad_words
+from heuncli.app.commands.sweep.output.shown_rows import choose_number_style, format_parameter, pad_words
 from heuncli.app.commands.sweep.output.top_k import ShownRows
 from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables.plurals import format_count
@@ -62,14 +62,13 @@ def format_course_head(plan: Plan) -> str:
 def _format_extreme(
     head: SweepHead, selection: ShownRows, k: int, place: int, candidates: Array, size: float
 ) -> tuple[str, str]:
-    """Return an extreme, and the variant that has it.
+    """Format an extreme, and name the variant in which it occurs.
 
     candidates: which variants may have it as well
     """
     values, errors = selection.columns.values(k), selection.columns.errors(k)
-    (text,) = trim_zeros(
-        [format_number(size * float(values[place]), size * float(errors[place]), size * largest_magnitude(values))]
-    )
+    value, error = size * float(values[place]), size * float(errors[place])
+    (text,) = trim_zeros([choose_number_style(value, error, size * largest_magnitude(values)).write(value)])
     variant_text = format_variant(head.plan, make_parameter_columns(head.plan), int(selection.columns.numbers[place]))
     others = int(np.count_nonzero(candidates)) - 1
     return text, f"{variant_text} or {others} more" if others else variant_text

@@ -43,9 +43,9 @@ def collect_warnings(head: SweepHead, rows: Iterable[SweptRow]) -> SweepWarnings
     absent: Counter[str] = Counter()
     for row in rows:
         count += 1
-        if row.answer.code:
-            codes[row.answer.code] += 1
-        for text in row.answer.warnings:
+        if row.result.code:
+            codes[row.result.code] += 1
+        for text in row.result.warnings:
             kind = strip_numbers(text)
             if kind in warnings or len(warnings) < MAX_KINDS:
                 first, so_far = warnings.get(kind, (text, 0))
@@ -53,7 +53,7 @@ def collect_warnings(head: SweepHead, rows: Iterable[SweptRow]) -> SweepWarnings
             else:
                 other_kinds += 1
         absent.update(
-            m.text for m, one in zip(head.measures, row.answer.measures, strict=False) if one.word == "absent"
+            m.text for m, one in zip(head.measures, row.result.measures, strict=False) if one.word == "absent"
         )
     return SweepWarnings(count, codes, warnings, other_kinds, absent)
 

@@ -6,10 +6,12 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
+import numpy as np
+
 from heuncli.analyses.sweep_rows import SweepHead, SweptRow
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
-from heuncli.app.commands.sweep.output.extremes import MeasureExtremes, find_extremes
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Array
 
 MAX_ROWS = 60  # shown without --all
 END_ROWS = 10  # rows at the beginning and at the end of more
@@ -57,7 +59,7 @@ class ExtremeRows:
 
     def add(self, row: SweptRow, place: int) -> None:
         """Keep the row if it has an extreme."""
-        for k, one in enumerate(row.answer.measures):
+        for k, one in enumerate(row.result.measures):
             if one.value is None:
                 continue
             for best, sign in ((self._least, 1.0), (self._greatest, -1.0)):
@@ -68,3 +70,34 @@ class ExtremeRows:
     def iter_rows(self) -> Iterator[tuple[int, SweptRow]]:
         """Yield these rows with their indices."""
         return ((known[1], known[2]) for known in (*self._least, *self._greatest) if known is not None)
+
+
+class MeasureExtremes(NamedTuple):
+    """The extremes of a measure.
+
+    least, greatest: indices of the variants
+    may_be_least, may_be_greatest: (n,) bool, which variants may be it as well by their errors
+    """
+
+    least: int
+    greatest: int
+    may_be_least: Array
+    may_be_greatest: Array
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether any variant could be either: the measure does not vary, as far as is known."""
+        return bool(self.may_be_least[self.greatest])
+
+
+def find_extremes(values: Array, errors: Array) -> MeasureExtremes | None:
+    """Find the extremes of a measure, (n,) values and errors, nan if unknown; None if fewer than two values are
+    known.
+    """
+    if np.count_nonzero(np.isfinite(values)) < 2:
+        return None
+    least, greatest = int(np.nanargmin(values)), int(np.nanargmax(values))
+    with np.errstate(invalid="ignore"):
+        low = values - errors <= values[least] + errors[least]
+        high = values + errors >= values[greatest] - errors[greatest]
+    return MeasureExtremes(least, greatest, low, high)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator
 
-from heuncli.analyses.sweep_rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow, make_columns
 from heuncli.app.cli import terminal
 from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError
@@ -13,6 +13,7 @@ from heuncli.app.cli.output import emit
 from heuncli.base import files
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_csv import format_line
 from heuncli.output.documents.document import OutputDocument
 from heuncli.study.quantities.table_units import Units
 
@@ -59,8 +60,6 @@ def write_sweep(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) 
 def iter_pieces(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> Iterator[str]:
     """Yield the sweep as text."""
     if output.form == "csv":
-        from heuncli.app.commands.sweep.output.as_csv import iter_csv
-
         return iter_csv(head, rows)
     if output.form == "json":
         from heuncli.app.commands.sweep.output.as_json import iter_json
@@ -75,3 +74,11 @@ def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput)
     on_terminal = output.output is None and terminal.is_terminal()
     tables = make_tables(head, rows, output.units, output.all, sys.stdout.encoding if on_terminal else None)
     yield from render_document(OutputDocument(parts=tables), "table", output.output)
+
+
+def iter_csv(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:
+    """Yield the lines one after the other."""
+    columns = make_columns(head)
+    yield format_line(columns.headings)
+    for row in rows:
+        yield format_line(columns.make_cells(row))

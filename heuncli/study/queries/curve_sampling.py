@@ -1,4 +1,4 @@
-"""The lowest and highest of many curves over the instants of a run, from their values at some of these.
+"""Sample curves over the instants of a run: choose the instants, and find the lowest and highest values from samples.
 
 The instants bracket every summit. About a sample that is higher than its neighbours, the curve is approximated by the
 parabola through the three samples. For a sine of amplitude 1 it adds up to c = step² / 8 to the sample, with an error
@@ -11,8 +11,32 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
+from heuncli.study.queries.study import Study
+from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 
+MIN_CURVE_INSTANTS = 400  # instants of a curve: nearly two a pixel
+MAX_SEARCH_INSTANTS = 4000  # largest number of the search's instants that a curve uses
 MAX_ADDED = 0.03  # of the largest value, added by a parabola: the error is then 1.4e-3, a fifth of a pixel
+
+
+def choose_curve_instants(study: Study, max_search_instants: int = MAX_SEARCH_INSTANTS) -> Array:
+    """Choose the instants of curves, (n,) ascending, up to the horizon.
+
+    max_search_instants: how many instants of the search for extremes are used at most
+    """
+    results = study.results
+    times = results.time
+    if study.has_one_instant:
+        return times
+    search_times = study.search_times
+    if len(search_times) > max_search_instants:
+        jumps = np.flatnonzero(find_jump_sides(search_times))
+        selected = np.linspace(0, len(search_times) - 1, max_search_instants).round().astype(np.intp)
+        search_times = search_times[sort_distinct(np.concatenate([selected, jumps, jumps + 1]))]
+    even = np.linspace(times[0], times[-1], MIN_CURVE_INSTANTS)
+    curve_times = sort_distinct(np.concatenate([times, search_times, even]))
+    horizon = results.horizon
+    return np.asarray(curve_times if horizon is None else curve_times[curve_times < horizon])
 
 
 class CurveBounds(NamedTuple):
