@@ -29,7 +29,7 @@ def make_heading(results: Results, show_reductions: bool = False, *, brief: bool
     lines = [
         ("model", _describe_model(results) + (f"; {_describe_span(results)}" if brief else "")),
         *(_label_sentences("reduced", results.model.get("reduced", ())) if show_reductions else ()),
-        *(("unchecked", sentence) for sentence in results.model.get("cannot_tell", ())),
+        *(("omitted", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_describe_moved_bodies(results.model.get("moved", ())),
         *_describe_start(results.model.get("started", ())),
         *([] if brief else [("run", _describe_run(results))]),
