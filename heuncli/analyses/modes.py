@@ -213,7 +213,7 @@ def require_steady_drives(setup: Setup) -> None:
     laws = [law for law in setup.scene.mechanism.laws if not has_constant_rate(law.value)]
     if laws:
         drives = [law.name for law in laws if not law.is_rope]
-        hint = f"--without {','.join(drives)}: modes with it fixed at its start"
+        hint = f"--without {','.join(drives)}: finds the modes with the drive locked at its start"
         hint = hint if drives else "give a length that is constant or grows at a constant rate"
         raise SolveError(*(
             Problem("no-modes", f"{law.path} does not have a constant rate", hint=hint) for law in laws

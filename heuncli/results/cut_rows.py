@@ -96,7 +96,7 @@ def find_cut_rows(word: str, s: Array, sides: Sequence[str | None] | None) -> li
     matching = [row for row in rows if sides[row] == selector.side]
     if not matching:
         side = sides[rows[0]]
-        message = f"'{word}': the run {'begins' if cut == 0 else 'ends'} there, with the cut just {side} the load"
+        message = f"'{word}': the series {'begins' if cut == 0 else 'ends'} there, with the cut just {side} the load"
         raise cut_error(message, f"{word.partition(':')[0]}:{side}, or leave the side out")
     return matching
 
@@ -106,7 +106,9 @@ def _find_cut(word: str, selector: CutSelector, s: Array) -> int:
     last = len(s) - 1
     if selector.cut is not None:
         if selector.cut > last:
-            raise cut_error(f"'{word}': the run has {last + 1} cuts, 0 to {last}", f"cuts are counted from 0: {last}")
+            raise cut_error(
+                f"'{word}': the series has {last + 1} cuts, 0 to {last}", f"cuts are counted from 0: {last}"
+            )
         return selector.cut
     if selector.end is not None or selector.s is None:
         return 0 if selector.end == "start" else last

@@ -151,7 +151,8 @@ def describe_conditions(spec: Spec) -> list[str]:
     times = {True: "each time", False: "the first time"}
     impulses = [f"impulse: {b.name}, {times[b.every]} {b.when.text}" for b in spec.impulses.values() if b.when]
     return [*impulses, *(describe_latch(name, stop) for name, stop in spec.latches.items())] + [
-        f"ends when {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions
+        f"end condition: {c.text}" if c.ends else f"event monitored: {c.name} ({c.text})"
+        for c in spec.analysis.conditions
     ]
 
 

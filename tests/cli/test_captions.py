@@ -58,14 +58,18 @@ def test_json_has_the_labels(spec: str, capsys: pytest.CaptureFixture[str]) -> N
     [
         (
             ["--label", "joints.main_pni=X"],
-            "--label joints.main_pni: the spec has nothing",
+            "--label joints.main_pni: nothing in the spec has this name",
             "did you mean joints.main_pin",
         ),
-        (["--label", "main_pin=X"], "--label main_pin: the spec has nothing", "did you mean joints.main_pin?"),
-        (["--label", "rod.top=X"], "--label rod.top: the spec has nothing", "did you mean points.rod.top"),
+        (
+            ["--label", "main_pin=X"],
+            "--label main_pin: nothing in the spec has this name",
+            "did you mean joints.main_pin?",
+        ),
+        (["--label", "rod.top=X"], "--label rod.top: nothing in the spec has this name", "did you mean points.rod.top"),
         (["--label", "joints.main_pin"], "expected PATH=TEXT", "for example"),
         (["--label", "joints.main_pin="], "--label joints.main_pin: the text is empty", ""),
-        (["--label", "bodies.rod=a\x1bb"], "--label bodies.rod: the text has a line end", ""),
+        (["--label", "bodies.rod=a\x1bb"], "--label bodies.rod: the text has a line break", ""),
         (["--title", "x" * 81], "--title: 81 characters; at most 80", ""),
     ],
 )

@@ -163,7 +163,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["run"], "Missing argument"),
         (["run", "nosuch.yaml"], "nosuch.yaml"),
         (["run", "wrong.yaml"], "wrong.yaml:9:"),
-        (["run", "hanging.yaml", "--format", "xml"], "known: table, json, csv, markdown"),
+        (["run", "hanging.yaml", "--format", "xml"], "expected table, json, csv, markdown"),
         (["run", "hanging.yaml", "--only", "joins"], "known: motion"),
         (["run", "hanging.yaml", "--set", "m"], "NAME=VALUE"),
         (["run", "hanging.yaml", "--at", "1"], "there is one instant"),

@@ -78,9 +78,9 @@ def foreign(*_: Any, **__: Any) -> Any:
     [
         ("heuncli.scene.file_format.load.read_source", "run hanging.yaml", "while the spec was read"),
         ("heuncli.scene.file_format.load.read_source", "validate hanging.yaml", "while the spec was read"),
-        ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the model was set up"),
-        ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the model was set up"),
-        ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the model was set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the model was being set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the model was being set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the model was being set up"),
         ("heuncli.loads.equilibrium.search.make_rest_law", "run rest.yaml", "while the rest position was searched"),
         (
             "heuncli.scene.expressions.discontinuities._find_switch_changes",

@@ -48,13 +48,16 @@ def test_a_word_too_many_is_bad_usage(heun: Heun) -> None:
     ("words", "told"),
     [
         (["--method", "RK4"], "[fixed-step]"),
-        (["--step", "0.01"], "auto chooses its own steps and takes no step [fixed-step]"),
+        (["--step", "0.01"], "auto chooses its own step size, so no step can be given [fixed-step]"),
         (["--method", "DOP853", "--step", "0.01"], "[fixed-step]"),
         (["--method", "ode45"], "write method: DOPRI5"),
         (["--method", "RK5"], "did you mean RK4? `heun methods` lists them"),
         (["--method", "gauss 4"], "did you mean Gauss4?"),
         (["--method", ""], "'' is not an integration method [unknown-method]"),
-        (["--method", "auto", "--step", "0.01"], "auto chooses its own steps and takes no step [fixed-step]"),
+        (
+            ["--method", "auto", "--step", "0.01"],
+            "auto chooses its own step size, so no step can be given [fixed-step]",
+        ),
         (["--method", "RK4", "--step", "0"], "expected a positive number [bad-option]"),
         (["--method", "RK4", "--step", "nan"], "expected a positive number [bad-option]"),
         (["--method", "RK4", "--step", "1e-300"], "use steps of at least 2e-07 s"),
@@ -102,7 +105,10 @@ def test_words_of_other_programs_lead_to_methods() -> None:
         ("method: RK4, step: 0", ["analysis.step: step must be greater than 0, but is 0 [not-positive]"]),
         ("method: RK4, step: .nan", ["analysis.step: nan is not a finite number [not-finite]"]),
         ("method: RK4, step: 1 mm", ["analysis.step: '1 mm' is a length, expected a time [dimension]"]),
-        ("method: auto, step: 0.1", ["analysis.step: auto chooses its own steps and takes no step [fixed-step]"]),
+        (
+            "method: auto, step: 0.1",
+            ["analysis.step: auto chooses its own step size, so no step can be given [fixed-step]"],
+        ),
     ],
 )
 def test_a_spec_is_told_each_error_once_and_where(heun: Heun, given: str, told: list[str]) -> None:

@@ -43,7 +43,7 @@ def test_a_page_with_the_verdict_at_the_top(heun: Heun, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
-        (("free.yaml", "--format", "csv"), 2, "--format csv: known: table, json"),
+        (("free.yaml", "--format", "csv"), 2, "--format csv: expected table, json"),
         (("free.yaml", "--time-limit", "-1"), 2, "expected a positive number"),
         (("nowhere.yaml",), 2, "nowhere.yaml"),
         (("free.yaml", "--time-limit", "1e-9"), 4, "time limit"),

@@ -516,8 +516,8 @@ def test_what_nothing_holds() -> None:
     assert "bodies.stone falls: nothing stops it" in refused(stone)
     slope = "r: {type: slide, from: ground.O, to: c.c, axis: [1, 0, -0.1]}"
     cart = f"{HEAD}{POINTS}bodies: {{c: {{{BALL}}}}}\njoints: {{{slope}}}"
-    assert "joints.r slides without end" in refused(cart)
-    assert "joints.p rotates without end" in refused(pendulum("0", "forces: {m: {type: torque, joint: p, value: 6}}"))
+    assert "joints.r keeps sliding" in refused(cart)
+    assert "joints.p keeps rotating" in refused(pendulum("0", "forces: {m: {type: torque, joint: p, value: 6}}"))
 
 
 def test_what_does_not_keep_still() -> None:

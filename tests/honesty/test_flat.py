@@ -81,7 +81,7 @@ def test_the_plane_is_all_that_the_reduced_model_shows() -> None:
     reduced = found(swing())
     assert isinstance(reduced, Reduction)
     assert "symmetric about this plane" in reduced.explanations[0]
-    assert "stable against out-of-plane disturbances" in reduced.limitations[0]
+    assert "stability of the planar motion against out-of-plane disturbances" in reduced.limitations[0]
 
 
 DOOR = """

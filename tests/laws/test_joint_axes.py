@@ -142,4 +142,4 @@ def test_the_heading_says_so(words: list[str], heading: str, capsys: pytest.Capt
 
 def test_other_axes_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", str(SPECS / "double.yaml"), "--axes", "body"]) == 2
-    assert "--axes body: known: world, from, to" in capsys.readouterr().err
+    assert "--axes body: expected world, from, to" in capsys.readouterr().err

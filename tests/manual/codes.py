@@ -14,7 +14,7 @@ from tests.shared.broken import FILES, HEAD, body, cured, cures, head, is_in_wor
 from tests.shared.folders import ROOT
 
 PAGE = ROOT / "heuncli" / "manual" / "codes.md"
-GENERATED = "Each with its cause, the remedy, and a spec's lines before (-) and after (+) the cure.\n"
+GENERATED = "Each with its cause, the remedy, and a spec's lines before (-) and after (+) the correction.\n"
 WIDEST = 120
 NEAR = 8  # characters that are shown before what changes in a line
 LONGEST = 48  # characters of a line that is shown whole

@@ -7,7 +7,6 @@ A table is known by its page, its heading and its first line; what stands around
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -27,14 +26,12 @@ from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.foreign_words import SHAPE_WORDS, list_aliases
 from tests.manual import codes
 from tests.manual.keys import PLACES
-from tests.shared.cited_texts import equations
 from tests.shared.help_text import HELP, help_of_typer
 from tests.shared.manual import README, anchor, below, file_of, tables_below
 
 (RUN,) = (command for command in COMMANDS if command.name == "run")
 OF_RUN = {(field.option.words, field.option.help) for field in list_fields(RUN.request)}
 ALIKE = ("`--case NAME`", "`--units UNIT,...`")  # mean what they mean in `heun run`, in other words
-SEEN = 3  # words by which a group of equations is seen
 SOLVED = [row for row in ROWS if row.meaning != NOT_YET]
 
 
@@ -203,23 +200,10 @@ def loads() -> Iterator[tuple[str, str]]:
     return ((f"`{name}`", LOAD_KINDS[name].description) for name in fl.LOADS)
 
 
-def groups_of_equations() -> Iterator[tuple[str, str, str]]:
-    """The headings of the page on equations with their numbers, and the first words by which users see them."""
-    for heading, rows in equations().items():
-        numbers = [int(n) for row in rows for n in re.findall(r"\((\d+)\)", row[0])]
-        first, last = min(numbers), max(numbers)
-        words = [word for row in rows for word in re.findall(r"`([^`]+)`", row[2])]
-        seen = dict.fromkeys(word for word in words if "." in word or word.startswith("heun "))
-        yield f"({first})–({last})" if first < last else f"({first})", heading, quoted([*seen][:SEEN])
-
-
 TABLES = (
-    Table(
-        "references", "Equations of the paper, by group", ("equations", "of", "seen in"), list(groups_of_equations())
-    ),
     Table(README, "The manual", ("page", "about"), list(pages())),
     Table("results", "Paths", ("path", "SI unit", ""), list(results())),
-    Table("results", "What is no number", ("path", "meaning"), list(no_numbers())),
+    Table("results", "What is not a number", ("path", "meaning"), list(no_numbers())),
     Table("format", "Units", ("quantity", "units"), list(units())),
     Table("format", "Expressions", ("", ""), list(words())),
     Table("format", "Joints", ("type", "or", "conditions", "may be driven", "takes"), list(joints())),

@@ -24,7 +24,7 @@ QUESTIONS = [
         "exit code",
         "commands",
         "Exit codes",
-        "no YAML is a bad spec: 2",
+        "not YAML is a bad spec: 2",
     ),
     ("what is ? in a table?", "?", "accuracy", "Digits", "`?`: the error is as large as the number"),
     ("the torque of a motor?", "motor", "results", "Paths", "`joints.JOINT.drive`"),
@@ -33,7 +33,7 @@ QUESTIONS = [
     ("a hinge?", "revolute", "format", "Joints", "rotation about `axis`"),
     ("a dashpot between two points?", "dashpot", "format", "spring", "`damping`"),
     ("the default tolerance?", "tolerance", "format", "Analysis", "1e-9"),
-    ("which way does e1 point?", "first_axis", "format", "Sections", "Of a bar along x it is y"),
+    ("which way does e1 point?", "first_axis", "format", "Sections", "For a bar along x it is y"),
     ("where is the coefficient of friction?", "mu", "format", "friction", "Coulomb's friction"),
     ("a load of wind?", "wind", "format", "distributed", "linear between"),
 ]

@@ -145,7 +145,7 @@ LATE = {  # defaults that are taken after the models are read
 SIZES = (
     ("numbers to export", MOST_NUMBERS),
     ("samples", MAX_SAMPLES),
-    ("cuts in a run", MAX_CUTS),
+    ("cuts in a series", MAX_CUTS),
     ("steps", tolerances.MOST_STEPS),
     ("time", LONGEST_RUN),
     ("an expression", LONGEST_EXPRESSION),

@@ -58,7 +58,7 @@ def test_units(kind: str, name: str, key: str, unit: str) -> None:
     [
         ((0.0, 0.0, -1.0), None, "body x"),
         ((1.0, 0.0, 0.0), None, "body y"),
-        ((1.0, 1.0, 0.0), None, "body y made perpendicular to n, which is closest to body x"),
+        ((1.0, 1.0, 0.0), None, "body y, made perpendicular to n (n is closest to body x)"),
         ((1.0, 1e-12, 2e-12), None, "body y"),
         ((0.0, 0.0, 3.0), (0.0, 1.0, 0.5), "body (0, 1, 0.5)"),
     ],

@@ -306,7 +306,7 @@ def test_the_heading_tells_what_was_solved_and_how_accurate_it_is() -> None:
 
 def test_a_planar_scene_says_what_there_is_not() -> None:
     flat = dataclasses.replace(pendulum(T), model={**pendulum(T).model, "space": "planar", "plane": "declared"})
-    assert "planar, 2 bodies, 4 degrees of freedom; planar model" in format_heading(flat)
+    assert "planar, 2 bodies, 4 degrees of freedom; out-of-plane components are 0" in format_heading(flat)
 
 
 def test_nothing_asked_for_leaves_nothing_to_search() -> None:

@@ -192,7 +192,7 @@ def test_a_section_beyond_its_strength_is_said_first(heun: Heun, folder: Path, s
     assert row[2] == "0 beyond"
     assert row[-2] == strength.split()[0]
     first = " ".join(read.by_tag["header"][0].split())
-    assert f"in section along, at s = 0 m beyond, in case heavy. {words}".strip() in first
+    assert f"in section along, just beyond s = 0 m, in case heavy. {words}".strip() in first
     assert ("Strength exceeded" in first) == bool(words)
 
 

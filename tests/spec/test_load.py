@@ -133,10 +133,10 @@ def test_rodrigues_is_the_axis_times_the_tangent_of_half_the_angle() -> None:
 
 @pytest.mark.parametrize(("text", "words"), [
     ("{}", "empty"),
-    ("{axis: [0, 0, 1]}", "without angle"),
-    ("{angle: 1}", "without axis"),
+    ("{axis: [0, 0, 1]}", "has no angle"),
+    ("{angle: 1}", "has no axis"),
     ("{axis: [0, 0, 0], angle: 1}", "no direction"),
-    ("{euler: [1, 2, 3]}", "without sequence"),
+    ("{euler: [1, 2, 3]}", "has no sequence"),
     ("{euler: [1, 2, 3], sequence: zzy}", "'zzy'"),
     ("{euler: [1, 2, 3], sequence: ZYX}", "'ZYX'"),
     ("{quaternion: [1, 1, 0, 0]}", "length 1.41421"),

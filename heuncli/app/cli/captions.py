@@ -78,7 +78,7 @@ def _find_label_path(path: str, spec: Spec) -> str:
         return path  # of one quantity
     same_names = [known for known in paths if known.endswith(f".{path}")]
     hint = f"did you mean {', or '.join(same_names)}?" if same_names else suggest(path, paths, "paths")
-    raise UsageError(Problem("unknown-path", f"--label {path}: the spec has nothing of this name", hint=hint))
+    raise UsageError(Problem("unknown-path", f"--label {path}: nothing in the spec has this name", hint=hint))
 
 
 def iter_label_paths(spec: Spec) -> Iterator[tuple[str, str]]:

@@ -28,7 +28,7 @@ class Option(NamedTuple):
 SET = Option(
     ("--set",), "Set a parameter, or a dotted key of the spec. May be repeated.", "NAME=VALUE", completes="set"
 )
-TITLE = Option(("--title",), "Title, in place of that of the spec.", "TEXT")
+TITLE = Option(("--title",), "Title in place of the spec's.", "TEXT")
 LABEL = Option(
     ("--label",),
     "Text shown in place of a name, such as joints.main='Main bearing'. May be repeated.",

@@ -120,5 +120,6 @@ def format_warnings(spec: Spec, results: Results | None, place: str, later: Iter
 
 def format_timings(work: Mapping[str, Any]) -> str:
     """Return the time of each step of the work, in milliseconds."""
-    parts = [f"{name} {1e3 * seconds:.1f} ms" for name, seconds in work.get("seconds", {}).items()]
+    seconds_by_part = {"discarded" if name == "lost" else name: s for name, s in work.get("seconds", {}).items()}
+    parts = [f"{name} {1e3 * seconds:.1f} ms" for name, seconds in seconds_by_part.items()]
     return ", ".join(parts)

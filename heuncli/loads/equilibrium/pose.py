@@ -100,12 +100,12 @@ def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Ar
     for k in np.flatnonzero(distances >= 0.5 * distances.max()).tolist():
         name, turns = coordinates.find_owner(k)
         if turns:
-            sentences[f"{name} rotates without end"] = None
+            sentences[f"{name} keeps rotating"] = None
         elif name.startswith("bodies."):
             falls = displacement[find_free_shifts(coordinates, k)] @ gravity > 0.0
-            sentences[f"{name} {'falls' if falls else 'moves without end'}"] = None
+            sentences[f"{name} {'falls' if falls else 'keeps moving'}"] = None
         else:
-            sentences[f"{name} slides without end"] = None
+            sentences[f"{name} keeps sliding"] = None
     clauses = list(sentences)
     more = f" and {len(clauses) - MAX_NAMES} more" if len(clauses) > MAX_NAMES else ""
     has_thread_friction = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)

@@ -64,7 +64,9 @@ def propose_stepwise(scene: PreparedScene, choices: Choices, model: Block, redun
                 replacements[k], redundant_left = replacement, trial
                 break
     if not replacements:
-        return ["joint types with fewer constraints do not help; give these joints a `stiffness` to split the load"]
+        return [
+            "joint types with fewer constraints do not help; give these joints a `stiffness` to distribute the load"
+        ]
     if redundant_left == 0:
         return [
             f"statically determinate with {format_replacements(scene, replacements, ', ')}: same motion, no "

@@ -144,7 +144,7 @@ def _choice_origin(mechanism: Mechanism, tree: PlacementTree, body: int, fitted_
 
 
 def _default_origin(near_value: Array | None) -> str:
-    return "same as the world frame (default)" if near_value is None else "from `near`"
+    return "of the world frame (default)" if near_value is None else "from `near`"
 
 
 def _format_vector(a: Array, size: float) -> str:

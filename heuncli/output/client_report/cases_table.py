@@ -35,7 +35,7 @@ BOLD_NOTE = (
     "bold: minimum and maximum over all load cases, for magnitudes only the maximum; not where a case may be open, the "
     "value is rounding error, or all cases agree"
 )
-NOISE_NOTE = f"{DASH}: below 1/1000 of the largest of its kind; rows of nothing else are left out"
+NOISE_NOTE = f"{DASH}: below 1/1000 of the largest of its kind; rows of dashes only are left out"
 STEADY_NOTE = "one value: the same at all {}"
 ENVELOPE_NOTE = "least and greatest value of {} load cases; each case: heun run SPEC --case all"
 HIDDEN_CASES_NOTE = "open or unknown, where it may be larger: {}"

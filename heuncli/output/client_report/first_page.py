@@ -140,7 +140,8 @@ def _iter_utilisation(data: ReportData) -> Iterator[Sentence]:
 def _format_position(data: ReportData, greatest: GreatestOfCases) -> str:
     """Format the place, instant and case of a number, as the end of a sentence."""
     place = format_place_in_unit(greatest.extreme.place, data.units)
-    parts = [f"at s = {place}"] if place else []
+    words, _, side = place.rpartition(" ") if place.endswith(("before", "beyond")) else (place, "", "")
+    parts = [f"just {side} s = {words}" if side else f"at s = {words}"] if place else []
     parts += [f"at t = {greatest.instant} s"] if greatest.instant else []
     parts += [f"in case {greatest.run.name}"] if greatest.run.name else []
     return "".join(f", {part}" for part in parts)

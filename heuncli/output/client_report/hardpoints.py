@@ -29,7 +29,7 @@ from heuncli.study.quantities.reader_numbers import choose_reader_style
 
 MAX_CASES = 4  # with a row each for a point; if there are more, the governing one
 MAX_POINTS = 40
-HEADING = "POINTS  place and load at the instant of the greatest force of each case; {}"
+HEADING = "POINTS  position, and load at the greatest force in each case; {}"
 BUSHING_AXES = "bushings in their own axes"
 PLACE_DECIMALS = {"m": 4, "mm": 1}
 

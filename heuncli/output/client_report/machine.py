@@ -55,7 +55,7 @@ def make_model_parts(data: ReportData) -> list[Part]:
     counts = [format_count(int(model["freedoms"]), "degree of freedom")] if "freedoms" in model else []
     redundant = model.get("redundant")
     counts += [format_count(redundant, "redundant constraint")] if isinstance(redundant, int) and redundant else []
-    space = "Planar model" if "planar" in str(model.get("space", "")) else "Model in space"
+    space = "Planar model" if "planar" in str(model.get("space", "")) else "Spatial model"
     return [Sentence(f"{', '.join([space, *counts])}."), *(table for table in tables if table is not None)]
 
 

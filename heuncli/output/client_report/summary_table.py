@@ -29,7 +29,7 @@ from heuncli.study.quantities.digits import OPEN
 MAX_LINES = 12
 MIN_TURN = 0.75 * TURN  # of a joint that keeps turning
 FOUNDATION = "foundation"
-HEADING = "SUMMARY  greatest load of each, and its components there"
+HEADING = "SUMMARY  greatest loads, and their components at that instant"
 MORE_NOTE = "{} smaller ones: chapter Loads"
 ALIKE_NOTE = "several names: the same greatest load; components and instant of the first"
 MAX_ALIKE = 5  # further names in a line

@@ -17,10 +17,10 @@ from heuncli.study.quantities.labels import Labels
 from heuncli.version import VERSION
 
 HEADING = (
-    'HARDPOINTS  loads at the greatest force of each: joints "from" on "to", others on the named end; '
+    'HARDPOINTS  each joint and load at its greatest force: joints "from" on "to", others on the named end; '
     "moment about the point"
 )
-WEIGHT_NOTE = "weight and inertia of the bodies are no rows"
+WEIGHT_NOTE = "weight and inertia of the bodies are not listed"
 NO_ROWS = "nothing to show: no joint, coupling or load acts at an instant"
 AXES = {"world": "world axes", "from": 'axes and origin of the "from" body', "to": 'axes and origin of the "to" body'}
 VECTORS = (("position", "", "m"), ("force", "F", "N"), ("moment", "M", "N·m"))

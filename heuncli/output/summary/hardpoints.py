@@ -1,8 +1,8 @@
 """The hardpoints of a run: where joints, couplings and loads act, with force and moment at each one's greatest force.
 
-A row is what acts ON one end: of a joint the reaction of `from` on `to` about the `to` point, of a spring or a coupling
-the load on each of its ends. The other end of a joint feels the opposite at the same place. Weight and inertia are not
-rows: of a body at rest without weight the rows add up to zero.
+A row is what acts ON one end: for a joint the reaction of `from` on `to` about the `to` point, for a spring or a
+coupling the load on each of its ends. The other end of a joint feels the opposite at the same place. Weight and inertia
+are not rows: of a body at rest without weight the rows add up to zero.
 """
 
 from __future__ import annotations

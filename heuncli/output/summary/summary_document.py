@@ -18,7 +18,7 @@ from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.version import VERSION
 
-HEADING = 'SUMMARY  greatest loads; of a joint the reaction of "from" on "to"'
+HEADING = 'SUMMARY  greatest loads; for a joint, the reaction of "from" on "to"'
 MAX_LINES = 12  # rows, and lines on what is indeterminate
 MAX_GROUPS = 4  # of what is indeterminate
 ALONG_AXIS = 0.9995  # cosine: a direction is that of an axis, to the decimals shown
@@ -155,8 +155,8 @@ def _format_place(row: SummaryRow, summary: Summary) -> str:
     if row.place is None or math.isnan(row.place.s):
         return ""
     style = choose_reader_style("m", row.place.s, summary.labels.units)
-    side = f" {row.place.side}" if row.place.side else ""
-    return f"s = {style.write(row.place.s)} {style.unit}{side}"
+    side = f"just {row.place.side} " if row.place.side else ""
+    return f"{side}s = {style.write(row.place.s)} {style.unit}"
 
 
 def _format_time(time: float, span: float) -> str:

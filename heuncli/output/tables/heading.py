@@ -14,7 +14,7 @@ from heuncli.study.quantities.digits import LOADS, format_error
 
 MAX_SENTENCES = 5
 MAX_MOVED_BODIES = 3
-PLANAR_NOTE = "; planar model: out-of-plane components are 0"
+PLANAR_NOTE = "; out-of-plane components are 0"
 STIFF_PREFIXES = ("stiff: ", "stiff system: ")  # beginnings of the reason for a restart with an implicit method
 NO_METHOD = "none"  # how the name of a method begins that integrates nothing
 PRESCRIBED = "motion fully prescribed: solved at each instant, nothing integrated"
@@ -29,7 +29,7 @@ def make_heading(results: Results, show_reductions: bool = False, *, brief: bool
     lines = [
         ("model", _describe_model(results) + (f"; {_describe_span(results)}" if brief else "")),
         *(_label_sentences("reduced", results.model.get("reduced", ())) if show_reductions else ()),
-        *(("unknown", sentence) for sentence in results.model.get("cannot_tell", ())),
+        *(("omitted", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_describe_moved_bodies(results.model.get("moved", ())),
         *_describe_start(results.model.get("started", ())),
         *([] if brief else [("run", _describe_run(results))]),

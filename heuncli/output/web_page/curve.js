@@ -100,7 +100,7 @@ function drawValues(pen, panel, values, colour, dash) {
   }
 }
 
-/** What lies between the least and the greatest, as a band. */
+/** What lies between the smallest and the greatest, as a band. */
 function drawBand(pen, panel, { low, high }, colour) {
   const known = [...low.keys()].filter((k) => Number.isFinite(low[k]));
   pen.beginPath();

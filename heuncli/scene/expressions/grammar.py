@@ -84,7 +84,7 @@ def require_length(text: str) -> None:
 
 def too_deep_finding() -> Finding:
     """Make the error of an expression with too many nested parentheses."""
-    message = f"an expression nested more than {MAX_DEPTH} levels deep"
+    message = f"the expression is nested more than {MAX_DEPTH} levels deep"
     return Finding("expression-limit", message, "define its inner parts under parameters, or simplify it")
 
 

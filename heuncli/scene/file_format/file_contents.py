@@ -201,7 +201,7 @@ def read_logo(file: str, files: NamedFiles) -> Logo:
         reason = find_svg_fault(content)
         media_type = "image/svg+xml"
     if reason is not None:
-        raise Finding("logo-file", f"the file '{files.path(file)}' is no picture: {reason}", LOGO_HINT)
+        raise Finding("logo-file", f"the file '{files.path(file)}' is not a picture: {reason}", LOGO_HINT)
     return Logo(file, content, media_type)
 
 

@@ -148,6 +148,6 @@ def check_plain_text(value: Any) -> str:
     if len(text) > MAX_TEXT:
         raise Finding("bad-label", f"{len(text)} characters; at most {MAX_TEXT} fit", "write a name, not a description")
     if escape(text) != text:
-        message = f"the text has a line end or an invisible character: {escape(text)}"
+        message = f"the text has a line break or an invisible character: {escape(text)}"
         raise Finding("bad-label", message, "delete it; a label is one line")
     return text

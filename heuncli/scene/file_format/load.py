@@ -347,7 +347,7 @@ class SpecLoader:
         return read_mesh(file, self.get_named_files())
 
     def load_logo(self, document: f.Document) -> Logo | None:
-        """Load the logo of the report; None, and reported, if the file is no picture."""
+        """Load the logo of the report; None, and reported, if the file is not a picture."""
         report = document.head.report
         if not isinstance(report, f.ReportEntry) or report.logo is None:
             return None

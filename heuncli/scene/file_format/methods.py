@@ -34,8 +34,8 @@ def iter_method_problems(method: str, step: float | None, end_time: float | None
         yield MethodProblem("fixed-step", "method", f"{method} needs a fixed step, and none is given", hint)
     if not has_fixed_step and step is not None:
         listed = ", ".join(method_row.name for method_row in METHODS if method_row.steps == "fixed")
-        hint = f"a step is for {listed}; here give a tolerance, as tolerance: 1e-9"
-        yield MethodProblem("fixed-step", "step", f"{method} chooses its own steps and takes no step", hint)
+        hint = f"only {listed} take a step; for {method} give a tolerance: 1e-9"
+        yield MethodProblem("fixed-step", "step", f"{method} chooses its own step size, so no step can be given", hint)
     elif step is not None:
         yield from iter_step_problems(step, end_time)
 
@@ -47,7 +47,7 @@ def find_tolerance_problem(tolerance: float) -> MethodProblem | None:
         return None
     hint = "the default is 1e-9"
     if tolerance > high:
-        hint += "; for a quick look 1e-3 is coarse enough"
+        hint += "; for a quick look 1e-3 is accurate enough"
     elif tolerance > 0.0:
         hint += "; below this range rounding errors dominate"
     return MethodProblem("tolerance", "tolerance", f"tolerance {tolerance:g} is not between {low:g} and {high:g}", hint)

@@ -50,7 +50,7 @@ def orientation_matrix(value: fs.Orientation) -> loads.Matrix:
     forms = [name for name, keys in ORIENTATIONS.items() if given_keys & set(keys)]
     known = "{axis, angle}, {quaternion}, {rodrigues}, {euler, sequence} or {matrix}"
     if len(forms) != 1:
-        description = f"an orientation given by {' and '.join(forms)}" if forms else "an empty orientation"
+        description = f"the orientation is given by {' and '.join(forms)}" if forms else "the orientation is empty"
         raise Finding("orientation", description, f"give one of {known}")
     missing = [key for key in ORIENTATIONS[forms[0]] if key not in given_keys]
     if missing:
@@ -59,7 +59,7 @@ def orientation_matrix(value: fs.Orientation) -> loads.Matrix:
             if missing == ["sequence"]
             else f"give one of {known}"
         )
-        raise Finding("orientation", f"an orientation without {missing[0]}", hint)
+        raise Finding("orientation", f"the orientation has no {missing[0]}", hint)
     if value.axis is not None and value.angle is not None:
         if not any(value.axis):
             raise Finding("orientation", "the axis is [0, 0, 0], which has no direction", "[0, 0, 1] is the z axis")

@@ -22,8 +22,8 @@ from heuncli.scene.file_format.reading import STANDARD_INPUT, digest, read_bytes
 
 MAX_SIZE = 64_000_000  # bytes, and characters; a scene of 100,000 bodies has about 40 million
 MAX_DEPTH = 64
-TOO_DEEP = f"nested more than {MAX_DEPTH} levels deep"
-TOO_DEEP_HINT = "no spec needs that: is a bracket not closed?"
+TOO_DEEP = f"the spec is nested more than {MAX_DEPTH} levels deep"
+TOO_DEEP_HINT = "no model needs such depth: look for a missing closing bracket"
 
 SMALLEST_SPEC = "{heun: 1, bodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}}"
 

@@ -109,7 +109,7 @@ def read_columns_in_si(
     if entry.file is not None:
         if isinstance(entry.x, list) or isinstance(entry.y, list):
             hint = "with a file, x and y name its columns"
-            problems.append(TableProblem((), Finding("table-form", "both a file and lists of numbers", hint)))
+            problems.append(TableProblem((), Finding("table-form", "both a file and lists of numbers are given", hint)))
             return None, []
         column_keys = (entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
         return read_file_columns(column_keys, (entry.x_unit, entry.y_unit), entry.file, files, problems)
@@ -120,7 +120,9 @@ def read_columns_in_si(
                       for key, items, size in lists)  # fmt: skip
         return [array("d", [value for value in values if value is not None]) for values in read_items], units
     hint = "give {file, x, y} with columns by name or number, or the lists {x: [...], y: [...]}"
-    problems.append(TableProblem((), Finding("table-form", "neither a file nor lists of numbers x and y", hint)))
+    problems.append(
+        TableProblem((), Finding("table-form", "neither a file nor lists of numbers x and y are given", hint))
+    )
     return None, units
 
 
@@ -226,7 +228,8 @@ def check_points(x: array[float], y: array[float], entry: TableEntry) -> Iterato
         return
     if entry.outside is not None:
         yield TableProblem(
-            ("outside",), Finding("table-form", "both period and outside", "a periodic table takes no outside")
+            ("outside",),
+            Finding("table-form", "both period and outside are given", "a periodic table takes no outside"),
         )
     span = x[-1] - x[0]
     if abs(entry.period - span) > tolerances.TABLE_ENDS * span:

@@ -95,7 +95,11 @@ class _XmlParser:
             message = f"more than {MAX_ELEMENTS:,} elements, the limit"
             raise self.make_error("too-large", message, "split the file")
         if len(self.open_elements) >= MAX_DEPTH:
-            raise self.make_error("too-deep", f"nested more than {MAX_DEPTH} levels deep", "is an element not closed?")
+            raise self.make_error(
+                "too-deep",
+                f"the file is nested more than {MAX_DEPTH} levels deep",
+                "look for an element that is not closed",
+            )
         for name, value in attributes.items():
             if len(value) > MAX_ATTRIBUTE_LENGTH or len(name) > MAX_ATTRIBUTE_LENGTH:
                 message = f"an attribute of {len(value):,} characters; at most {MAX_ATTRIBUTE_LENGTH:,} are allowed"

@@ -129,7 +129,7 @@ def sort_along_curve(points: Array) -> IndexArray:
 
 # Crossings
 
-JOIN_HINT = "unite its solids in the CAD program, or give each solid its own file"
+JOIN_HINT = "merge its solids in the CAD program, or give each solid its own file"
 EDGE_CORNERS = ((0, 1), (1, 2), (2, 0))
 # corners of the edges, in both directions
 EDGE_BEGINS, EDGE_ENDS = (np.array([0, 1, 2, 1, 2, 0]), np.array([1, 2, 0, 0, 1, 2]))

@@ -36,13 +36,13 @@ def describe_integration(setup: Setup) -> list[str]:
     if setup.method.is_determined:
         return ["none: motion fully prescribed, solved at each instant on the same assembly branch"]
     layout, tolerance = setup.runner.integrated_scene.layout, setup.spec.analysis.tolerance
-    how = f"tolerance {tolerance:.3g} of the model size; repeated with 1/30 of it as a check"
+    how = f"tolerance {tolerance:.3g} of the model size; repeated at 1/30 of this tolerance as a check"
     if setup.step is not None:
-        how = f"in steps of {setup.step:.4g} s; repeated with quarter steps as a check"
+        how = f"in steps of {setup.step:.4g} s; repeated with steps of a quarter as a check"
     row = find_method(setup.method.name)
     kind = f"an {row.kind}" if row is not None and row.kind != "SciPy" else "a"
     sentence = (
-        f"{format_count(layout.n_state, 'state variable')}, by {setup.method.name}, {kind} method of order "
+        f"{format_count(layout.n_state, 'state variable')}, integrated by {setup.method.name}, {kind} method of order "
         f"{setup.method.order}, {how}"
     )
     return [sentence, *describe_cost(setup, tolerance if setup.step is None else setup.step)]
@@ -81,13 +81,11 @@ def describe_cost(setup: Setup, tolerance_or_step: float) -> list[str]:
         try:
             run = min((run_first_part(setup, tolerance_or_step, last) for _ in range(2)), key=lambda run: run.seconds)
         except LimitError:
-            return [
-                f"first {last:.4g} s: over {MAX_STEPS:,} steps or {MAX_TRIAL_SECONDS} s of computing time: a long run"
-            ]
+            return [f"the first {last:.4g} s take over {MAX_STEPS:,} steps or {MAX_TRIAL_SECONDS} s: a long run"]
         steps, evaluations = format_count(run.steps, "step"), format_count(run.evaluations, "evaluation")
         check = "1.3 to 1.5" if setup.step is None else "5"
-        took = f"first {last:.4g} s: {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
-        return [f"{took}; estimated total {whole} times that, plus {check} times as much for the check"]
+        took = f"the first {last:.4g} s take {steps}, {evaluations}, {1e3 * run.seconds:.2g} ms"
+        return [f"{took}; the whole run about {whole} times that, and the check {check} times as much again"]
     return []
 
 

@@ -77,7 +77,7 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
     if scene.undetermined_count:
         block["undetermined"] = scene.undetermined_count
         spins = format_count(scene.undetermined_count, "undetermined spin")
-        block["notes"].append(f"{spins} not counted as degrees of freedom: without inertia, moving nothing else")
+        block["notes"].append(f"{spins} not counted as degrees of freedom: without inertia or effect on other bodies")
     if redundancy.remaining < redundancy.generic:
         block["given_way"] = redundancy.generic - redundancy.remaining
     return block

@@ -18,7 +18,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SpecError, UsageError
 from heuncli.base.method_rows import canonical_name, find_method
 from heuncli.base.records import record
-from heuncli.base.spelling import suggest
+from heuncli.base.spelling import find_similar
 from heuncli.motion.integration.run.progress import MAX_RECORD_NUMBERS
 from heuncli.multibody.mechanism.loads import BushingLoad
 from heuncli.multibody.response import solution_parts
@@ -35,8 +35,9 @@ T = TypeVar("T")
 def require_choice(option: str, value: str, choices: Sequence[str]) -> str:
     """Return the value if it is one of the choices. Raises UsageError that lists them."""
     if value not in choices:
-        hint = suggest(value, choices, "values")
-        raise UsageError(Problem("bad-option", f"{option} {value}: known: {', '.join(choices)}", hint=hint))
+        similar = find_similar(value, choices)
+        hint = f"did you mean {similar}?" if similar else f"for example {option} {choices[0]}"
+        raise UsageError(Problem("bad-option", f"{option} {value}: expected {', '.join(choices)}", hint=hint))
     return value
 
 

@@ -161,7 +161,7 @@ def _describe_first_axis(section: Section) -> str:
     n = n / np.sqrt(n @ n)
     axis = choose_default_axis(n)
     askew = abs(float(n[axis])) > tolerances.PARALLEL
-    construction = f" made perpendicular to n, which is closest to body {AXES[find_nearest_axis(n)]}" if askew else ""
+    construction = f", made perpendicular to n (n is closest to body {AXES[find_nearest_axis(n)]})" if askew else ""
     return f"body {AXES[axis]}{construction}"
 
 

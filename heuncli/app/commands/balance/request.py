@@ -17,11 +17,11 @@ class BalanceRequest(NamedTuple):
         Option(("--save",), "Also draw the orders in this file: chart.svg, .png or .pdf.", "FILE"),
     ] = None
     cycle: Annotated[
-        str | None, Option(("--cycle",), "Angle that defines the cycle. Default: the driven one.", "J.angle")
+        str | None, Option(("--cycle",), "Angle that defines the cycle. Default: the driven angle.", "J.angle")
     ] = None
     turns: Annotated[
         str | None,
-        Option(("--turns",), "Revolutions per cycle; 2 gives half orders. Default: as the loads repeat.", "1|2"),
+        Option(("--turns",), "Revolutions per cycle; 2 gives half orders. Default: found from the loads.", "1|2"),
     ] = None
     rate: Annotated[
         str | None, Option(("--rate",), "Speed of rotation, such as 1500rpm. Default: the speed at the start.", "RATE")
@@ -46,7 +46,7 @@ class BalanceRequest(NamedTuple):
         str | None,
         Option(
             ("--minimise",),
-            "Quantity that counterweights minimise. Default: force; mix if a body has two.",
+            "Quantity that counterweights minimise. Default: force; mix if a body has two counterweights.",
             "force|moment|mix",
         ),
     ] = None

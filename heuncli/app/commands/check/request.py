@@ -18,13 +18,13 @@ class CheckRequest(NamedTuple):
         tuple[str, ...],
         Option(
             (),
-            "YAML files, and folders: every *.yaml below, except in folders named broken.",
+            "YAML files, and folders (every *.yaml in them, except in folders named broken).",
             "PATH...",
             completes="spec",
         ),
     ] = ()
     references: Annotated[
-        bool, Option(("--references",), "Compare published cases with their published results; PATH: names of cases.")
+        bool, Option(("--references",), "Compare published cases with their published results; PATH then names cases.")
     ] = False
     format: Annotated[str | None, Option(("--format",), "Output format. Default: table.", "|".join(FORMATS))] = None
     output: Annotated[str | None, OUTPUT] = None
@@ -47,7 +47,7 @@ class CheckRequest(NamedTuple):
     junit: Annotated[str | None, Option(("--junit",), "Also write a JUnit report.", "FILE")] = None
     jobs: Annotated[
         int | None,
-        Option(("--jobs", "-j"), "Number of processes. Default: one per processor, from eight specs on.", "N"),
+        Option(("--jobs", "-j"), "Number of processes. Default: one per processor for eight or more specs.", "N"),
     ] = None
     select: Annotated[
         str | None, Option(("-k",), "Check only specs with this text in their path or title.", "TEXT")

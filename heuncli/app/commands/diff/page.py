@@ -64,7 +64,7 @@ def _make_table(difference: Difference) -> OutputTable:
 def _make_row(case: str, change: Change) -> tuple[str, ...]:
     name = f"{case}: {change.path}" if case else change.path
     change_text = WORDS.get(change.reason, change.reason) or format_difference(change)
-    change_text += f"; and {change.n_similar} more of its values" if change.n_similar else ""
+    change_text += f"; and {change.n_similar} more values" if change.n_similar else ""
     allowed = f"{change.tolerance:.2g}" if change.tolerance and not change.reason else ""
     values = (WORDS.get(text, text) for text in (format_value(x, change.unit) for x in (change.old, change.new)))
     at = "" if change.what in (EXTRA, MISSING) else WORDS.get(change.what, change.what)

@@ -9,7 +9,7 @@ FORMATS = ("table", "json", "markdown", "github")
 
 
 class DiffRequest(NamedTuple):
-    """Show what changed between two specs, golden files or JSON results by more than both stated errors."""
+    """Show what changed by more than the stated errors between two specs, golden files or JSON results."""
 
     before: Annotated[
         str, Option((), "A spec, a golden file, or a result of heun run --format json.", "A", completes="spec")

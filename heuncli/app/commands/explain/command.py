@@ -29,7 +29,7 @@ OTHERS = (
     ("PATH", "A result, such as joints.main.tilting: meaning, unit, sign, axes, error."),
     ("NUMBER", "An equation of Heun's paper, such as 31."),
 )
-LISTED = "heun explain lists the pages, heun explain words engineering terms"
+LISTED = "heun explain lists the pages, heun explain words the engineering terms"
 
 
 def main(request: ExplainRequest) -> int:

@@ -25,7 +25,7 @@ SIGNS = {
     "system_vector": WORLD,
     IMPULSES: f"as in the block of the same name; {WORLD}; forces are impulses",
 }
-SHAPES = {"space": "x, y, z", "cut": "one number for each cut of a run"}
+SHAPES = {"space": "x, y, z", "cut": "one number for each cut of a series"}
 # of quantities that share one row of the manual's table
 MEANINGS = {
     "joints.JOINT.axial": "force along the joint's axis",

@@ -7,7 +7,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ExplainRequest(NamedTuple):
-    """Explain a page, section or word of the manual, or a code."""
+    """Show a page or section of the manual, or explain a term or code."""
 
     topic: Annotated[
         str | None,

@@ -46,7 +46,7 @@ DEFAULT_SET = "BODY"
 
 def main(request: ExportRequest) -> int:
     """Run the command; returns the exit code."""
-    require_choice("heun export", request.what, WHAT)
+    require_choice("export", request.what, WHAT)
     require_other_file(request.output, [request.spec])
     form = choose_form(request)
     system = _parse_units(request.units)

@@ -59,19 +59,23 @@ class ExportRequest(NamedTuple):
     ] = None
     elements: Annotated[
         str | None,
-        Option(("--elements",), "Name of the mesh's set of all elements of the body, in decks. Default: BODY.", "NAME"),
+        Option(
+            ("--elements",),
+            "Name of the element set in your mesh that holds the whole body, for decks. Default: BODY.",
+            "NAME",
+        ),
     ] = None
     mesh: Annotated[
         str | None,
         Option(
             ("--mesh",),
-            "Solid mesh of the body for CalculiX; its nodes take the load of the angular acceleration.",
+            "Solid mesh of the body for CalculiX; its nodes carry the inertia load of the angular acceleration.",
             "FILE",
         ),
     ] = None
     blow_over: Annotated[
         float | None,
-        Option(("--blow-over",), "Impulses as mean loads over this duration; required for decks.", "SECONDS"),
+        Option(("--blow-over",), "Convert impulses to mean loads over this duration; required for decks.", "SECONDS"),
     ] = None
     case: Annotated[str | None, CASE] = None
     set: Annotated[tuple[str, ...], SET] = ()

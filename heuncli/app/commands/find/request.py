@@ -23,7 +23,11 @@ class FindRequest(NamedTuple):
     case: Annotated[str | None, CASE] = None
     scan: Annotated[
         int | None,
-        Option(("--scan",), "Number of values solved first. Default: 7; more find closer pairs of crossings.", "N"),
+        Option(
+            ("--scan",),
+            "Number of values solved first. Default: 7; more values find crossings that lie closer together.",
+            "N",
+        ),
     ] = None
     evaluations: Annotated[int | None, Option(("--evaluations",), "Maximum number of variants. Default: 300.", "N")] = (
         None

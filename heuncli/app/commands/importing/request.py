@@ -23,7 +23,9 @@ class ImportRequest(NamedTuple):
     repair: Annotated[str | None, Option(("--repair",), "Faults to repair, each noted in a comment.", "FAULT,...")] = (
         None
     )
-    keyframe: Annotated[str | None, Option(("--keyframe",), "MJCF: keyframe of the start position.", "NAME")] = None
+    keyframe: Annotated[
+        str | None, Option(("--keyframe",), "MuJoCo: keyframe that gives the start position.", "NAME")
+    ] = None
     strict: Annotated[bool, Option(("--strict",), "Fail if something has no counterpart.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -7,7 +7,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class LagrangeRequest(NamedTuple):
-    """Show Lagrange's equations in numbers: inertia at each coordinate, forces along it by cause, velocity terms."""
+    """Evaluate Lagrange's equations: effective inertia, generalised forces by cause, velocity terms."""
 
     spec: Annotated[str, SPEC]
     at: Annotated[
@@ -23,7 +23,11 @@ class LagrangeRequest(NamedTuple):
     ] = None
     coordinates: Annotated[
         str | None,
-        Option(("--coordinates",), "Coordinates; rodrigues: for bodies on ball joints.", "NAME,..."),
+        Option(
+            ("--coordinates",),
+            "Generalised coordinates; rodrigues: Rodrigues parameters for bodies on ball joints.",
+            "NAME,...",
+        ),
     ] = None
     seen: Annotated[
         tuple[str, ...],

@@ -7,7 +7,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ModelRequest(NamedTuple):
-    """Show which model is made from a spec, and why."""
+    """Show the model that heun makes from a spec, and why."""
 
     spec: Annotated[str, SPEC]
     format: Annotated[str | None, Option(("--format",), "Output format. Default: text.", "text|json")] = None

@@ -80,4 +80,4 @@ def _exists(word: str) -> bool:
 
 
 def _make_error(message: str, hint: str) -> UsageError:
-    return UsageError(Problem("bad-option", f"heun plot: {message}", hint=hint))
+    return UsageError(Problem("bad-option", f"plot: {message}", hint=hint))

@@ -22,7 +22,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class PlotRequest(NamedTuple):
-    """Plot loads and motion over time, along a bar or in polar form; the machine; a sweep, modes or orders."""
+    """Plot loads and motion (over time, along a bar, polar), the machine, a sweep, modes or orders."""
 
     words: Annotated[
         tuple[str, ...],
@@ -57,7 +57,7 @@ class PlotRequest(NamedTuple):
         str | None,
         Option(
             ("--at",),
-            "Instants of diagrams and of scene, as in heun export; of scene also start, worst (default).",
+            "Instants of diagrams and of the scene, as in heun export; for the scene also start or worst (default).",
             "WHEN,...",
         ),
     ] = None

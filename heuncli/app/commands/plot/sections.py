@@ -42,11 +42,11 @@ def _require_runs(names: Sequence[str], spec: Spec) -> None:
             listed = ", ".join(known[:MAX_NAMES]) + (", ..." if len(known) > MAX_NAMES else "")
             known_text = f"known series of cuts: {listed}" if known else "it has no series of cuts"
             near = find_similar(name, known)
-            hint = f"did you mean sections.{near}?" if near else "a section with from, to and count"
-            message = f"heun plot: sections.{name}: there is no such section in {spec.path}; {known_text}"
+            hint = f"did you mean sections.{near}?" if near else "define a section with from, to and count"
+            message = f"plot: sections.{name}: there is no such section in {spec.path}; {known_text}"
             raise SpecError(Problem("unknown-path", message, hint=hint))
         if section.from_ is None:
-            message = f"heun plot: sections.{name} is a single cut, not a series of cuts along a bar"
+            message = f"plot: sections.{name} is a single cut, not a series of cuts along a bar"
             hint = f"give the section from, to and count; or its loads over time: sections.{name}.M1"
             raise UsageError(Problem("bad-option", message, hint=hint))
 
@@ -54,7 +54,7 @@ def _require_runs(names: Sequence[str], spec: Spec) -> None:
 def _require_one_kind(specs: Sequence[Spec]) -> None:
     """Raise UsageError if forces would be drawn for some specs, and impulses for others."""
     if len({spec.analysis.type == "impulse" for spec in specs}) > 1:
-        message = "heun plot: impulses (type: impulse) and forces cannot share one diagram"
+        message = "plot: impulses (type: impulse) and forces cannot share one diagram"
         raise UsageError(Problem("bad-option", message, hint="draw them separately"))
 
 

@@ -55,7 +55,7 @@ def choose_form(request: ReportRequest) -> str:
     output = request.output
     if output is None:
         hint = "for example -o report.pdf, -o report.html, or -o - for standard output"
-        raise UsageError(Problem("bad-option", "heun report: no output file is given", hint=hint))
+        raise UsageError(Problem("bad-option", "report: no output file is given", hint=hint))
     if output != STDOUT:
         require_writable(output)
     if request.format is not None:

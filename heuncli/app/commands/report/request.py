@@ -45,10 +45,14 @@ class ReportRequest(NamedTuple):
     logo: Annotated[str | None, Option(("--logo",), "Logo above the title: a PNG or SVG file.", "FILE")] = None
     chapters: Annotated[
         str | None,
-        Option(("--chapters",), "Chapters after the first page, in their order. Default: all but spec.", "NAME,..."),
+        Option(
+            ("--chapters",),
+            "Chapters after the first page, in this order. Default: all but machine and spec.",
+            "NAME,...",
+        ),
     ] = None
-    paper: Annotated[str | None, Option(("--paper",), "Paper. Default: a4.", "|".join(PAPERS))] = None
-    landscape: Annotated[bool, Option(("--landscape",), "Print across the paper.")] = False
+    paper: Annotated[str | None, Option(("--paper",), "Paper size. Default: a4.", "|".join(PAPERS))] = None
+    landscape: Annotated[bool, Option(("--landscape",), "Print in landscape format.")] = False
     decimal_comma: Annotated[bool, Option(("--decimal-comma",), "Write numbers with a decimal comma.")] = False
     case: Annotated[
         str | None,

@@ -66,11 +66,11 @@ class RunRequest(NamedTuple):
         bool, Option(("--summary",), "Show only the greatest load of each joint, coupling, load and section.")
     ] = False
     full: Annotated[
-        bool, Option(("--full",), "Show every row of summary and tables, with the method and its residual errors.")
+        bool, Option(("--full",), "Show every row of the summary and the tables, the method and its residual errors.")
     ] = False
     hardpoints: Annotated[
         bool,
-        Option(("--hardpoints",), "Show place, force and moment of every joint and load at its greatest force."),
+        Option(("--hardpoints",), "Show position, force and moment of every joint and load at its greatest force."),
     ] = False
     measure: Annotated[
         tuple[str, ...],

@@ -203,7 +203,7 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
         yield "worst case: unknown, since a contribution is unknown"
         return
     partly = ", for the solvable part of the spreads" if any(one.why[0] for one in total.contributions) else ""
-    shown_by = ", found by a variant of several parameters" if total.by_variant else ""
+    shown_by = ", found by changing several parameters together" if total.by_variant else ""
     found_by = ", searched inside the spreads" if any(one.bent for one in total.contributions) else ""
     words = (("worst case", total.worst, shown_by + found_by + partly), ("root sum square", total.square, ""))
     for word, (value, error), remark in words:

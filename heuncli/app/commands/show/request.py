@@ -28,7 +28,7 @@ class ShowRequest(NamedTuple):
         str | None,
         Option(
             ("--output", "-o"),
-            "Output page x.html, or x.png, x.gif, x.mp4 by programs on PATH; - is standard output.",
+            "Output file: page x.html, or x.png, x.gif, x.mp4 made by programs on PATH; - is standard output.",
             "FILE",
         ),
     ] = None

@@ -172,7 +172,7 @@ def format_sharing_warning(blows: Sequence[tuple[float, Sequence[SharedImpulse]]
         return []
     time, first_group = shared_blows[0]
     lead = (
-        f"in the impact at t = {time:.6g} s"
+        f"in the impact at t = {time:.6g} s,"
         if len(shared_blows) == 1
         else f"in {len(shared_blows)} impacts, the first at t = {time:.6g} s,"
     )

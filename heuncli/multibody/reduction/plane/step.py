@@ -83,9 +83,7 @@ def _make_reduction(plane_view: PlaneView) -> Reduction | tuple[str, ...]:
         reason = "the joints allow only rotations about that direction and displacements perpendicular to it"
         return Reduction(flat, states.embed, states.restrict, (where + reason,))
     reason = "model and motion are symmetric about this plane; stability out of the plane is not considered"
-    hidden = (
-        "whether the planar motion is stable against out-of-plane disturbances: the solved model cannot leave the plane"
-    )
+    hidden = "stability of the planar motion against out-of-plane disturbances: the solved model cannot leave the plane"
     return Reduction(flat, states.embed, states.restrict, (where + reason,), (hidden,))
 
 

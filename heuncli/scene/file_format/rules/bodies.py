@@ -22,7 +22,7 @@ FULL_FRICTION_HINT = "the rate at which friction is nearly full, small compared 
 POSITIVE_HINTS = {
     "mass": "a body needs a mass; a massless bar is a joint of type rod, a massless spring a force of type spring",
     "duration": "for one instant leave duration and samples out", "step": "in s, or with a unit: 1 ms",
-    "inner_radius": "a solid one has no inner_radius",
+    "inner_radius": "a solid cylinder has no inner_radius",
     "length": "leave it out for the length as assembled; for 0 use a ball",
     "scale": "the length of one unit of the file: 1 mm",
     "strength": "in Pa, or with a unit: 235 MPa", "density": "in kg/m^3: 7850 is steel",
@@ -68,7 +68,9 @@ def check_mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
                 if missing == ["inertia"]
                 else "give mass, center and inertia, or shapes"
             )
-            yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
+            yield Violation(
+                path, f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing", hint, key=True
+            )
 
 
 @rule("not-positive")
@@ -182,7 +184,7 @@ def check_shape_form(draft: DraftDocument) -> Iterator[Violation]:
                 given_keys = [key for key in ("mass", density) if getattr(shape, key) is not None]
                 if len(given_keys) != 1:
                     description = "both mass and" if given_keys else "neither mass nor"
-                    yield Violation(path, f"{description} {density}", "give one of the two")
+                    yield Violation(path, f"{description} {density} given", "give one of the two")
             if isinstance(shape, fs.RodShape | fs.CylinderShape | fs.ConeShape) and shape.from_ == shape.to:
                 yield Violation((*path, "to"), "from and to are the same point", "for a point mass use type: point")
             if (
@@ -191,7 +193,7 @@ def check_shape_form(draft: DraftDocument) -> Iterator[Violation]:
                 and shape.inner_radius >= shape.radius
             ):
                 message = f"inner_radius {shape.inner_radius:g} is not less than radius {shape.radius:g}"
-                yield Violation((*path, "inner_radius"), message, "a solid one has no inner_radius")
+                yield Violation((*path, "inner_radius"), message, "a solid cylinder has no inner_radius")
 
 
 def iter_inertia_owners(draft: DraftDocument) -> Iterator[tuple[Path_, f.BodyEntry | f.PieceEntry]]:
@@ -215,7 +217,7 @@ def check_inertia_form(draft: DraftDocument) -> Iterator[Violation]:
         if isinstance(inertia, float) and not planar:
             yield Violation(
                 (*path, "inertia"),
-                "one number instead of three",
+                "one number is given instead of three",
                 "one number needs space: planar; otherwise give [A1, A2, A3]",
             )
         if owner.deviation is not None and not isinstance(inertia, tuple | list):
@@ -324,7 +326,7 @@ def check_piece_form(draft: DraftDocument) -> Iterator[Violation]:
         if section.piece is not None and body is not None and body.shapes is not None:
             yield Violation(
                 ("sections", name, "piece"),
-                "a piece given for a body with shapes",
+                "a piece is given for a body with shapes",
                 "leave it out: heun cuts the shapes",
                 key=True,
             )
@@ -334,10 +336,10 @@ def check_piece_form(draft: DraftDocument) -> Iterator[Violation]:
         if body.shapes is not None:
             yield Violation(
                 ("bodies", name, "piece"),
-                "a piece given together with shapes",
+                "a piece is given together with shapes",
                 "leave it out: heun cuts the shapes",
                 key=True,
             )
         elif len(cuts.get(name, ())) > 1:
-            message = f"one piece for {len(cuts[name])} sections ({', '.join(cuts[name])})"
+            message = f"one piece is given for {len(cuts[name])} sections ({', '.join(cuts[name])})"
             yield Violation(("bodies", name, "piece"), message, "give each section its own piece", key=True)

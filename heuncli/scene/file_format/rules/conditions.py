@@ -97,7 +97,7 @@ def check_event_limit(draft: DraftDocument) -> Iterator[Violation]:
     for path, condition, target in iter_result_conditions(draft):
         limits = [key for key in ("below", "above") if getattr(condition, key) is not None]
         if len(limits) != 1:
-            message = "below and above are both given" if limits else "neither below nor above"
+            message = "below and above are both given" if limits else "neither below nor above is given"
             hint = "write one event for each limit" if limits else "{of: joints.wall.force.x, below: 0}"
             yield Violation(path, message, hint)
         else:

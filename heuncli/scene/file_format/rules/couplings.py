@@ -192,9 +192,9 @@ def check_rope_places(draft: DraftDocument) -> Iterator[Violation]:
 def find_place_errors(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
     """Yield what is wrong with one place of a rope: message and hint."""
     if (place.point is None) == (place.sheave is None):
-        yield "neither a point nor a sheave, or both", "write body.point, or {sheave: body.point, radius: 0.3}"
+        yield "give either a point or a sheave", "write body.point, or {sheave: body.point, radius: 0.3}"
     elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
-        yield "a sheave without a radius", "add radius: 0.3; for a point the rope slides through write body.point"
+        yield "the sheave has no radius", "add radius: 0.3; for a point the rope slides through write body.point"
     elif place.point is not None:
         keys = [key for key in ("radius", "axis", "side", "slip") if key in place.model_fields_set]
         if keys:
@@ -224,7 +224,7 @@ def check_rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
                 "leave it out for the length as assembled",
             )
         if rope.length is not None and any(place.slip == "none" for place in rope.through):
-            message = "a length given for a rope that does not slip on a sheave"
+            message = "a length is given for a rope that does not slip on a sheave"
             yield Violation(
                 (*path, "length"),
                 message,

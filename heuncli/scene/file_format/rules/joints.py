@@ -240,7 +240,7 @@ def check_motor_form(draft: DraftDocument) -> Iterator[Violation]:
         path = ("forces", name)
         line_keys = [key for key in ("stall", "idle") if getattr(motor, key) is not None]
         if motor.curve is not None and line_keys:
-            message = f"a motor with both curve and {line_keys[0]}"
+            message = f"the motor has both curve and {line_keys[0]}"
             yield Violation((*path, line_keys[0]), message, "leave one of them out", key=True)
         elif motor.curve is None and len(line_keys) < 2:
             missing = "curve" if not line_keys else next(key for key in ("stall", "idle") if key not in line_keys)

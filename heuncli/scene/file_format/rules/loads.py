@@ -59,7 +59,7 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 yield from check_damper_law(name, load, kind)
             elif load.coefficient is None and load.sliding is None:
                 allowed = "coefficient (of rotation), sliding, or both" if kind in two_motion_kinds else "coefficient"
-                yield Violation(path, "a damper without a coefficient or law", f"give {allowed}", key=True)
+                yield Violation(path, "the damper has neither a coefficient nor a law", f"give {allowed}", key=True)
             if load.sliding is not None and kind not in two_motion_kinds:
                 message = f"sliding is for a {format_kind_names(two_motion_kinds, 'or')}, not for a {kind.name}"
                 yield Violation((*path, "sliding"), message, "use coefficient", key=True)
@@ -84,7 +84,7 @@ def check_friction_form(name: str, load: fl.FrictionEntry, kind: JointKind) -> I
             f"both {' and '.join(given_keys[-2:])}" if given_keys else "neither torque nor force nor coefficient"
         )
         hint = f"a {kind.name} takes {' or '.join([*allowed_keys, 'coefficient'])}"
-        yield Violation(path, f"friction with {description}", hint, key=True)
+        yield Violation(path, f"the friction has {description}", hint, key=True)
     elif given_keys[0] == "coefficient":
         yield from check_friction_coefficient(name, load, kind)
     elif load.radius is not None or load.length is not None:
@@ -121,7 +121,7 @@ def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
             key for key in (*laws[1:], *numbers) if getattr(load, key) is not None and key not in law_keys[:1]
         ]
         if law_keys and extra_keys:
-            message = f"a {load.type} with both {law_keys[0]} and {extra_keys[0]}"
+            message = f"the {load.type} has both {law_keys[0]} and {extra_keys[0]}"
             yield Violation(
                 (*path, extra_keys[0]),
                 message,
@@ -133,7 +133,7 @@ def check_load_form(draft: DraftDocument) -> Iterator[Violation]:
             for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
         ):
             yield Violation(
-                path, "a bushing without stiffness, damping or preload", "give stiffness, turning or both", key=True
+                path, "the bushing has no stiffness, damping or preload", "give stiffness, turning or both", key=True
             )
 
 
@@ -277,14 +277,16 @@ def check_impulse_time(draft: DraftDocument) -> Iterator[Violation]:
         if impulse.when is not None:
             continue
         if impulse.time < 0.0:
-            yield Violation(path, f"an impulse before the start, at {impulse.time:g} s", "the run starts at 0")
+            yield Violation(path, f"the impulse is before the start, at {impulse.time:g} s", "the run starts at 0")
         elif impulse.time > duration and "analysis" not in draft.unread:
             hint = (
                 "give analysis a longer duration"
                 if duration > 0.0
                 else "without a duration only the jump at time 0 is computed"
             )
-            yield Violation(path, f"an impulse at {impulse.time:g} s, after the end of the run at {duration:g} s", hint)
+            yield Violation(
+                path, f"the impulse at {impulse.time:g} s is after the end of the run at {duration:g} s", hint
+            )
 
 
 @rule("impulse-when")

@@ -35,7 +35,7 @@ def check_wheel_form(draft: DraftDocument) -> Iterator[Violation]:
             and not planar
         ):
             hint = "add axis: its axle in body axes, for example [0, 1, 0]; for a ball write shape: sphere"
-            yield Violation(path, "a disc without an axle", hint, key=True)
+            yield Violation(path, "the disc has no axle", hint, key=True)
         for key in ("axis", "slides") if wheel.shape == "sphere" else ():
             if getattr(wheel, key) is not None:
                 yield Violation((*path, key), f"{key} given for a sphere", "leave it out, or leave shape out", key=True)

@@ -39,16 +39,21 @@ def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
             message = (
                 f"{' and '.join(single_keys)} (one cut) given together with {' and '.join(run_keys)} (a series of cuts)"
             )
-            yield Violation(path, message, "a run takes its normal from `from` to `to`", key=True)
+            yield Violation(path, message, "the normal of a series of cuts points from `from` to `to`", key=True)
         elif not run_keys and len(single_keys) < 2:
             missing = [key for key in ("at", "normal") if key not in single_keys]
             yield Violation(
-                path, f"{' and '.join(missing)} missing", "a series of cuts has from, to and count instead", key=True
+                path,
+                f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing",
+                "a series of cuts has from, to and count instead",
+                key=True,
             )
         elif run_keys and len(run_keys) < 3:
             missing = [key for key in ("from", "to", "count") if key not in run_keys]
             hint = "a series of cuts has from, to and count: 21"
-            yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
+            yield Violation(
+                path, f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing", hint, key=True
+            )
         elif run_keys:
             yield from check_run_of_cuts(draft, name, section)
         if section.reduce_to not in REDUCED_TO and isinstance(section.reduce_to, str) and "." not in section.reduce_to:
@@ -67,7 +72,7 @@ def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) 
             if section.count < 2
             else "extremes are also searched between the cuts"
         )
-        yield Violation((*path, "count"), f"a run has 2 to {MAX_CUTS} cuts, not {section.count}", hint)
+        yield Violation((*path, "count"), f"a series has 2 to {MAX_CUTS} cuts, not {section.count}", hint)
     body = draft.document.bodies.get(section.body)
     if body is not None:
         ends = [find_point(body, end) for end in (section.from_, section.to)]
@@ -84,7 +89,7 @@ def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) 
     if section.piece is not None:
         yield Violation(
             (*path, "piece"),
-            "a piece given for a series of cuts",
+            "a piece is given for a series of cuts",
             "a series of cuts needs a body with shapes",
             key=True,
         )
@@ -171,7 +176,7 @@ def check_properties_form(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(
                 (*path, "properties", "tube"),
                 f"inner_radius {tube.inner_radius:g} is not less than radius {tube.radius:g}",
-                "for a solid one use circle",
+                "for a solid section use circle",
             )
 
 

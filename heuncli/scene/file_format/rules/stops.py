@@ -77,7 +77,7 @@ def check_stop_form(draft: DraftDocument) -> Iterator[Violation]:
         low, high = getattr(stop, quantities[0])
         if low is None and high is None:
             yield Violation(
-                limits_path, "a stop without a limit", "null means no limit: give at least one, as in [null, 0.2]"
+                limits_path, "the stop has no limit", "null means no limit: give at least one, as in [null, 0.2]"
             )
         elif low is not None and high is not None and not low < high:
             message = f"the limits {low:g} and {high:g} leave no range between them"
@@ -238,12 +238,14 @@ def check_latch_form(draft: DraftDocument) -> Iterator[Violation]:
         elif latch.stop is not None:
             yield from check_latch_at_stop(draft, name, latch)
         elif latch.limit is not None:
-            yield Violation((*path, "limit"), "a limit without a stop", "add stop: NAME, whose limit it is", key=True)
+            yield Violation(
+                (*path, "limit"), "limit is given without a stop", "add stop: NAME, whose limit it is", key=True
+            )
         else:
             yield from check_latch_at_joint(draft, name, latch)
         if latch.every and latch.release is None:
             hint = "add release: a condition such as handle.angle > 0.1; without it the latch never releases"
-            yield Violation((*path, "every"), "'every' without 'release'", hint, key=True)
+            yield Violation((*path, "every"), "'every' is given without 'release'", hint, key=True)
 
 
 def check_latch_at_stop(draft: DraftDocument, name: str, latch: f.LatchEntry) -> Iterator[Violation]:

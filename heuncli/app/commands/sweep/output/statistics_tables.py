@@ -87,7 +87,7 @@ def _make_notes(head: SweepHead) -> list[str]:
     draws = head.plan.draws
     assert draws is not None
     laws = {law.law for law in draws.laws}
-    notes = [f"random samples with --seed {draws.seed}: the same call gives the same samples"]
+    notes = [f"random samples with --seed {draws.seed}: the same command gives the same samples"]
     return notes + [EVEN.format(CALLED[law]) for law in CALLED if law in laws]
 
 
