@@ -83,7 +83,10 @@ def _join_alike(lines: Sequence[SummaryLine]) -> list[SummaryLine]:
             stem = DIGITS.sub("", line.name)
             key = (stem, line.greatest.path.partition(".")[0], line.greatest.text.lstrip(MINUS), line.greatest.run.name)
         first = joined.get(key)
-        joined[key] = line if first is None else first._replace(alike=(*first.alike, line.name))
+        if first is None:
+            joined[key] = line
+        elif line.name not in (first.name, *first.alike):  # a rod and its drive, a joint and a coupling of one name
+            joined[key] = first._replace(alike=(*first.alike, line.name))
     return list(joined.values())
 
 
