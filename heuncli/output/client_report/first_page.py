@@ -77,7 +77,7 @@ def make_verdicts(data: ReportData) -> list[Part]:
 def _iter_run_ends(data: ReportData) -> Iterator[Sentence]:
     """Yield a sentence for each run that stopped early, has a horizon, or has extremes at its samples only."""
     for run in data.runs:
-        case = f"Case {run.name}: " if run.name else ""
+        case = f"Case {run.case_label}: " if run.name else ""
         status = run.results.status
         if status.get("code", "completed") != "completed":
             message = describe_sentence(status.get("message", ""), data.labels)
@@ -161,7 +161,7 @@ def _iter_impact_sentences(data: ReportData) -> Iterator[Sentence]:
             f"{format_count(len(impacts), 'impulse')}; largest impulse at a joint, on the ground or of "
             "all bodies together:"
         )
-        yield Sentence(f"{f'Case {run.name}: ' if run.name else ''}{text} {style.write(largest)} {style.unit}.")
+        yield Sentence(f"{f'Case {run.case_label}: ' if run.name else ''}{text} {style.write(largest)} {style.unit}.")
 
 
 def _iter_open(data: ReportData) -> Iterator[Sentence]:
@@ -190,7 +190,7 @@ def _iter_warnings(data: ReportData) -> Iterator[Sentence]:
     for run in data.runs:
         for text in (*run.results.warnings, *run.study.later_warnings):
             if text not in spec_messages:
-                case_names.setdefault(text, []).append(run.name)
+                case_names.setdefault(text, []).append(run.case_label if run.name else "")
     for text, names in case_names.items():
         is_in_all = len(set(names)) == len(data.runs) > 1
         case = " (all cases)" if is_in_all else f" (case {join_names(names)})" if any(names) else ""

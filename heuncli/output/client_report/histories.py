@@ -28,7 +28,7 @@ MAX_CURVES = 4  # cases in one panel; of more, the governing one
 MAX_ALIKE = 4  # names in a title
 ALIKE = 0.01  # of their greatest value: loads whose extremes agree to it share a panel
 MAX_SEARCH_INSTANTS = 400  # of the search's instants in a curve
-HEIGHT = 125.0  # pixels
+HEIGHT = 106.0  # pixels
 MARGIN = 0.12  # above a curve, for its words
 
 
@@ -142,7 +142,8 @@ def _make_figure(
     x_label = "t [s]" if crank is None else "angle [°]"
     x = Scaling(x_label, *choose_ends(float(x_values.min()), float(x_values.max()), margin=0.0))
     y_low, y_high = choose_ends(min(low, 0.0), max(high, 0.0), margin=MARGIN)
-    y = Scaling(f"[{style.unit}]", min(y_low, 0.0) if low < 0.0 else 0.0, y_high)
+    quantity = "force" if greatest.ends.unit == "N" else "moment"
+    y = Scaling(f"{quantity} [{style.unit}]", min(y_low, 0.0) if low < 0.0 else 0.0, y_high)
     items: list[Item] = [Trace(course.run.case_label, course.x, curve, k)
                          for k, (course, curve) in enumerate(zip(courses, curves, strict=True))]  # fmt: skip
     items += _mark_greatest(data, greatest, courses, crank)
