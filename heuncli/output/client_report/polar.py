@@ -6,7 +6,7 @@ from heuncli.base.joint_kinds import TYPES
 from heuncli.output.client_report.extremes import find_extremes
 from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
-from heuncli.output.client_report.summary_table import find_crank, find_summary_lines
+from heuncli.output.client_report.summary_table import find_crank, list_loads
 from heuncli.output.documents.document import Drawing, Part
 from heuncli.output.drawing.figure import Item, Panel, Spot
 from heuncli.output.figures.courses import FigureSource, is_claimed
@@ -53,11 +53,11 @@ def make_polar_parts(data: ReportData) -> list[Part]:
     if find_crank(data) is None:
         return []
     parts: list[Part] = []
-    for line in find_summary_lines(data):
+    for line in list_loads(data):
         greatest = line.greatest
-        kind, _, rest = (greatest.path if greatest is not None else "").partition(".")
+        kind, _, rest = greatest.path.partition(".")
         name, _, quantity = rest.partition(".")
-        if greatest is None or greatest.is_steady or kind != "joints" or quantity != "force":
+        if greatest.is_steady or kind != "joints" or quantity != "force":
             continue
         if _is_on_a_line(greatest.run, greatest.path):
             continue

@@ -224,7 +224,7 @@ def _add_directions(study: Study, rows: Sequence[SummaryRow], instants: Array) -
     else:
         recovery = study.find_recovery(instants, reports)
         results = study.compose_reports(recovery, reports)
-    crank = _find_crank(study, results, instants)
+    crank = _find_crank(study, results, instants, rows)
     loads = {own.load.name: own.action for own in recovery.loads} if "forces" in blocks else {}
     found = []
     for row in rows:
@@ -260,20 +260,22 @@ def _find_direction(vectors: Array, k: int) -> tuple[tuple[float, ...] | None, b
     return tuple((units[k] + 0.0).tolist()), is_steady
 
 
-def _find_crank(study: Study, results: Results, instants: Array) -> Crank | None:
-    """Find the joint whose angle tells the instants: the only driven one, else the only one on the ground that turns
-    round.
+def _find_crank(study: Study, results: Results, instants: Array, rows: Sequence[SummaryRow]) -> Crank | None:
+    """Find the joint whose angle tells the instants: a driven one, else one on the ground that turns round; of several
+    the most loaded.
     """
     if study.has_one_instant:
         return None
-    driven = list(dict.fromkeys(_iter_driven_angles(study)))
+    driven = set(_iter_driven_angles(study))
     angles = {name: np.asarray(block["angle"]) for name, block in results.coordinates.items() if "angle" in block}
     grounded = [name for name in angles if GROUND in (study.spec.joints[name].a, study.spec.joints[name].b)]
     turning = [name for name in grounded if abs(angles[name][-1] - angles[name][0]) >= FULL_TURN]
-    names = [name for name in driven if name in angles] or turning
-    if len(names) != 1:
+    names = [name for name in angles if name in driven] or turning
+    forces = {row.name: abs(row.value) for row in rows if row.kind == "joint"}
+    if not names:
         return None
-    return Crank(names[0], dict(zip(instants.tolist(), angles[names[0]].tolist(), strict=True)))
+    name = max(names, key=lambda name: forces.get(name, 0.0))
+    return Crank(name, dict(zip(instants.tolist(), angles[name].tolist(), strict=True)))
 
 
 def _iter_driven_angles(study: Study) -> Iterator[str]:
