@@ -159,6 +159,20 @@ forces:
     assert f"and {rows - MAX_LINES} further: --full" in heun("run", "feet.yaml", "--summary").stdout
 
 
+def test_a_scene_that_is_struck_alone_has_its_impulses(heun: Heun) -> None:
+    """Each row is the largest of the impulse's own block, along a bar that of the whole length."""
+    spec = str(SPECS / "struck_chain.yaml")
+    rows = {row["path"]: row for row in read_json(heun, spec, "--summary")["summary"]}
+    block = read_json(heun, spec)["impulses"][0]
+    for name in ("foot", "knee", "hand"):
+        row = rows[f"impulses.0.joints.{name}.force"]
+        assert row["value"] == pytest.approx(np.linalg.norm(block["joints"][name]["force"]))
+        assert np.array(row["direction"]) * row["value"] == pytest.approx(block["joints"][name]["force"], abs=1e-12)
+        assert row["unit"] == "N·s"
+    row = rows["impulses.0.sections.struck.M2"]
+    assert abs(row["value"]) >= np.abs(block["sections"]["struck"]["M2"]).max() - 1e-12
+
+
 def test_cases_give_the_rows_that_govern(heun: Heun) -> None:
     spec = str(SPECS / "axle_loads.yaml")
     rows = read_json(heun, spec, "--summary", "--case", "all")["summary"]

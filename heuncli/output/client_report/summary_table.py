@@ -82,7 +82,9 @@ def list_loads(data: ReportData) -> list[ReportedLoad]:
     rows.sort(key=lambda row: (row.unit != "N", -abs(row.value)))
     found = []
     for group in group_alike(rows, data.summary):
-        names = list(dict.fromkeys(describe_object(row.path.partition(".")[0], row.name, data.labels) for row in group))
+        names = list(
+            dict.fromkeys(describe_object(row.block_path.partition(".")[0], row.name, data.labels) for row in group)
+        )
         greatest = find_greatest_of_cases(data, group[0].path, group[0].name)
         if greatest is not None:
             found.append(ReportedLoad(names[0], greatest, names[1:]))
@@ -109,7 +111,7 @@ def make_summary_table(data: ReportData) -> OutputTable | None:
 
 def _list_uncertain(data: ReportData, row: SummaryRow) -> list[str]:
     cases = find_uncertain_cases(data, row.path) if data.has_cases else []
-    name = describe_object(row.path.partition(".")[0], row.name, data.labels)
+    name = describe_object(row.block_path.partition(".")[0], row.name, data.labels)
     return [UNCERTAIN_NOTE.format(name, join_names(cases))] if cases else []
 
 

@@ -74,7 +74,7 @@ def merge_cases(summaries: Sequence[Summary]) -> Summary:
 
 def _rank(row: SummaryRow) -> tuple[int, float]:
     """Return what decides between the rows of one thing: an earlier alternative, then the larger value."""
-    quantity = row.path.removeprefix(row.path.partition(".")[0]).removeprefix(f".{row.name}").lstrip(".")
+    quantity = row.block_path.partition(".")[2].removeprefix(row.name).lstrip(".")
     kind = next(kind for kind in KINDS if kind.word == row.kind)
     place = next(i for i, quantities in enumerate(kind.alternatives) if quantity in quantities)
     return -place, abs(row.value)
@@ -166,7 +166,7 @@ def name_row(row: SummaryRow, labels: Labels, *, has_kind: bool = True) -> str:
     """Name what a row is of: "joint main", "section rod, bending moment M1"; has_kind: begin with its kind."""
     if not row.name:
         return row.label.removesuffix(", force")
-    words = describe_object(row.path.partition(".")[0], row.name, labels)
+    words = describe_object(row.block_path.partition(".")[0], row.name, labels)
     quantity = row.label.removeprefix(words).removeprefix(", ")
     is_plain = quantity in PLAIN_WORDS or not row.label.startswith(words)
     return f"{row.kind} " * has_kind + words + ("" if is_plain else f", {quantity}")
