@@ -231,7 +231,7 @@ KEEP_WORDS = """(() => {
 CANVASES = """[...document.querySelectorAll("canvas")].filter(e => e.offsetParent).map(
   e => [e.id, e.clientWidth, e.clientHeight, e.words ?? []])"""
 DOCUMENT = """(() => {
-  const boxes = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const boxes = [], read = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node; (node = walker.nextNode());) {
     const home = node.parentElement;
     const hidden = "script, style, desc, title, code, details:not([open]) > :not(summary)";
@@ -243,14 +243,16 @@ DOCUMENT = """(() => {
       if (getComputedStyle(e).overflowY !== "visible")
         [low, high] = [Math.max(low, e.getBoundingClientRect().top), Math.min(high, e.getBoundingClientRect().bottom)];
     for (const b of range.getClientRects())
-      if (b.width && b.height && b.bottom > low && b.top < high)
+      if (b.width && b.height && b.bottom > low && b.top < high) {
         boxes.push([b.left, b.top + scrollY, b.right, b.bottom + scrollY, node.data.trim()]);
+        if (!home.closest("#accuracy")) read.push(boxes.at(-1));  // that chapter of a report tells errors
+      }
   }
   const tables = [...document.querySelectorAll("table")].filter(e => e.offsetParent).map(e => {
     const b = e.getBoundingClientRect(), home = e.parentElement.getBoundingClientRect();
     return [b.left, b.top + scrollY, b.width / home.width, e.rows.length];
   });
-  return {boxes, tables, width: document.documentElement.scrollWidth, window: innerWidth};
+  return {boxes, read, tables, width: document.documentElement.scrollWidth, window: innerWidth};
 })()"""
 NARROW_TABLE, LONG_TABLE = 0.5, 8  # of the width of the sheet; rows
 
@@ -264,7 +266,7 @@ def find_in_document(tab: Tab) -> list[Finding]:
     """Find the faults of a page or report that is open: words over words, beyond the window, tables on half a sheet."""
     seen = tab.evaluate(DOCUMENT)
     boxes = [Box(*box) for box in seen["boxes"]]
-    found = [finding for box in boxes for finding in judge_words(box)]
+    found = [finding for box in seen["read"] for finding in judge_words(Box(*box))]
     found += _iter_overlaps([box.shrunk() for box in boxes])
     if seen["width"] > seen["window"]:
         found.append(Finding("outside", f"the page is {seen['width']} wide, its window {seen['window']}", 0, 0))

@@ -13,9 +13,9 @@ MENDED: dict[str, tuple[str, ...]] = {
     "struck": PLOTS,  # a stroke through words
     "outside": (*PLOTS, "page", "report"),  # words beyond the picture or the window
     "empty": PLOTS,  # a third of the picture without ink
-    "path": (*PLOTS, "page"),  # joints.main.force in place of a name
-    "noise": (*PLOTS[:-1], "page"),  # 3e-15, 0.000219 kN
-    "digits": (*PLOTS, "page"),  # more than five significant ones
+    "path": (*PLOTS, "page", "report"),  # joints.main.force in place of a name
+    "noise": (*PLOTS[:-1], "page", "report"),  # 3e-15, 0.000219 kN
+    "digits": (*PLOTS, "page", "report"),  # more than five significant ones
     "folder": (*PLOTS, "page", "report"),  # a folder of the machine that drew it
     "narrow": ("report",),  # a long table on less than half of the sheet
     "number": ("history",),  # a marked number that is no extreme of the run

@@ -13,6 +13,7 @@ from heuncli.study.quantities.captions import (
     describe_measure,
     describe_object,
     describe_path,
+    describe_sentence,
     parse_path,
 )
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels
@@ -133,3 +134,23 @@ def test_names_of_quantities_do_not_mislead() -> None:
     """A joint called force, a body called shares."""
     assert describe_path("joints.force.force.x", LABELS) == "force, Fx"
     assert describe_path("joints.shares.shares.gravity.force", LABELS) == "shares, force due to gravity"
+
+
+@pytest.mark.parametrize(
+    ("said", "read"),
+    [
+        (
+            "sections.long_bar: the plane meets the body crank twice",
+            "section long bar: the plane meets the body Crankshaft twice",
+        ),
+        ("joints.main.radial is open", "Main bearing, radial force is open"),
+        ("joints.main: too short", "joint Main bearing: too short"),
+        (
+            "the rod front_left would have to push (tension_only)",
+            "the rod front left would have to push (tension_only)",
+        ),
+        ("t = 0.5 s: the body is free", "t = 0.5 s: the body is free"),
+    ],
+)
+def test_a_message_of_the_solver_names_things_by_their_labels(said: str, read: str) -> None:
+    assert describe_sentence(said, LABELS) == read

@@ -125,8 +125,23 @@ def test_what_fails_is_said_first_and_by_the_exit_code(heun: Heun) -> None:
     done = heun("report", "failing.yaml", "-o", "-")
     assert done.returncode == 1
     read = PageReader(done.stdout)
-    assert "1 of 1 check in the spec FAILED: joints.pivot.force.z." in read.by_tag["header"][0]
+    assert "1 of 1 check in the spec FAILED: pivot, Fz." in read.by_tag["header"][0]
     assert any(row[-1] == "FAILED" for row in read.rows)
+
+
+def test_numbers_of_checks_are_those_of_a_reader(heun: Heun, folder: Path) -> None:
+    """Noise beside an expected 0 is 0, four digits elsewhere, more where a failure would not be seen."""
+    text = (folder / "hanging.yaml").read_text()
+    text += "expect:\n  - {of: joints.pivot.force.x, is: 0, abs: 1e-6}\n"
+    text += "  - {of: joints.pivot.force.z, is: 9.81}\n  - {of: joints.pivot.force.z, is: 9.81002}\n"
+    (folder / "checked.yaml").write_text(text)
+    rows = PageReader(heun("report", "checked.yaml", "-o", "-").stdout).rows
+    checks = [row[1:] for row in rows if row[-1:] in (["passed"], ["FAILED"])]
+    assert checks == [
+        ["pivot, Fx", "N", "", "0", "0", "10⁻⁶", "passed"],
+        ["pivot, Fz", "N", "", "9.810", "9.810", "10⁻⁴ %", "passed"],
+        ["pivot, Fz", "N", "", "9.81002", "9.81000", "10⁻⁴ %", "FAILED"],
+    ]  # fmt: skip
 
 
 def test_expectations_of_the_scene_without_its_cases_are_checked(heun: Heun, folder: Path) -> None:
@@ -200,7 +215,7 @@ def test_open_loads_are_said_first(heun: Heun) -> None:
     read = PageReader(heun("report", str(SPECS / "table.yaml"), "-o", "-").stdout)
     assert "Indeterminate: 8 load components (open)" in read.by_tag["header"][0]
     assert ["A, Fz, |F|, axial", "", "open"] in read.rows
-    assert ["A", "open", ""] in read.rows  # in the summary
+    assert "indeterminate: axial loads of A, B, C, D (1 redundant constraint)" in read.by_tag["li"]  # in the summary
     assert "joints.A Fz + joints.B Fz = 123.1 N; distribution indeterminate" in read.by_tag["li"]
     split = PageReader(heun("report", str(SPECS / "table.yaml"), "-o", "-", "--least-norm").stdout)
     assert "other distributions are equally possible" in split.by_tag["header"][0]

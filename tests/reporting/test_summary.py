@@ -126,14 +126,51 @@ def test_the_summary_is_a_dozen_lines_and_the_largest_of_each_kind() -> None:
     assert [row.share for row in chosen[:10]] == sorted((row.share for row in rows), reverse=True)[:10]
 
 
-def test_further_rows_are_counted(heun: Heun, folder: Path) -> None:
+def test_things_alike_have_one_line_and_are_all_there_in_full(heun: Heun) -> None:
     spec = str(ROOT / "tests" / "gallery" / "scenes" / "v_engine.yaml")
     brief, full = (heun("run", spec, "--summary", *words).stdout for words in ((), ("--full",)))
-    rows = len(read_json(heun, spec, "--summary")["summary"])
-    assert f"and {rows - MAX_LINES} further: --full" in brief
-    assert (
-        sum(line.startswith(("joint", "drive", "load", "foundation", "section")) for line in full.splitlines()) == rows
-    )
+    rows = read_json(heun, spec, "--summary")["summary"]
+    kinds = ("joint", "drive", "load", "foundation", "section")
+    assert sum(line.startswith(kinds) for line in full.splitlines()) == len(rows) == 21
+    lines = [line for line in brief.splitlines() if line.startswith(kinds)]
+    assert [line[:21].split()[-1] for line in lines[:5]] == [
+        "small1–small4",
+        "big1–big4",
+        "rear",
+        "main",
+        "bore1–bore4",
+    ]
+    assert "further" not in brief
+
+
+def test_further_rows_are_counted(heun: Heun, folder: Path) -> None:
+    """A row for the foundation, one for each of 15 feet with loads of their own."""
+    feet = "".join(f"  f{n}: {{type: force, on: plate.p{n}, vector: [0, 0, {n}]}}\n" for n in range(1, 16))
+    points = ", ".join(f"p{n}: [{n}, 0, 0]" for n in range(1, 16))
+    text = f"""heun: 1
+ground: {{points: {{A: [0, 0, 0]}}}}
+bodies: {{plate: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{a: [0, 0, 0], {points}}}}}}}
+joints: {{foot: {{type: weld, from: ground.A, to: plate.a}}}}
+forces:
+{feet}"""
+    (folder / "feet.yaml").write_text(text)
+    rows = len(read_json(heun, "feet.yaml", "--summary")["summary"])
+    assert rows == 17
+    assert f"and {rows - MAX_LINES} further: --full" in heun("run", "feet.yaml", "--summary").stdout
+
+
+def test_a_scene_that_is_struck_alone_has_its_impulses(heun: Heun) -> None:
+    """Each row is the largest of the impulse's own block, along a bar that of the whole length."""
+    spec = str(SPECS / "struck_chain.yaml")
+    rows = {row["path"]: row for row in read_json(heun, spec, "--summary")["summary"]}
+    block = read_json(heun, spec)["impulses"][0]
+    for name in ("foot", "knee", "hand"):
+        row = rows[f"impulses.0.joints.{name}.force"]
+        assert row["value"] == pytest.approx(np.linalg.norm(block["joints"][name]["force"]))
+        assert np.array(row["direction"]) * row["value"] == pytest.approx(block["joints"][name]["force"], abs=1e-12)
+        assert row["unit"] == "N·s"
+    row = rows["impulses.0.sections.struck.M2"]
+    assert abs(row["value"]) >= np.abs(block["sections"]["struck"]["M2"]).max() - 1e-12
 
 
 def test_cases_give_the_rows_that_govern(heun: Heun) -> None:

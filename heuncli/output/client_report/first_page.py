@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli.output.client_report.checks import name_check
 from heuncli.output.client_report.extremes import (
     GreatestOfCases,
     find_greatest_of_cases,
@@ -16,7 +17,7 @@ from heuncli.output.client_report.summary_table import make_summary_table
 from heuncli.output.documents.document import Facts, Mood, Part, Sentence, join_names
 from heuncli.output.tables.impulse_tables import find_largest_impulses
 from heuncli.output.tables.plurals import format_count
-from heuncli.study.quantities.captions import describe_object, describe_path
+from heuncli.study.quantities.captions import describe_object, describe_path, describe_sentence
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 
 ASSUMPTIONS = (
@@ -76,10 +77,11 @@ def make_verdicts(data: ReportData) -> list[Part]:
 def _iter_run_ends(data: ReportData) -> Iterator[Sentence]:
     """Yield a sentence for each run that stopped early, has a horizon, or has extremes at its samples only."""
     for run in data.runs:
-        case = f"Case {run.name}: " if run.name else ""
+        case = f"Case {run.case_label}: " if run.name else ""
         status = run.results.status
         if status.get("code", "completed") != "completed":
-            yield Sentence(f"{case}the run {status['code']}: {status.get('message', '')}", "bad")
+            message = describe_sentence(status.get("message", ""), data.labels)
+            yield Sentence(f"{case}the run {status['code']}: {message}", "bad")
         if (horizon := run.results.horizon) is not None:
             text = f"{case}no results are claimed from t = {horizon:.4g} s on: the error may exceed 1e-3"
             yield Sentence(f"{text}. Extremes cover the time before.", "unsure")
@@ -92,7 +94,7 @@ def _iter_check_results(data: ReportData) -> Iterator[Sentence]:
     """Yield the sentence on how many expected values hold."""
     failed = [outcome for outcome in data.outcomes if not outcome.has_passed]
     if failed:
-        names = join_names([outcome.name for outcome in failed])
+        names = join_names([name_check(data, outcome) for outcome in failed])
         total = len(data.outcomes)
         text = f"{len(failed)} of {format_count(total, 'check')} in the spec FAILED: {names}."
         yield Sentence(text + _format_unchecked(data), "bad")
@@ -160,7 +162,7 @@ def _iter_impact_sentences(data: ReportData) -> Iterator[Sentence]:
             f"{format_count(len(impacts), 'impulse')}; largest impulse at a joint, on the ground or of "
             "all bodies together:"
         )
-        yield Sentence(f"{f'Case {run.name}: ' if run.name else ''}{text} {style.write(largest)} {style.unit}.")
+        yield Sentence(f"{f'Case {run.case_label}: ' if run.name else ''}{text} {style.write(largest)} {style.unit}.")
 
 
 def _iter_open(data: ReportData) -> Iterator[Sentence]:
@@ -183,14 +185,14 @@ def _iter_open(data: ReportData) -> Iterator[Sentence]:
 def _iter_warnings(data: ReportData) -> Iterator[Sentence]:
     """Yield every warning, with its case."""
     for problem in data.spec.warnings:
-        yield Sentence(f"Warning: {problem.message}", "unsure")
+        yield Sentence(f"Warning: {describe_sentence(problem.message, data.labels)}", "unsure")
     spec_messages = {problem.message for problem in data.spec.warnings}
     case_names: dict[str, list[str]] = {}
     for run in data.runs:
         for text in (*run.results.warnings, *run.study.later_warnings):
             if text not in spec_messages:
-                case_names.setdefault(text, []).append(run.name)
+                case_names.setdefault(text, []).append(run.case_label if run.name else "")
     for text, names in case_names.items():
         is_in_all = len(set(names)) == len(data.runs) > 1
         case = " (all cases)" if is_in_all else f" (case {join_names(names)})" if any(names) else ""
-        yield Sentence(f"Warning: {text}{case}", "unsure")
+        yield Sentence(f"Warning: {describe_sentence(text, data.labels)}{case}", "unsure")

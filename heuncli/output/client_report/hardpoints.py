@@ -31,7 +31,7 @@ MAX_CASES = 4  # with a row each for a point; if there are more, the governing o
 MAX_POINTS = 40
 HEADING = "POINTS  position, and load at the greatest force in each case; {}"
 BUSHING_AXES = "bushings in their own axes"
-PLACE_DECIMALS = {"m": 4, "mm": 1}
+PLACE_DECIMALS = {"m": 3, "mm": 1}
 
 
 class HardpointLoad(NamedTuple):

@@ -13,7 +13,7 @@ from heuncli.base.records import record
 from heuncli.output.client_report.extremes import GreatestOfCases, choose_family, find_extremes, format_instant
 from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import AT_WORST, ReportData, ReportedRun
-from heuncli.output.client_report.summary_table import SummaryLine, find_crank, find_summary_lines
+from heuncli.output.client_report.summary_table import ReportedLoad, find_crank, list_loads
 from heuncli.output.documents.document import Drawing, Part
 from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, Trace
 from heuncli.output.drawing.ticks import choose_ends
@@ -28,7 +28,7 @@ MAX_CURVES = 4  # cases in one panel; of more, the governing one
 MAX_ALIKE = 4  # names in a title
 ALIKE = 0.01  # of their greatest value: loads whose extremes agree to it share a panel
 MAX_SEARCH_INSTANTS = 400  # of the search's instants in a curve
-HEIGHT = 125.0  # pixels
+HEIGHT = 106.0  # pixels
 MARGIN = 0.12  # above a curve, for its words
 
 
@@ -74,7 +74,7 @@ class RunCourse:
 def make_history_parts(data: ReportData) -> list[Part]:
     """Make a panel for each of the most loaded objects, with a curve for each case."""
     moving = [run for run in data.runs if len(run.results.time) > 1 and is_claimed(run.study)]
-    shared = _share_panels([line for line in find_summary_lines(data) if line.greatest is not None])
+    shared = _share_panels(list_loads(data))
     if not moving or not shared:
         return []
     crank = find_crank(data)
@@ -88,12 +88,12 @@ def make_history_parts(data: ReportData) -> list[Part]:
     return parts
 
 
-def _share_panels(lines: Sequence[SummaryLine]) -> list[SharedPanel]:
+def _share_panels(lines: Sequence[ReportedLoad]) -> list[SharedPanel]:
     """Give each load a panel that varies; those with equal extremes share one."""
     panels: list[SharedPanel] = []
     for line in lines:
         greatest = line.greatest
-        if greatest is None or greatest.is_steady:
+        if greatest.is_steady:
             continue
         same = next((k for k, panel in enumerate(panels) if _are_alike(panel.greatest, greatest)), None)
         if same is None:
@@ -142,7 +142,8 @@ def _make_figure(
     x_label = "t [s]" if crank is None else "angle [°]"
     x = Scaling(x_label, *choose_ends(float(x_values.min()), float(x_values.max()), margin=0.0))
     y_low, y_high = choose_ends(min(low, 0.0), max(high, 0.0), margin=MARGIN)
-    y = Scaling(f"[{style.unit}]", min(y_low, 0.0) if low < 0.0 else 0.0, y_high)
+    quantity = "force" if greatest.ends.unit == "N" else "moment"
+    y = Scaling(f"{quantity} [{style.unit}]", min(y_low, 0.0) if low < 0.0 else 0.0, y_high)
     items: list[Item] = [Trace(course.run.case_label, course.x, curve, k)
                          for k, (course, curve) in enumerate(zip(courses, curves, strict=True))]  # fmt: skip
     items += _mark_greatest(data, greatest, courses, crank)

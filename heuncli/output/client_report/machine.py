@@ -34,7 +34,7 @@ def make_drawing_parts(data: ReportData, *, is_first_page: bool = True) -> list[
     run, time = find_worst_instant(data)
     if not is_claimed(run.study):
         return [Sentence(NO_POSITIONS)]
-    case = f", load case {run.name}" if run.name else ""
+    case = f", load case {run.case_label}" if run.name else ""
     times = None if time is None or run.study.has_one_instant else np.array([time])
     figure = make_scene_figure(FigureSource("", run.study), data.units, times)
     if is_first_page:
@@ -119,7 +119,7 @@ def _iter_loads(data: ReportData) -> Iterator[Sequence[str]]:
 
 def _make_place_cells(place: Array, size: float, unit: str) -> list[TextCell]:
     """Make the cells of a place; a tenth of a millimetre counts."""
-    decimals = 1 if unit == "mm" else 4
+    decimals = 1 if unit == "mm" else 3 if unit == "m" else 4
     texts = []
     for value in (size * place).tolist():
         text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")

@@ -12,6 +12,7 @@ from heuncli.base.records import record
 from heuncli.output.snapshots.envelopes import NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.outcomes import Outcome
+from heuncli.output.summary.summary_document import Summary
 from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants
 from heuncli.output.tables.page import Page
 from heuncli.results.results import Array, Results
@@ -137,6 +138,13 @@ class ReportData:
     def envelope(self) -> list[NumberEnvelope]:
         """The minimum and maximum of each number, with the cases that govern."""
         return make_envelope({run.name: run.snapshot for run in self.runs})
+
+    @cached_property
+    def summary(self) -> Summary:
+        """The greatest load of each thing over all cases."""
+        from heuncli.output.client_report.summary_table import summarise_cases  # it reads these data
+
+        return summarise_cases(self)
 
     @property
     def labels(self) -> Labels:

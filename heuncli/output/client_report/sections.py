@@ -37,7 +37,7 @@ UNCERTAIN_NOTE = "{}: open or unknown{}, where it may be larger"
 LARGEST_NOTE = "bold: section with the highest utilisation"
 GOVERNING_QUANTITIES = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # in order of priority
 MAX_DIAGRAMS = 12
-PANEL_HEIGHT = 90.0  # pixels
+PANEL_HEIGHT = 78.0  # pixels
 NO_STRENGTH = "not given"
 
 
@@ -61,7 +61,7 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
             continue
         figure = make_diagrams([FigureSource("", run.study)], [name], data.units)
         figure = figure._replace(title="", words=())
-        case = f", load case {run.name}" if run.name else ""
+        case = f", load case {run.case_label}" if run.name else ""
         words = describe_object("sections", name, data.labels)
         band = f". {BAND_SENTENCE[0].upper()}{BAND_SENTENCE[1:]}" if len(run.results.time) > 1 else ""
         axes = data.labels.sections[name].first_axis if name in data.labels.sections else ""

@@ -1,201 +1,123 @@
-"""The summary table of the first page: the greatest load of each joint, coupling and force, where and when."""
+"""The summary of a report: that of `heun run` over its load cases, from the extremes that its tables show."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.extremes import (
-    DASH,
-    MINUS,
-    NOISE,
     GreatestOfCases,
+    find_extremes,
     find_greatest_of_cases,
     find_uncertain_cases,
 )
-from heuncli.output.client_report.load_groups import iter_loaded_objects
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
-from heuncli.output.documents.document import OutputColumn, OutputTable, TextCell, join_names
-from heuncli.output.figures.turning import TURN, find_span, is_monotonic, list_angle_paths
-from heuncli.output.tables.extremes_tables import MARK
-from heuncli.results.results_schema import XYZ
+from heuncli.output.documents.document import OutputTable, join_names
+from heuncli.output.figures.turning import TURN, find_span, is_monotonic
+from heuncli.output.figures.worst_instant import select_worst
+from heuncli.output.snapshots.tables import SearchedPage
+from heuncli.output.summary.run_document import summarise
+from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases
+from heuncli.output.summary.summary_rows import SummaryRow
+from heuncli.output.tables.cut_runs import collect_runs
+from heuncli.results.results import NOWHERE, CutPosition, Extremes
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.digits import OPEN
 
-MAX_LINES = 12
-MIN_TURN = 0.75 * TURN  # of a joint that keeps turning
-FOUNDATION = "foundation"
-HEADING = "SUMMARY  greatest loads, and their components at that instant"
+MIN_TURN = 0.75 * TURN  # of a joint whose angle is the axis of histories
 MORE_NOTE = "{} smaller ones: chapter Loads"
-ALIKE_NOTE = "several names: the same greatest load; components and instant of the first"
-MAX_ALIKE = 5  # further names in a line
-DIGITS = re.compile(r"\d+")
 UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"
 
 
-class SummaryLine(NamedTuple):
-    """The greatest load of one object.
-
-    type: of a coupling or force, if its name does not tell it
-    greatest: None if it is open or unknown in all cases
-    alike: names of objects of the same kind, such as small2 beside small1, with the same greatest load
-    """
+class ReportedLoad(NamedTuple):
+    """The greatest load of a thing over all cases, and the names of others of its kind with the same one."""
 
     name: str
-    type: str
-    greatest: GreatestOfCases | None
-    paths: Sequence[str]
+    greatest: GreatestOfCases
     alike: Sequence[str] = ()
 
-    @property
-    def rank(self) -> float:
-        """The size by which lines are chosen, forces before moments [SI]."""
-        return -1.0 if self.greatest is None else abs(self.greatest.value) * self.weight
 
-    @property
-    def weight(self) -> float:
-        """1 for forces; moments count little, as they have no common size with forces."""
-        return 1.0 if self.greatest is not None and self.greatest.ends.unit == "N" else 1e-6
+def summarise_cases(data: ReportData) -> Summary:
+    """Summarise the runs of a report, with the row of the governing case for each thing."""
+    return merge_cases([summarise(run.study, _read_extremes(run), run.case_label if data.has_cases else "")
+                        for run in data.runs])  # fmt: skip
 
 
-def find_summary_lines(data: ReportData) -> list[SummaryLine]:
-    """Find the greatest load of the foundation and of all that carries a load, the largest first."""
-    lines = [_make_line(data, *each) for each in iter_loaded_objects(data)]
-    lines = [line for line in lines if line.greatest is not None or _is_uncertain(data, line)]
-    lines = _join_alike(lines)
-    lines.sort(key=lambda line: -line.rank)
-    foundation = _make_line(data, FOUNDATION, "", ["foundation.force"])
-    if foundation.greatest is None:
-        return lines
-    return [*lines[: MAX_LINES - 1], foundation, *lines[MAX_LINES - 1 :]]
+def _read_extremes(run: ReportedRun) -> SearchedPage:
+    """Return the page of a run with the extremes of its snapshot, which were searched for the tables."""
+    page = run.page._replace(doubtful=run.uncertain_instants)
+    paths = [channel.path for channel in page.make_search().collect(page.results)]
+    paths += [channel.path for own in collect_runs(page.results, page.labels) for channel in own.stresses]
+    rows, places, known = [], [], []
+    for path in paths:
+        ends = find_extremes(run, path)
+        if ends is None:
+            continue
+        known.append(path)
+        first = float(run.results.time[0])
+        low, high = ([math.nan if isinstance(end.value, str) else end.value, first if end.time is None else end.time]
+                     for end in (ends.low, ends.high))  # fmt: skip
+        rows.append([*low, *high])
+        places.append((_parse_place(ends.low.place), _parse_place(ends.high.place)))
+    low, low_at, high, high_at = np.array(rows).reshape(-1, 4).T
+    column = np.zeros(len(known), dtype=np.intp)
+    searched = Extremes(low, low_at, column, high, high_at, column, run.is_searched, True, tuple(places), tuple(known))
+    return SearchedPage(page, searched)
 
 
-def _join_alike(lines: Sequence[SummaryLine]) -> list[SummaryLine]:
-    """Join the lines of objects that differ by a number in their names alone, and have the same greatest load."""
-    joined: dict[tuple[str, ...], SummaryLine] = {}
-    for k, line in enumerate(lines):
-        key: tuple[str, ...] = (str(k),)
-        if line.greatest is not None:
-            stem = DIGITS.sub("", line.name)
-            key = (stem, line.greatest.path.partition(".")[0], line.greatest.text.lstrip(MINUS), line.greatest.run.name)
-        first = joined.get(key)
-        joined[key] = line if first is None else first._replace(alike=(*first.alike, line.name))
-    return list(joined.values())
+def _parse_place(place: str | None) -> CutPosition:
+    if place is None:
+        return NOWHERE
+    distance, _, side = place.partition(" m")
+    return CutPosition(float(distance), side.strip() or None, None)
 
 
-def _make_line(data: ReportData, name: str, type_name: str, paths: Sequence[str]) -> SummaryLine:
-    found = [each for path in paths if (each := find_greatest_of_cases(data, path, name)) is not None]
-    return SummaryLine(name, type_name, max(found, key=lambda each: abs(each.value), default=None), paths)
-
-
-def _is_uncertain(data: ReportData, line: SummaryLine) -> bool:
-    return any(find_uncertain_cases(data, path) for path in line.paths)
+def list_loads(data: ReportData) -> list[ReportedLoad]:
+    """List the loads that the machine causes in its parts, the largest force first, then moments; without sections and
+    given loads.
+    """
+    rows = [row for row in data.summary.rows if row.kind not in ("", "section") and not row.is_given]
+    rows.sort(key=lambda row: (row.unit != "N", -abs(row.value)))
+    found = []
+    for group in group_alike(rows, data.summary):
+        names = list(
+            dict.fromkeys(describe_object(row.block_path.partition(".")[0], row.name, data.labels) for row in group)
+        )
+        greatest = find_greatest_of_cases(data, group[0].path, group[0].name)
+        if greatest is not None:
+            found.append(ReportedLoad(names[0], greatest, names[1:]))
+    return found
 
 
 def find_worst_instant(data: ReportData) -> tuple[ReportedRun, float | None]:
-    """Find the case and the instant of the greatest force; without one the first of the first case."""
-    lines = [line for line in find_summary_lines(data) if line.greatest is not None and line.greatest.ends.unit == "N"]
-    if not lines:
-        return data.runs[0], None
-    inner = [line for line in lines if line.name != FOUNDATION] or lines
-    greatest = max(inner, key=lambda line: line.rank).greatest
-    assert greatest is not None
-    return greatest.run, greatest.extreme.time
+    """Find the case and the instant at which the machine is drawn; without a force the first of the first case."""
+    worst = select_worst(data.summary.rows)
+    run = next((run for run in data.runs if worst is not None and worst.case in ("", run.case_label)), data.runs[0])
+    return run, None if worst is None else worst.time
 
 
 def make_summary_table(data: ReportData) -> OutputTable | None:
-    """Make the table of at most MAX_LINES lines; None without any load."""
-    lines = find_summary_lines(data)
-    shown = lines[:MAX_LINES]
-    if not any(line.greatest for line in shown):
+    """Make the table of a dozen lines; None without any load."""
+    if not data.summary.rows:
         return None
-    crank = find_crank(data)
-    heads = [OutputColumn("", "text"), OutputColumn("greatest load")]
-    heads += [OutputColumn(f"F{axis}") for axis in XYZ]
-    heads += [OutputColumn("instant" if crank is None else "angle, instant")]
-    heads += [OutputColumn("case", "text")] * data.has_cases
-    rows = [_make_row(data, line, crank) for line in shown]
-    kept = [k for k in range(len(heads)) if k < 2 or any(row[k].text not in ("", DASH) for row in rows)]
-    notes = [MORE_NOTE.format(len(lines) - len(shown))] if len(lines) > len(shown) else []
-    notes += [ALIKE_NOTE] if any(line.alike for line in shown) else []
-    notes += [f"angle: of {describe_object('joints', crank, data.labels)}"] if crank is not None else []
-    for line in shown:
-        cases = list(dict.fromkeys(case for path in line.paths for case in find_uncertain_cases(data, path)))
-        if cases and line.greatest is not None:
-            notes.append(UNCERTAIN_NOTE.format(line.name, join_names(cases)))
-    notes += dict.fromkeys(
-        line.greatest.run.uncertain_instants.note
-        for line in shown
-        if line.greatest is not None and _mark(line.greatest).endswith(MARK)
-    )
-    return OutputTable(HEADING, [heads[k] for k in kept], [[row[k] for k in kept] for row in rows], notes, "page")
+    table, shown, n_further = make_table(data.summary)
+    notes = [*table.notes, *([MORE_NOTE.format(n_further)] if n_further else [])]
+    for row in shown:
+        notes += _list_uncertain(data, row)
+    return table._replace(notes=notes, fill="page")
 
 
-def _mark(greatest: GreatestOfCases) -> str:
-    """Return the number with its unit, marked if smoothed friction has not reached its full value there."""
-    if greatest.extreme.time is None or greatest.is_steady:
-        return greatest.text
-    kind = greatest.path.partition(".")[0]
-    return greatest.run.uncertain_instants.add_mark(greatest.text, greatest.extreme.time, kind, greatest.ends.unit)
-
-
-def _make_row(data: ReportData, line: SummaryLine, crank: str | None) -> list[TextCell]:
-    """Make the cells of a line."""
-    greatest = line.greatest
-    blank = ["", "", ""]
-    if greatest is None:
-        cells = [_name_line(line), OPEN, *blank, "", *[""] * data.has_cases]
-    else:
-        instant = greatest.instant
-        if instant:
-            instant = f"{instant} s"
-            if crank is not None:
-                instant = f"{_format_angle(greatest.run, crank, greatest.extreme.time)}, {instant}"
-        cells = [_name_line(line), _mark(greatest), *_format_components(greatest), instant]
-        cells += [greatest.run.case_label] * data.has_cases
-    return [TextCell(cell) for cell in cells]
-
-
-def _name_line(line: SummaryLine) -> str:
-    """Return the name of an object, those of others with the same load, and its type."""
-    names = ", ".join((line.name, *line.alike[:MAX_ALIKE])) + " …" * (len(line.alike) > MAX_ALIKE)
-    return f"{names} ({line.type})" if line.type else names
-
-
-def _format_components(greatest: GreatestOfCases) -> list[str]:
-    """Format the components of a force at the instant of its greatest magnitude; of a number without any: blanks."""
-    if f"{greatest.path}.x" not in greatest.run.snapshot.numbers:
-        return ["", "", ""]
-    vector = greatest.run.find_vector(greatest.path, greatest.extreme.time)
-    limit = NOISE * abs(greatest.value)
-    return [
-        OPEN if math.isnan(value) else DASH if abs(value) < limit else greatest.family.style.write(value)
-        for value in vector.tolist()
-    ]
+def _list_uncertain(data: ReportData, row: SummaryRow) -> list[str]:
+    cases = find_uncertain_cases(data, row.path) if data.has_cases else []
+    name = describe_object(row.block_path.partition(".")[0], row.name, data.labels)
+    return [UNCERTAIN_NOTE.format(name, join_names(cases))] if cases else []
 
 
 def find_crank(data: ReportData) -> str | None:
-    """Find the name of the joint whose angle tells the instants of a machine that keeps turning: the most loaded of
-    those that are driven, or else supported by the ground; None if none turns far enough in all cases.
-    """
-    best, largest = None, -1.0
-    for path in list_angle_paths(data.spec):
-        name = path.split(".")[1]
-        angles = [np.asarray(run.results.coordinates.get(name, {}).get("angle", [0.0])) for run in data.runs]
-        if not all(np.isfinite(own).all() and is_monotonic(own) and find_span(own) > MIN_TURN for own in angles):
-            continue
-        greatest = find_greatest_of_cases(data, f"joints.{name}.force", name)
-        force = abs(greatest.value) if greatest is not None else 0.0
-        if force > largest:
-            best, largest = name, force
-    return best
-
-
-def _format_angle(run: ReportedRun, crank: str, time: float | None) -> str:
-    """Format the angle of the turning joint at the instant of an extreme."""
-    angle = float(run.worst_results.coordinates[crank]["angle"][run.find_index(time)])
-    return f"{math.degrees(angle):.0f}°".replace("-", MINUS)
+    """Find the joint whose angle is the axis of histories: that of the summary, if it keeps turning in all cases."""
+    name = data.summary.crank
+    angles = [np.asarray(run.results.coordinates.get(name, {}).get("angle", [0.0])) for run in data.runs]
+    keeps_turning = all(np.isfinite(own).all() and is_monotonic(own) and find_span(own) > MIN_TURN for own in angles)
+    return name if name and keeps_turning else None

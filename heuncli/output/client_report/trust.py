@@ -161,4 +161,4 @@ def _iter_sums(data: ReportData, run: ReportedRun) -> Iterator[Part]:
 
 
 def _format_case(run: ReportedRun) -> str:
-    return f" in case {run.name}" if run.name else ""
+    return f" in case {run.case_label}" if run.name else ""

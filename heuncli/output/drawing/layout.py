@@ -46,13 +46,14 @@ def lay_out(figure: Figure, width: float = style.WIDTH) -> VectorDrawing:
         for text in _wrap(note, style.SMALL_SIZE, width - 2.0 * style.INDENT):
             shapes.append(Text(style.INDENT, y + 6.0, text, style.SMALL_SIZE, colour=style.GREY))
             y += style.LINE_HEIGHT
-    return VectorDrawing(width, y + 10.0, escape(figure.title), "; ".join(map(escape, figure.words)), shapes)
+    y += style.BOTTOM if figure.title else 0.0
+    return VectorDrawing(width, y, escape(figure.title), "; ".join(map(escape, figure.words)), shapes)
 
 
 def _lay_out_heading(figure: Figure, width: float) -> tuple[list[Shape], float]:
     """Return the title and the description of the figure, and the y below them."""
     shapes: list[Shape] = []
-    y = style.TOP
+    y = style.TOP if figure.title or figure.words else style.BARE_TOP
     for text in _wrap(figure.title, style.TITLE_SIZE * BOLD, width - 2.0 * style.INDENT):
         shapes.append(Text(style.INDENT, y, text, style.TITLE_SIZE, is_bold=True))
         y += style.TITLE_HEIGHT
@@ -65,7 +66,7 @@ def _lay_out_heading(figure: Figure, width: float) -> tuple[list[Shape], float]:
 
 def _wrap(text: str, size: float, width: float) -> list[str]:
     """Wrap a text to lines that fit into a width."""
-    return wrap_text(escape(text), int(width / (style.LETTER_WIDTH * size)), 0)
+    return wrap_text(escape(text), int(width / (style.LETTER_WIDTH * size)), 0) if text else []
 
 
 def _lay_out_legend(entries: Sequence[LegendEntry], left: float, y: float, width: float) -> tuple[list[Shape], float]:
@@ -109,7 +110,7 @@ def _lay_out_row(
         panel_shapes, without_words = _lay_out_panel(panel, box, WordBox(left, box.top, right, box.bottom))
         shapes += panel_shapes
         omitted += without_words
-        below = box.bottom + (style.AXIS_SPACE if panel.x.shown_label else style.PANEL_SPACE)
+        below = box.bottom + (style.AXIS_SPACE if panel.x.shown_label and not panel.is_bare else style.PANEL_SPACE)
         if panel.key is not None:
             scale = (box.right - box.left) / (panel.x.high - panel.x.low)
             key_shapes, below = lay_out_key(panel.key, scale, box.bottom, width)
@@ -169,7 +170,7 @@ def _lay_out_panel(panel: Panel, box: PanelBox, cell: WordBox) -> tuple[list[Sha
 def _lay_out_axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
     """Return the grid, which is below all else, and the zero lines, the axes with their numbers, and the labels."""
     width, height = box.right - box.left, box.bottom - box.top
-    max_ticks = max(2, int(width / style.PER_TICK_X)), max(2, int(height / style.PER_TICK_Y))
+    max_ticks = max(3, int(width / style.PER_TICK_X)), max(2, int(height / style.PER_TICK_Y))
     grid: list[Shape] = []
     axes: list[Shape] = []
     for value, text in choose_ticks(box.x_scaling, max_ticks[0]):

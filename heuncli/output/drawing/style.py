@@ -20,6 +20,7 @@ HALO = 3.0  # width of the white outline of words
 # Places, in pixels.
 WIDTH = 720.0  # of a picture
 LEFT, RIGHT, TOP = 80.0, 24.0, 28.0  # margins of panels, and of the base of the title
+BARE_TOP, BOTTOM = 10.0, 10.0  # above a figure without a title, as in a report; below one with a title
 INDENT = 16.0  # left of titles and notes
 LINE_HEIGHT, TITLE_HEIGHT = 18.0, 23.0
 AXIS_SPACE, PANEL_SPACE = 48.0, 20.0  # below a panel with the label of its axis, and without

@@ -27,6 +27,8 @@ from heuncli.results.results_schema import SPACE
 from heuncli.scene.file_format.loads import Actuator
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import make_unit_labels
 from heuncli.study.queries.measure_uncertainty import find_search_error, find_unit
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
@@ -136,7 +138,8 @@ def find_firings(curve: TipCurve) -> Iterator[tuple[float, str]]:
         if np.isfinite(values).all() and values.max() > MIN_PEAK_RATIO * values.mean():
             k = int(values.argmax())
             angle = turning.degrees[k] % (360.0 * turning.turns or math.inf)
-            yield float(turning.times[k]), f"{path.split('.')[1]} fires, {angle:.0f}°"
+            name = describe_object("forces", path.split(".")[1], make_unit_labels(spec))
+            yield float(turning.times[k]), f"{name} fires, {angle:.0f}°"
 
 
 def find_largest(curve: TipCurve) -> LargestVector | None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.summary.summary_rows import SummaryRow
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
 from heuncli.study.quantities.channels import Channel, make_path_channel
@@ -28,6 +30,15 @@ class WorstInstant(NamedTuple):
     kind: str = ""
     name: str = ""
     force: float = 0.0
+
+
+def select_worst(rows: Sequence[SummaryRow]) -> SummaryRow | None:
+    """Select the row of a summary with the greatest joint force; without joints, that of the greatest load between
+    bodies or of the foundation. None if no force is known.
+    """
+    forces = [row for row in rows if row.unit == "N" and not row.is_given and row.kind != "section"]
+    joints = [row for row in forces if row.path.startswith("joints.") and row.kind == "joint"]
+    return max(joints or forces, key=lambda row: abs(row.value), default=None)
 
 
 def find_worst_instant(study: Study) -> WorstInstant:

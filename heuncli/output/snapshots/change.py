@@ -82,5 +82,5 @@ def describe_failure(change: Change) -> str:
     """Return the sentence that says what is wrong."""
     if change.reason:
         return change.reason
-    more = f"; {change.n_similar} more of its values changed" if change.n_similar else ""
+    more = f"; {change.n_similar} more values changed" if change.n_similar else ""
     return f"changed by {format_difference(change)}, allowed {change.tolerance or 0.0:.3g}{more}"

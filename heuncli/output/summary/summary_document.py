@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, T
 from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
 from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow
 from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NOTE
+from heuncli.output.tables.name_ranges import join_ranges
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels
@@ -20,6 +22,9 @@ from heuncli.version import VERSION
 
 HEADING = 'SUMMARY  greatest loads; for a joint, the reaction of "from" on "to"'
 MAX_LINES = 12  # rows, and lines on what is indeterminate
+ALIKE_NOTE = "several names: the same greatest load; direction and instant of the first"
+PLAIN_WORDS = ("force", "load", "drive", "drive force", "drive torque")  # which the kind and the unit tell
+DIGITS = re.compile(r"\d+")
 MAX_GROUPS = 4  # of what is indeterminate
 ALONG_AXIS = 0.9995  # cosine: a direction is that of an axis, to the decimals shown
 TIME_DIGITS = 4
@@ -69,7 +74,7 @@ def merge_cases(summaries: Sequence[Summary]) -> Summary:
 
 def _rank(row: SummaryRow) -> tuple[int, float]:
     """Return what decides between the rows of one thing: an earlier alternative, then the larger value."""
-    quantity = row.path.removeprefix(row.path.partition(".")[0]).removeprefix(f".{row.name}").lstrip(".")
+    quantity = row.block_path.partition(".")[2].removeprefix(row.name).lstrip(".")
     kind = next(kind for kind in KINDS if kind.word == row.kind)
     place = next(i for i, quantities in enumerate(kind.alternatives) if quantity in quantities)
     return -place, abs(row.value)
@@ -88,11 +93,31 @@ def choose_rows(rows: Sequence[SummaryRow], count: int) -> list[SummaryRow]:
     return sorted(chosen, key=lambda row: (order[row.kind], -row.share))
 
 
+def group_alike(rows: Sequence[SummaryRow], summary: Summary) -> list[list[SummaryRow]]:
+    """Group the rows of things whose names differ by a number alone and whose greatest loads read the same."""
+    groups: dict[tuple[object, ...], list[SummaryRow]] = {}
+    for row in rows:
+        stem = DIGITS.sub("", name_row(row, summary.labels))
+        value = _choose_style(row, summary).write(abs(row.value))
+        key = stem, row.unit, value, row.case, row.is_partly_open, row.is_doubtful, row.is_constant
+        groups.setdefault(key, []).append(row)
+    return list(groups.values())
+
+
 def make_summary_table(summary: Summary, *, full: bool = False) -> OutputTable:
     """Make the table; full: with every row."""
+    table, _, n_further = make_table(summary, full=full)
+    further = [f"and {n_further} further: --full"] if n_further else []
+    return table._replace(notes=(*table.notes, *further))
+
+
+def make_table(summary: Summary, *, full: bool = False) -> tuple[OutputTable, list[SummaryRow], int]:
+    """Make the table; return its rows, one for those alike, and the number of things that are left out, too."""
     lines = format_indeterminate(summary.groups, summary.labels, summary.redundant)
     lines_shown = lines if full else lines[:MAX_GROUPS]
-    rows = choose_rows(summary.rows, len(summary.rows) if full else MAX_LINES - len(lines_shown))
+    groups = [[row] for row in summary.rows] if full else group_alike(summary.rows, summary)
+    alike = {group[0]: group for group in groups}
+    rows = choose_rows(list(alike), len(alike) if full else MAX_LINES - len(lines_shown))
     has_cases = any(row.case for row in rows)
     crank = summary.crank and any(row.angle is not None for row in rows)
     columns = [
@@ -103,24 +128,29 @@ def make_summary_table(summary: Summary, *, full: bool = False) -> OutputTable:
     body: list[tuple[Cell, ...]] = []
     for row in rows:
         angle = [_format_angle(row, summary.labels)] if crank else []
-        body.append((*_make_cells(row, summary), *angle, *([row.case] if has_cases else [])))
-    further = len(summary.rows) - len(rows), len(lines) - len(lines_shown)
-    notes = [*lines_shown, *([f"and {sum(further)} further: --full"] if any(further) else []), *summary.notes]
+        names = join_ranges(dict.fromkeys(name_row(each, summary.labels, has_kind=False) for each in alike[row]))
+        cells = (f"{row.kind} {', '.join(names)}".strip(), *_make_cells(row, summary), *angle)
+        body.append((*cells, *([row.case] if has_cases else [])))
+    notes = [*([ALIKE_NOTE] if any(len(alike[row]) > 1 for row in rows) else []), *lines_shown, *summary.notes]
     if any(row.is_partly_open for row in rows):
         notes.append(PARTLY_OPEN_NOTE)
     shown = [i for i in range(len(columns)) if i < 3 or any(row[i] for row in body)]
-    cells = tuple(tuple(row[i] for i in shown) for row in body)
-    return OutputTable(f"{HEADING}; {summary.axes}", tuple(columns[i] for i in shown), cells, tuple(notes))
+    table = OutputTable(
+        f"{HEADING}; {summary.axes}", tuple(columns[i] for i in shown),
+        tuple(tuple(row[i] for i in shown) for row in body), tuple(notes),
+    )  # fmt: skip
+    further = len(summary.rows) - sum(len(alike[row]) for row in rows) + len(lines) - len(lines_shown)
+    return table, rows, further
 
 
 def _make_cells(row: SummaryRow, summary: Summary) -> tuple[Cell, ...]:
-    """Make the cells of name, value, unit, direction or place, and instant."""
+    """Make the cells of value, unit, direction or place, and instant."""
     style = _choose_style(row, summary)
     text = style.write_with_error(row.value) + "*" * row.is_partly_open + MARK * row.is_doubtful
     value = TextCell(text, is_governing=row.unit == "1" and row.value > EXCEEDED)
     where = format_direction(row.direction) if row.direction is not None else _format_place(row, summary)
     time = CONSTANT if row.is_constant and summary.span > 0.0 else _format_time(row.time, summary.span)
-    return name_row(row, summary.labels), value, "" if row.unit == "1" else style.unit, where, time
+    return value, "" if row.unit == "1" else style.unit, where, time
 
 
 def _choose_style(row: SummaryRow, summary: Summary) -> ReaderStyle:
@@ -132,14 +162,14 @@ def _choose_style(row: SummaryRow, summary: Summary) -> ReaderStyle:
     return style._replace(decimals=max(style.decimals, digits))
 
 
-def name_row(row: SummaryRow, labels: Labels) -> str:
-    """Name what a row is of: "joint main", "section rod, bending moment M1"."""
+def name_row(row: SummaryRow, labels: Labels, *, has_kind: bool = True) -> str:
+    """Name what a row is of: "joint main", "section rod, bending moment M1"; has_kind: begin with its kind."""
     if not row.name:
         return row.label.removesuffix(", force")
-    words = describe_object(row.path.partition(".")[0], row.name, labels)
+    words = describe_object(row.block_path.partition(".")[0], row.name, labels)
     quantity = row.label.removeprefix(words).removeprefix(", ")
-    is_plain = quantity in ("force", "load", "drive") or not row.label.startswith(words)
-    return f"{row.kind} {words}" + ("" if is_plain else f", {quantity}")
+    is_plain = quantity in PLAIN_WORDS or not row.label.startswith(words)
+    return f"{row.kind} " * has_kind + words + ("" if is_plain else f", {quantity}")
 
 
 def format_direction(direction: Sequence[float]) -> str:

@@ -17,11 +17,16 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.output.snapshots.tables import SearchedPage
 from heuncli.output.tables.cut_runs import collect_runs
 from heuncli.output.tables.extremes_tables import DoubtfulInstants
-from heuncli.results.results import Array, CutPosition, Results
-from heuncli.results.results_schema import SECTION_FORCES, SECTION_MOMENTS
+from heuncli.output.tables.impulse_tables import make_impact_results
+from heuncli.output.tables.page import Page
+from heuncli.output.tables.table_blocks import build_block
+from heuncli.output.tables.table_plans import IMPULSES as IMPULSE_PLANS
+from heuncli.results.path_words import IMPULSE_UNITS
+from heuncli.results.results import Array, CutPosition, Extremes, Results
+from heuncli.results.results_schema import IMPULSES, SECTION_FORCES, SECTION_MOMENTS
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.captions import describe_path
-from heuncli.study.quantities.channels import Channel
+from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import sort_distinct
 
@@ -93,6 +98,11 @@ class SummaryRow(NamedTuple):
     is_given: bool = False
     share: float = 0.0
 
+    @property
+    def block_path(self) -> str:
+        """The path from its block on, without the number of an impulse."""
+        return self.path.split(".", 2)[2] if self.path.startswith(f"{IMPULSES}.") else self.path
+
 
 class Crank(NamedTuple):
     """The joint whose angle tells the instants, and its angles at given instants."""
@@ -130,6 +140,9 @@ def make_run_summary(
                      if searched.extremes is not None else {})  # fmt: skip
     rows = [row for kind in KINDS for name in _list_names(kind, page.results)
             if (row := values.find_greatest(kind, name)) is not None]  # fmt: skip
+    if not rows and page.results.impulses:
+        rows = _make_impulse_rows(page)
+        return RunSummary([row._replace(case=case) for row in _add_shares(rows, page.magnitudes.size)])
     rows = _add_shares(rows, page.magnitudes.size)
     crank = ""
     if rows:
@@ -138,6 +151,39 @@ def make_run_summary(
     is_searched = searched.extremes is None or searched.extremes.is_searched
     note = page.doubtful.note if any(row.is_doubtful for row in rows) else ""
     return RunSummary([row._replace(case=case) for row in rows], crank, is_searched, note)
+
+
+def _make_impulse_rows(page: Page) -> list[SummaryRow]:
+    """Make the rows of a scene that is struck alone: the greatest impulse of each thing over all impacts."""
+    found: dict[tuple[str, str], SummaryRow] = {}
+    for number, impulse in enumerate(page.results.impulses):
+        view = make_impact_results(page.results, impulse)
+        own = page._replace(results=view)
+        channels = list(iter_impulse_channels(impulse, page.labels))
+        blocks = [build_block(plan, view, page.labels, channels) for plan in IMPULSE_PLANS if plan.has_extremes]
+        numbers = {
+            row.path: row for block in blocks if block is not None for group in block.groups for row in group.rows
+        }
+        extremes: Extremes | None = None
+        run_extremes = page.impact_extremes[number] if page.impact_extremes else {}
+        for run in collect_runs(view, page.labels, IMPULSE_UNITS):
+            numbers |= {channel.path: channel for channel in run.loads if run.name in run_extremes}
+        for each in run_extremes.values():
+            extremes = each if extremes is None else extremes.join(each)
+        places = {path: k for k, path in enumerate(extremes.paths)} if extremes is not None else {}
+        values = GreatestValues(SearchedPage(own, extremes), numbers, places)
+        for kind in KINDS:
+            for name in _list_names(kind, view):
+                row = values.find_greatest(kind, name)
+                best = found.get((kind.word, name))
+                if row is None or (best is not None and abs(best.value) >= abs(row.value)):
+                    continue
+                vectors = _find_vectors(row, view, {})
+                direction = None if vectors is None else _find_direction(vectors, 0)[0]
+                time = float(impulse["time"])
+                path = f"{IMPULSES}.{number}.{row.path}"
+                found[kind.word, name] = row._replace(path=path, direction=direction, time=time, is_constant=False)
+    return list(found.values())
 
 
 def _list_names(kind: SummaryKind, results: Results) -> Sequence[str]:
@@ -206,8 +252,8 @@ def _add_shares(rows: Sequence[SummaryRow], size: float) -> list[SummaryRow]:
     """Add to each row its share of the greatest of its family; a moment counts as a force with the scene's size as
     lever.
     """
-    families = [(row.kind == "section", row.unit if row.unit not in ("N", "N·m") else "load") for row in rows]
-    weights = [abs(row.value) / (size if row.unit == "N·m" else 1.0) for row in rows]
+    families = [(row.kind == "section", "load" if row.unit.startswith("N") else row.unit) for row in rows]
+    weights = [abs(row.value) / (size if row.unit.startswith("N·m") else 1.0) for row in rows]
     largest: dict[tuple[bool, str], float] = {}
     for family, weight in zip(families, weights, strict=True):
         largest[family] = max(largest.get(family, 0.0), weight)
@@ -224,7 +270,7 @@ def _add_directions(study: Study, rows: Sequence[SummaryRow], instants: Array) -
     else:
         recovery = study.find_recovery(instants, reports)
         results = study.compose_reports(recovery, reports)
-    crank = _find_crank(study, results, instants)
+    crank = _find_crank(study, results, instants, rows)
     loads = {own.load.name: own.action for own in recovery.loads} if "forces" in blocks else {}
     found = []
     for row in rows:
@@ -240,7 +286,7 @@ def _add_directions(study: Study, rows: Sequence[SummaryRow], instants: Array) -
 
 def _find_vectors(row: SummaryRow, results: Results, loads: Mapping[str, Action]) -> Array | None:
     """Return the vectors (n, 3) at the evaluated instants whose magnitude, or value along a line, the row gives."""
-    quantity = "moment" if row.unit == "N·m" else "force"
+    quantity = "moment" if row.unit.startswith("N·m") else "force"
     if row.kind == "joint":
         vectors = results.joints.get(row.name, {}).get(quantity)
         return None if vectors is None else np.asarray(vectors)
@@ -260,20 +306,22 @@ def _find_direction(vectors: Array, k: int) -> tuple[tuple[float, ...] | None, b
     return tuple((units[k] + 0.0).tolist()), is_steady
 
 
-def _find_crank(study: Study, results: Results, instants: Array) -> Crank | None:
-    """Find the joint whose angle tells the instants: the only driven one, else the only one on the ground that turns
-    round.
+def _find_crank(study: Study, results: Results, instants: Array, rows: Sequence[SummaryRow]) -> Crank | None:
+    """Find the joint whose angle tells the instants: a driven one, else one on the ground that turns round; of several
+    the most loaded.
     """
     if study.has_one_instant:
         return None
-    driven = list(dict.fromkeys(_iter_driven_angles(study)))
+    driven = set(_iter_driven_angles(study))
     angles = {name: np.asarray(block["angle"]) for name, block in results.coordinates.items() if "angle" in block}
     grounded = [name for name in angles if GROUND in (study.spec.joints[name].a, study.spec.joints[name].b)]
     turning = [name for name in grounded if abs(angles[name][-1] - angles[name][0]) >= FULL_TURN]
-    names = [name for name in driven if name in angles] or turning
-    if len(names) != 1:
+    names = [name for name in angles if name in driven] or turning
+    forces = {row.name: abs(row.value) for row in rows if row.kind == "joint"}
+    if not names:
         return None
-    return Crank(names[0], dict(zip(instants.tolist(), angles[names[0]].tolist(), strict=True)))
+    name = max(names, key=lambda name: forces.get(name, 0.0))
+    return Crank(name, dict(zip(instants.tolist(), angles[name].tolist(), strict=True)))
 
 
 def _iter_driven_angles(study: Study) -> Iterator[str]:

@@ -6,6 +6,7 @@ legends, headings and reports take their words here. A path is as `--measure` ta
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -87,6 +88,14 @@ LABELLED_BLOCKS = {
     "causes": ("forces", "couplings", "drives", "stops", "impulses", "joints"), "rolling": ("couplings",),
     "latches": ("stops",), "system_vector": ("bodies",),
 }  # fmt: skip
+# One thing of a block of the spec -> the block, as sentences name it: "the body crank", "joints.main"
+THINGS = {
+    "body": "bodies", "joint": "joints", "rod": "joints", "drive": "drives", "force": "forces", "section": "sections",
+    "stop": "stops", "latch": "stops", "coupling": "couplings", "rope": "couplings", "cam": "couplings",
+    "impulse": "impulses", "case": "cases",
+}  # fmt: skip
+THING_IN_SENTENCE = re.compile(rf"\b({'|'.join(THINGS)}) (\w+)\b")
+PATH_IN_SENTENCE = re.compile(rf"\b({'|'.join(dict.fromkeys(THINGS.values()))})\.(\w+(?:\.\w+)*)")
 MAX_NAME_WORDS = 3  # of a name with dots: drives.motor, crank.pin
 SIDE_PHRASES = {"before": ", before the load", "beyond": ", beyond the load"}
 UNITLESS = frozenset({"", "1"})
@@ -171,6 +180,23 @@ def find_label(kind: str, name: str, labels: Labels) -> str:
         kind, name = own_block, rest
     paths = (f"{block}.{name}" if name else block for block in LABELLED_BLOCKS.get(kind, (kind,)))
     return next((labels.captions[path] for path in paths if path in labels.captions), "")
+
+
+def describe_sentence(text: str, labels: Labels) -> str:
+    """Return a message of the solver in which labels stand in place of paths and names."""
+    text = PATH_IN_SENTENCE.sub(lambda found: _describe_mention(found[1], found[2], labels), text)
+    return THING_IN_SENTENCE.sub(
+        lambda found: f"{found[1]} {describe_object(THINGS[found[1]], found[2], labels)}", text
+    )
+
+
+def _describe_mention(block: str, rest: str, labels: Labels) -> str:
+    """Describe a path in a sentence: a quantity, or a thing with its kind."""
+    if parse_path(f"{block}.{rest}") is not None:
+        return describe_path(f"{block}.{rest}", labels)
+    name, _, key = rest.partition(".")
+    kind = next(thing for thing, own in THINGS.items() if own == block)
+    return f"{kind} {describe_object(block, name, labels)}" + (f", {make_readable(key)}" if key else "")
 
 
 def make_readable(name: str) -> str:
