@@ -1,7 +1,8 @@
 """Contacts: where within a trial step an open one first closes, or a closed one would have to pull.
 
 The margin of a unilateral row is its gap while it is open, its multiplier while it carries (both times its sense), and
-the size of its gap while others keep it closed: a drive may open it. It is followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
+the size of its gap while others keep it closed: a drive may open it. It is followed along the dense output and bounded
+by its second differences; parts in doubt are halved, from left to right.
 The step is repeated up to there until both agree. What happens then is decided outside
 (motion/integration/contacts/restitution.py).
 """

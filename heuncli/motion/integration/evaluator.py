@@ -180,7 +180,7 @@ class Evaluator:
         )
 
     def _find_opening(self, contact_states: Array, rows: Table, allowed_residual: Array) -> Mask:
-        """Mark contacts (n_t, contacts) closed by others that a drive is opening: their gap is still within rounding."""
+        """Mark contacts (n_t, contacts), closed by others, that a drive opens by less than the rounding of gaps."""
         is_opening = np.zeros((len(rows), len(self.layout.open_contacts)), dtype=bool)
         for k, contact in enumerate(self.layout.contacts):
             row = rows[:, contact.row]

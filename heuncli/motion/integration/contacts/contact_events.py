@@ -274,7 +274,7 @@ class Contacts:
         return event
 
     def find_left(self, row: int | None) -> Mask:
-        """Mark the contact (contacts,) whose gap left its rounding there, though others kept it closed: it has a rate."""
+        """Mark the contact (contacts,) that others kept closed and whose gap left its rounding there: it has a rate."""
         is_left = np.zeros(len(self.holding), dtype=bool)
         for k, contact in enumerate(self.layout.contacts):
             is_left[k] = contact.row == row and self.holding[k] == CLOSED_BY_OTHERS

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
 from heuncli.analyses.sweep_rows import SweepHead, SweptRow
+from heuncli.analyses.variants.jumps import JumpFinder, SweptJump
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.app.commands.sweep.output.extremes import MeasureExtremes, find_extremes
 from heuncli.base.named_tuples import NamedTuple
@@ -21,6 +22,7 @@ class ShownRows(NamedTuple):
     rows: Mapping[int, SweptRow]
     columns: ColumnBuffer
     extremes: tuple[MeasureExtremes | None, ...]
+    jumps: Sequence[SweptJump]
 
     @property
     def size(self) -> int:
@@ -31,7 +33,8 @@ class ShownRows(NamedTuple):
 def select_rows(head: SweepHead, rows: Iterable[SweptRow], all_of_them: bool) -> ShownRows:
     """Select the rows to show, reading them once."""
     columns = ColumnBuffer(len(head.measures))
-    recorded, limit = columns.record(rows), None if all_of_them else MAX_ROWS
+    finder = JumpFinder(head.plan, len(head.measures))
+    recorded, limit = columns.record(finder.record(rows)), None if all_of_them else MAX_ROWS
     first = list(islice(recorded, limit))
     best = ExtremeRows(first, len(head.measures))
     last: deque[SweptRow] = deque(maxlen=END_ROWS)
@@ -43,7 +46,7 @@ def select_rows(head: SweepHead, rows: Iterable[SweptRow], all_of_them: bool) ->
     if last:
         selected = dict(enumerate(first[:END_ROWS])) | dict(enumerate(last, len(columns) - len(last)))
         selected |= {place: row for place, row in best.iter_rows() if place not in selected}
-    return ShownRows(dict(sorted(selected.items())), columns, extremes_found)
+    return ShownRows(dict(sorted(selected.items())), columns, extremes_found, finder.jumps)
 
 
 class ExtremeRows:
