@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
 from heuncli.analyses.sweep_rows import (
     ParameterColumn,
     SweepColumns,
@@ -16,7 +17,6 @@ from heuncli.analyses.sweep_rows import (
     to_cell,
     to_finite,
 )
-from heuncli.analyses.variants.jumps import JumpFinder, SweptJump
 from heuncli.analyses.variants.measures import NO_VALUE
 from heuncli.analyses.variants.sample_statistics import CONFIDENCE, SobolIndices
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
@@ -100,7 +100,7 @@ def _make_jump_block(jump: SweptJump, head: SweepHead) -> dict[str, Any]:
             "set": {name: to_cell(value) for name, value in head.plan.find_values(sample.number).items()},
             "value": sample.value,
         }
-        for word, sample in (("before", jump.before), ("after", jump.after))
+        for word, sample in (("before", jump.first), ("after", jump.second))
     }
     return {"measure": head.measures[jump.measure].text, **ends}
 

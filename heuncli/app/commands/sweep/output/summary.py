@@ -134,9 +134,9 @@ def list_jumps(head: SweepHead, selection: ShownRows, k: int, limit: int | None)
     lines = []
     for jump in jumps[:limit]:
         axis = head.plan.axes[-1]
-        ends = " and ".join(format_parameter(NumberWithUnit(sample.x)) for sample in (jump.before, jump.after))
+        ends = " and ".join(format_parameter(NumberWithUnit(sample.x)) for sample in (jump.first, jump.second))
         place = f"{axis.name} = {ends} {axis.unit or ''}".rstrip()
-        combination = format_combination(head.plan, jump.before.number)
+        combination = format_combination(head.plan, jump.first.number)
         lines.append(f"{head.measures[k].text} jumps between {place}{combination and f', {combination}'}")
     if len(jumps) > len(lines):
         lines.append(f"{head.measures[k].text}: {format_count(len(jumps) - len(lines), 'more jump')}: --all")

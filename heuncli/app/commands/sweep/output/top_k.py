@@ -6,8 +6,8 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
+from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
 from heuncli.analyses.sweep_rows import SweepHead, SweptRow
-from heuncli.analyses.variants.jumps import JumpFinder, SweptJump
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.app.commands.sweep.output.extremes import MeasureExtremes, find_extremes
 from heuncli.base.named_tuples import NamedTuple

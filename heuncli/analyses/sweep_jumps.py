@@ -42,8 +42,8 @@ class SweptJump(NamedTuple):
     """Two neighbours on the last axis between which a measure jumps; measure: its index."""
 
     measure: int
-    before: SweptSample
-    after: SweptSample
+    first: SweptSample
+    second: SweptSample
 
 
 class JumpFinder:
