@@ -132,6 +132,9 @@ JUMP_KEEPS = 0.8
 FAR_FROM_VALUE = 1e4  # factor on the value and the usual size: a pole of first order is then four digits closer than it
 RISES_TO_END = 0.5  # relative to an exponential rise: a pole rises faster, a peak that was passed by far less
 FLATTENS = 1.5  # power of the distance with which g grows: between a crossing (1) and a touch (2)
+# factor on the steepest of the four neighbours of an interval between samples: smooth rises that their samples resolve
+# grow by less from one interval to the next
+SWEPT_JUMP = 10.0
 # factor on the smallest distance of places: a touch within it doubles |g| at the next place or at the one after
 TOUCH_DOUBLES = 3.0
 

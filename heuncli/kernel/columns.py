@@ -23,7 +23,7 @@ if not cython.compiled:
     from heuncli.kernel.loads import apply_rope_pull
     from heuncli.kernel.orthogonal import response_of_row, size_of_multipliers
     from heuncli.kernel.response import configure, solve_applied
-    from heuncli.kernel.scene import APART, ROPE, SHIFT, Body, Closure, Freedom, Load, Scene
+    from heuncli.kernel.scene import CARRIES, ROPE, SHIFT, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import add_load_to_body, update_kinematics
 
@@ -225,7 +225,7 @@ def measure_row_responses(scene: cython.pointer[Scene]) -> cython.void:
 
 
 def largest_relative_residual(scene: cython.pointer[Scene], load_response: cython.double) -> cython.double:
-    """Return the largest |J V + gamma| of all closed rows at the solution, relative to the size of its terms.
+    """Return the largest |J V + gamma| of all rows that must stay closed at the solution, relative to its terms.
 
     load_response: size of the freedoms' response without these rows, in the norm of M
     """
@@ -235,7 +235,7 @@ def largest_relative_residual(scene: cython.pointer[Scene], load_response: cytho
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
         size: cython.double = size_of_row_acceleration(scene, row) + row.answer * load_response
-        residual = row_residual(scene, row) if row.mode != APART else 0.0
+        residual = row_residual(scene, row) if row.mode == CARRIES else 0.0
         if not residual <= largest * size:
             largest = residual / size
     return largest

@@ -1,7 +1,8 @@
 """Contacts: where within a trial step an open one first closes, or a closed one would have to pull.
 
-The margin of a unilateral row, its gap while it is open and its multiplier while it is closed (times its sense), is
-followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
+The margin of a unilateral row is its gap while it is open, its multiplier while it carries (both times its sense), and
+the size of its gap while others keep it closed: a drive may open it. It is followed along the dense output and bounded
+by its second differences; parts in doubt are halved, from left to right.
 The step is repeated up to there until both agree. What happens then is decided outside
 (motion/integration/contacts/restitution.py).
 """
@@ -42,17 +43,21 @@ if not cython.compiled:
 
 
 def contact_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
-    """Return what must not become positive: the gap of an open contact, the multiplier of a closed one."""
+    """Return what must not become positive: the gap of an open contact, the multiplier of a closed one. The size of the
+    gap of one that others keep closed, which must not leave its rounding.
+    """
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
+    if row.mode == LEANS:
+        return fabs(row.gap)
     return contact.sense * (row.gap if row.mode == APART else row.multiplier)
 
 
 def measure_open_contacts(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
-    """Find gaps and rates of the open contacts at the present kinematics."""
+    """Find gaps and rates of the contacts that carry nothing at the present kinematics."""
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.contacts[i].row])
-        if row.mode == APART:
+        if row.mode != CARRIES:
             measure_row(scene, row, t)
 
 
@@ -101,17 +106,6 @@ def find_pushing_rope(scene: cython.pointer[Scene], run: cython.pointer[Run]) ->
     return most > 0.0
 
 
-def find_reopened_contact(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Return whether a contact that other contacts kept closed has opened; run.contact names it."""
-    i: cython.Py_ssize_t
-    for i in range(scene.contact_count):
-        row: cython.pointer[Closure] = cython.address(scene.closures[scene.contacts[i].row])
-        if row.mode == LEANS and not fabs(row.gap) * row.weight <= scene.limits.reopened * scene.size:
-            run.contact = scene.contacts[i].row + 1
-            return True
-    return False
-
-
 def classify_contact_event(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     """Return what the contact found does: 1 an open one closes, 2 a closed one opens, 3 a rope that must not would
     push.
@@ -151,7 +145,13 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
         contact.level = 1e300  # no doubt
-        if row.mode == LEANS or contact.sense == 0:
+        if contact.sense == 0:
+            continue
+        if row.mode == LEANS:
+            threshold = scene.limits.reopened * scene.size / row.weight
+            if contact.most + 0.5 * (contact.most - contact.least) > threshold or run.landing.contact_attempts:
+                contact.level = threshold
+                doubt = 1 if doubt == 0 else doubt
             continue
         size = (scene.size + norm(row.Q)) / row.weight + fabs(row.length)
         threshold = scene.limits.touching * size

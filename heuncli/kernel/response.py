@@ -35,7 +35,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.loads import apply_loads
     from heuncli.kernel.orthogonal import factor_closures, solve_closures
-    from heuncli.kernel.scene import APART, ArtificialInertia, Body, Closure, Freedom, Load, Scene
+    from heuncli.kernel.scene import CARRIES, ArtificialInertia, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import (
         add_zero_accelerations,
@@ -433,13 +433,13 @@ def correct_rates(scene: cython.pointer[Scene], y: cython.p_double) -> cython.vo
 
 
 def largest_gap(scene: cython.pointer[Scene]) -> cython.double:
-    """Return the largest gap of all closed rows [m], angular ones by their weight."""
+    """Return the largest gap of all rows that must stay closed [m], angular ones by their weight."""
     r: cython.Py_ssize_t
     largest: cython.double = 0.0
     gap: cython.double
     for r in range(scene.closure_count):
         gap = fabs(scene.closures[r].gap) * scene.closures[r].weight
-        if scene.closures[r].mode != APART and not gap <= largest:
+        if scene.closures[r].mode == CARRIES and not gap <= largest:
             largest = gap
     return largest
 

@@ -24,7 +24,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.collocation import collocate, collocate_to
     from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, find_reopened_contact, start_contacts
+    from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, start_contacts
     from heuncli.kernel.dense import (
         CONTACT_EVENT,
         EVENT_CHATTER,
@@ -558,8 +558,6 @@ def find_exit_code(scene: cython.pointer[Scene], run: cython.pointer[Run], event
     """Return why the loop ends after an accepted step; else REACHED."""
     if event == CONTACT_EVENT:
         return find_contact_code(scene, run)
-    if run.watching and find_reopened_contact(scene, run):
-        return LET_GO
     if run.halting and run.landing.turns:
         return TURNED
     if run.stiffness.after and is_stability_limited(run):

@@ -399,3 +399,26 @@ def test_a_sobol_sequence_that_is_cut_off_is_warned_of(heun: Heun, folder: Path)
     done = heun(*words)
     assert done.returncode == 0 and "balanced at powers of two, such as 4 and 8" in done.stderr
     assert heun(*words, "-q").stderr == ""
+
+
+def test_a_jump_over_the_last_parameter_is_told_between_its_variants(heun: Heun, folder: Path) -> None:
+    """The mass takes F to one side of 2.5 N, and 4 F beyond; at half the mass it jumps there, too."""
+    text = """
+heun: 1
+parameters: {F: 1 N, m: 1 kg}
+ground: {points: {O: [0, 0, 0]}}
+bodies: {b: {mass: m, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}
+joints: {g: {type: slide, from: ground.O, to: b.p, axis: [1, 0, 0]}}
+forces: {f: {type: force, on: b.p, vector: ["F if F < 2.5 else 4*F", 0, 0]}}
+"""
+    (folder / "s.yaml").write_text(text, encoding="utf-8")
+    asked = ["sweep", "s.yaml", "m=1:0.5/2", "F=4:1/31N", "--measure", "bodies.b.center_acceleration.x", "-q"]
+    jumps = json.loads(heun(*asked, "--format", "json").stdout)["jumps"]
+    ends = [(one["before"]["set"], one["before"]["value"], one["after"]["value"]) for one in jumps]
+    assert [where["m"] for where, _, _ in ends] == [1.0, 0.5]
+    for where, before, after in ends:
+        assert where["F"] == pytest.approx(2.5)
+        assert (before, after) == (pytest.approx(10.0 / where["m"]), pytest.approx(2.4 / where["m"]))
+    assert "jumps between F = 2.5 and 2.4 N, m = 0.5" in heun(*asked).stdout
+    smooth = ["sweep", "s.yaml", "F=1:2.4/15N", "--measure", "bodies.b.center_acceleration.x", "-q"]
+    assert "jumps" not in heun(*smooth, "--format", "json").stdout + heun(*smooth).stdout

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from heuncli.analyses.sweep_jumps import is_jump
 from heuncli.analyses.tune.results import Ending, ToleranceMove, ToleranceRange, Trial, TuneResults
 from heuncli.analyses.tune.search import OVERVIEW_PHASE, descend, descend_from, search_globally
 from heuncli.analyses.tune.trials import Trials
@@ -25,7 +26,6 @@ MAX_TRIALS = 7  # evaluations for one amount to one side
 MAX_RATIO, MIN_POWER = 1e20, 0.1  # limits of the extrapolation
 # powers of the distance: a steeper rise is a jump within it, a flatter one a jump before it
 JUMP_POWER, STEEP_POWER = (6.0, 0.5)
-NOISE = 4.0  # times the errors of two values: their difference that is no jump
 
 
 def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, ...]:
@@ -169,7 +169,7 @@ class _SideSearch:
             else:
                 assert longer is not None
                 change = abs(self.tried[longer].constraint_values[k] - first) * (high / longer) ** STEEP_POWER
-            return constraint.measure if abs(after - before) > change + NOISE * error else ""
+            return constraint.measure if is_jump(after - before, change, error) else ""
         return ""
 
     def _to_unit(self, s: float) -> float:

@@ -53,7 +53,7 @@ def make_bearing_pose(evaluator: Evaluator, coordinates: Coordinates, t: float, 
     if not len(all_open):
         return make_pose(evaluator, coordinates, t, state, all_open)
     from heuncli.motion.integration.contacts.contact_events import find_held_contacts  # few scenes have them
-    from heuncli.motion.integration.contacts.touching import CLOSED_BY_OTHERS
+    from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
 
     open_state = make_pose(evaluator, coordinates, t, state, all_open).state
     holding, contacts = find_held_contacts(evaluator, t, open_state), slice(len(evaluator.layout.contacts))

@@ -17,7 +17,7 @@ from heuncli.multibody.response import (
     solution_parts,
     unpack_columns,
 )
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS, OPEN, Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 
@@ -135,7 +135,8 @@ class Evaluator:
         held_branches = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
         closed = np.zeros((n_t, len(layout.open_contacts)))
         # contacts closed by others count as closed too: the rank, and later checks, decide which of them carry
-        closed[:] = layout.closed_contacts(self.start_holding if holding is None else holding)
+        contact_states = self.start_holding if holding is None else holding
+        closed[:] = layout.closed_contacts(contact_states)
         inputs = {"times": instants, "branches": held_branches, "holding": closed}
         outputs = {
             "states": projected_states,
@@ -150,6 +151,15 @@ class Evaluator:
             # count as zero
             still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
             residual = np.where(still, 0.0, residual)
+        allowed_residual = self.allowed_residual(whole["gap"][:, 0])
+        is_unmet = residual > allowed_residual
+        if is_unmet.any() and (np.asarray(contact_states) == CLOSED_BY_OTHERS).any():
+            is_opening = is_unmet[:, None] & self._find_opening(contact_states, rows, allowed_residual)
+            if is_opening.any():
+                open_states = np.where(is_opening, OPEN, contact_states)
+                return self.evaluate(
+                    times, states, branches=branches, hold_rows=hold_rows, causes=causes, holding=open_states
+                )
         return Evaluation(
             times=instants,
             states=projected_states,
@@ -162,12 +172,20 @@ class Evaluator:
             massless_count=whole["idle"][:, 0],
             pivot=whole["pivot"][:, 0],
             residual=residual,
-            allowed_residual=self.allowed_residual(whole["gap"][:, 0]),
+            allowed_residual=allowed_residual,
             holding=closed,
             causes=unpack_columns(columns.reshape(n_t, n_c, -1), len(layout.place), len(layout.freedoms))
             if causes
             else None,
         )
+
+    def _find_opening(self, contact_states: Array, rows: Table, allowed_residual: Array) -> Mask:
+        """Mark contacts (n_t, contacts), closed by others, that a drive opens by less than the rounding of gaps."""
+        is_opening = np.zeros((len(rows), len(self.layout.open_contacts)), dtype=bool)
+        for k, contact in enumerate(self.layout.contacts):
+            row = rows[:, contact.row]
+            is_opening[:, k] = -contact.sense * row["acceleration"] > allowed_residual * row["terms"]
+        return is_opening & (np.asarray(contact_states) == CLOSED_BY_OTHERS)
 
     def _recover(self, inputs: dict[str, Array], outputs: dict[str, Array], hold_rows: bool, causes: bool) -> None:
         """Call the kernel in batches of instants; the output arrays, the states among them, are written in place.

@@ -23,6 +23,8 @@ from heuncli.scene.expressions.programs import Pack
 
 # Layout
 
+OPEN, CLOSED, CLOSED_BY_OTHERS = 0.0, 1.0, 2.0  # contact states: open, closed, closed by others
+
 
 @record
 class Freedom:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from heuncli.analyses.find.meetings import is_flattening
 from heuncli.analyses.find.search import is_jump_size, is_near_jump, is_steep
 from heuncli.analyses.find.touches import find_touch_range, is_far_from_value, is_rising_exponentially
+from heuncli.analyses.sweep_jumps import SweptSample, is_swept_jump
 from heuncli.analyses.variants.course import MeasureCourse
 from heuncli.analyses.variants.samples import Sample
 from tests.honesty.boundaries.part import Part, Row
@@ -84,6 +85,13 @@ def passing(x: float) -> str:
     return "withheld" if course.samples[1].gap is None else "of the course"
 
 
+def swept(x: float) -> str:
+    """A measure that rises by 1 from each variant to the next, and once by x."""
+    values = (0.0, 1.0, 2.0, 2.0 + x, 3.0 + x, 4.0 + x)
+    samples = [SweptSample(k, float(k), value, ERROR) for k, value in enumerate(values)]
+    return "jump" if is_swept_jump(samples, 2) else "steep"
+
+
 PART = Part(
     headings=("meetings",),
     rows=(
@@ -94,6 +102,7 @@ PART = Part(
         Row("RISES_TO_END", rising, "passed a peak", "rises"),
         Row("FLATTENS", growing, "crossing", "flat"),
         Row("TOUCH_DOUBLES", doubled, "touch", "minimum"),
+        Row("SWEPT_JUMP", swept, "steep", "jump"),
         Row("ISOLATED_SINGULAR", passing, "withheld", "of the course", (0.01, 1 / 3, 3.0)),
     ),
     exempt={

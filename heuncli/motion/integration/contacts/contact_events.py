@@ -40,7 +40,7 @@ from heuncli.motion.integration.contacts.latches import (
     work_of_catches,
 )
 from heuncli.motion.integration.contacts.resting import (
-    acceleration_terms,
+    acceleration_noise,
     find_contradicted,
     find_resting,
     is_short_flight,
@@ -65,6 +65,7 @@ from heuncli.motion.integration.contacts.shared_impulses import (
 from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
+from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
@@ -100,7 +101,8 @@ class Contacts:
         row: closure row of the contact that closed or opened there
         latch_conditions: the conditions of latches there; by default evaluated at the state
         """
-        latches, is_closed = self.latches, self.holding > 0.0
+        latches = self.latches
+        is_closed = (self.holding > 0.0) & ~self.find_left(row)
         require_smooth(self.layout, given_impulse, is_closed)
         latch_conditions = latch_conditions or latches.evaluate_conditions(given_impulse.before_time, state)
         released = latches.release(latch_conditions)
@@ -145,6 +147,13 @@ class Contacts:
         require_energy(event, energy_scale)
         return event
 
+    def find_left(self, row: int | None) -> Mask:
+        """Mark the contact (contacts,) that others kept closed and whose gap left its rounding there: it has a rate."""
+        is_left = np.zeros(len(self.holding), dtype=bool)
+        for k, contact in enumerate(self.layout.contacts):
+            is_left[k] = contact.row == row and self.holding[k] == CLOSED_BY_OTHERS
+        return is_left
+
     def make_problem(
         self, given_impulse: GivenImpulse, sides: RightSides, contacts_touching: TouchingContacts
     ) -> tuple[ImpulseColumns, ContactProblem]:
@@ -185,9 +194,7 @@ class Contacts:
             holding, acceleration = find_resting(
                 contacts_touching, problem.A, problem.moves, impulses.rate, after_evaluation, self.layout
             )
-            noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(
-                self.layout, contacts_touching, problem.A, after_evaluation
-            )
+            noise = acceleration_noise(self.layout, contacts_touching, problem.A, after_evaluation)
             is_still = impulses.rate == 0.0
             require_yielding(
                 self.layout, problem, np.where(is_still, acceleration, 0.0), noise, given_impulse.after_time

@@ -21,9 +21,9 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
-from heuncli.motion.integration.contacts.touching import CLOSED, CLOSED_BY_OTHERS, OPEN, TouchingContacts, scatter
+from heuncli.motion.integration.contacts.touching import TouchingContacts, find_free_response, scatter
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.layout import CLOSED, CLOSED_BY_OTHERS, OPEN, Layout
 from heuncli.results.results import Array, Mask
 
 # Complementarity
@@ -125,7 +125,7 @@ def find_resting(
     contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
     rows = evaluation.rows[0]
     q = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, contacts_touching, A, evaluation)
+    noise = acceleration_noise(layout, contacts_touching, A, evaluation)
     is_still = rate == 0.0
     candidates = np.flatnonzero(is_still & moves)
     solution = solve_complementarity(A[np.ix_(candidates, candidates)], q[candidates], noise[candidates])
@@ -148,25 +148,27 @@ def find_contradicted(
     """
     contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
     rows = evaluation.rows[0]
-    noise = tolerances.CONTACT_ACCELERATION * acceleration_terms(layout, contacts_touching, A, evaluation)
+    noise = acceleration_noise(layout, contacts_touching, A, evaluation)
     z = np.array([-c.sense * float(rows["multiplier"][c.row]) for c in contacts])
     w = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
     is_pulling = (holding == CLOSED) & (z * np.diag(A) < -noise)
     return np.asarray(is_pulling | ((holding == OPEN) & (rate == 0.0) & (w < -noise)))
 
 
-def acceleration_terms(layout: Layout, contacts_touching: TouchingContacts, A: Array, evaluation: Evaluation) -> Array:
-    """Return the sizes of the terms of the accelerations of opening (k,): of motion, and of all loads and weights.
+def acceleration_noise(layout: Layout, contacts_touching: TouchingContacts, A: Array, evaluation: Evaluation) -> Array:
+    """Return the rounding of the accelerations of opening (k,), from the terms of motion, and all loads and weights.
 
     Where a contact lets go, these cancel: a force that has become zero is known only to the rounding of what it was.
+    Where drives hold what a contact touches, loads move it by the rounding of a free body's response.
     """
     rows = [layout.contacts[i].row for i in contacts_touching.indices.tolist()]
     weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
     load = weights + float(
         np.abs(evaluation.loads["force"][0]).sum() + np.abs(evaluation.loads["moment"][0]).sum() / layout.size
     )
-    weight = layout.tables["closures"]["weight"][rows]
-    return np.asarray(evaluation.rows["terms"][0, rows] + np.diag(A) * weight * load)
+    load_effect = layout.tables["closures"]["weight"][rows] * load
+    noise = tolerances.CONTACT_ACCELERATION * (evaluation.rows["terms"][0, rows] + np.diag(A) * load_effect)
+    return np.asarray(noise + tolerances.NO_ANSWER * find_free_response(layout, contacts_touching) * load_effect)
 
 
 def is_short_flight(

@@ -16,8 +16,6 @@ from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 
-OPEN, CLOSED, CLOSED_BY_OTHERS = 0.0, 1.0, 2.0  # of Trajectory.holding: open, closed, closed by others
-
 
 @record
 class TouchingContacts:
@@ -150,14 +148,19 @@ def opening_rates(contacts_touching: TouchingContacts, columns: Table) -> Array:
     return np.asarray(np.einsum("kbi,cbi->kc", contacts_touching.loads, motion))
 
 
+def find_free_response(layout: Layout, contacts_touching: TouchingContacts) -> Array:
+    """Return the order of the opening rates (k,) that unit impulses at the contacts would give free bodies."""
+    mass = layout.bodies["mass"]
+    size = np.einsum("kbi,b->k", contacts_touching.loads[:, :, 3:] ** 2, 1.0 / mass)
+    size += np.einsum("kbi,b->k", (contacts_touching.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
+    return np.asarray(size)
+
+
 def can_move_bodies(layout: Layout, contacts_touching: TouchingContacts, A: Array) -> Mask:
     """Return whether each contact could move a body if it bore a load, (k,); if not, bilateral constraints hold all
     that it pushes.
     """
-    mass = layout.bodies["mass"]
-    size = np.einsum("kbi,b->k", contacts_touching.loads[:, :, 3:] ** 2, 1.0 / mass)
-    size += np.einsum("kbi,b->k", (contacts_touching.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
-    return np.asarray(np.diag(A) > tolerances.NO_ANSWER * size)
+    return np.asarray(np.diag(A) > tolerances.NO_ANSWER * find_free_response(layout, contacts_touching))
 
 
 def scatter(z: Array, indices: Indices, n: int) -> Array:

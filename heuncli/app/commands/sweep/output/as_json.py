@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
 from heuncli.analyses.sweep_rows import (
     ParameterColumn,
     SweepColumns,
@@ -32,14 +33,19 @@ def iter_json(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:
     buffer = ColumnBuffer(len(head.measures))
     if head.plan.draws is not None:
         rows = buffer.record(rows)
+    finder = JumpFinder(head.plan, len(head.measures))
     yield ',\n "rows": ['
-    for number, row in enumerate(rows):
+    for number, row in enumerate(finder.record(rows)):
         yield f"{',' if number else ''}\n  {_to_json(_make_row_block(row, columns))}"
     yield "\n ]"
     if head.plan.draws is not None:
         yield ',\n "statistics": ['
         for number, statistics in enumerate(iter_statistics(head, buffer)):
             yield f"{',' if number else ''}\n  {_to_json(_make_statistics_block(statistics, head))}"
+        yield "\n ]"
+    if finder.jumps:
+        yield ',\n "jumps": ['
+        yield ",".join(f"\n  {_to_json(_make_jump_block(jump, head))}" for jump in finder.jumps)
         yield "\n ]"
     yield "\n}\n"
 
@@ -84,6 +90,19 @@ def _make_row_block(row: SweptRow, columns: SweepColumns) -> dict[str, Any]:
     block["values"] = [dict(zip(("value", "error", "at"), one, strict=True)) for one in values]
     block |= {"code": row.result.code, "reason": explain_missing(row, columns.measures)}
     return block | ({"warnings": list(row.result.warnings)} if row.result.warnings else {})
+
+
+def _make_jump_block(jump: SweptJump, head: SweepHead) -> dict[str, Any]:
+    """Return a jump: the variants before and after it."""
+    ends = {
+        word: {
+            "number": sample.number,
+            "set": {name: to_cell(value) for name, value in head.plan.find_values(sample.number).items()},
+            "value": sample.value,
+        }
+        for word, sample in (("before", jump.first), ("after", jump.second))
+    }
+    return {"measure": head.measures[jump.measure].text, **ends}
 
 
 def _make_statistics_block(statistics: MeasureStatistics, head: SweepHead) -> dict[str, Any]:

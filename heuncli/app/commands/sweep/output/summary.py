@@ -12,11 +12,13 @@ from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.tables.plurals import format_count
 from heuncli.output.tables.sparkline import draw_histogram, draw_sparkline
 from heuncli.results.results import Array
+from heuncli.scene.file_format.quantity import NumberWithUnit
 from heuncli.study.quantities.digits import largest_magnitude, trim_zeros
 from heuncli.study.quantities.table_units import Units
 
 SPARK_WIDTH = 40  # letters of a line
 MAX_COURSES = 12  # sparklines of a measure shown without --all
+MAX_JUMPS = 4  # of a measure shown without --all
 HEADING = "MEASURES  minimum and maximum, and their variants"
 
 
@@ -44,6 +46,7 @@ def make_summary_table(
             notes.append(f"{measure.text}: {format_count(left_out, 'more line')}: --all")
         if best is not None and best.is_constant:
             notes.append(f"{measure.text}: the same in all variants within their errors")
+        notes += list_jumps(head, selection, k, None if all_of_them else MAX_JUMPS)
     heads, *cells = zip(*(pad_words(column) for column in zip(*rows, strict=True)), strict=True)
     vectors = ("", "least", "least", "greatest", "greatest", "")
     columns = (OutputColumn(head, vector=vector) for head, vector in zip(heads[1:], vectors[1:], strict=True))
@@ -122,6 +125,21 @@ def format_combination(plan: Plan, number: int) -> str:
     fixed = [one for one in make_parameter_columns(plan) if one.name not in moving]
     texts = ((one, format_parameter(values[one.name])) for one in fixed)
     return ", ".join(f"{one.name} = {text}{f' {one.unit}' if one.unit else ''}" for one, text in texts)
+
+
+def list_jumps(head: SweepHead, selection: ShownRows, k: int, limit: int | None) -> list[str]:
+    """Describe between which neighbours on the last axis a measure jumps."""
+    jumps = [jump for jump in selection.jumps if jump.measure == k]
+    lines = []
+    for jump in jumps[:limit]:
+        axis = head.plan.axes[-1]
+        ends = " and ".join(format_parameter(NumberWithUnit(sample.x)) for sample in (jump.first, jump.second))
+        place = f"{axis.name} = {ends} {axis.unit or ''}".rstrip()
+        combination = format_combination(head.plan, jump.first.number)
+        lines.append(f"{head.measures[k].text} jumps between {place}{combination and f', {combination}'}")
+    if len(jumps) > len(lines):
+        lines.append(f"{head.measures[k].text}: {format_count(len(jumps) - len(lines), 'more jump')}: --all")
+    return lines
 
 
 def last_axis_length(plan: Plan) -> int:

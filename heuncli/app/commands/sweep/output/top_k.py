@@ -8,6 +8,7 @@ from itertools import islice
 
 import numpy as np
 
+from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
 from heuncli.analyses.sweep_rows import SweepHead, SweptRow
 from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.base.named_tuples import NamedTuple
@@ -23,6 +24,7 @@ class ShownRows(NamedTuple):
     rows: Mapping[int, SweptRow]
     columns: ColumnBuffer
     extremes: tuple[MeasureExtremes | None, ...]
+    jumps: Sequence[SweptJump]
 
     @property
     def size(self) -> int:
@@ -33,7 +35,8 @@ class ShownRows(NamedTuple):
 def select_rows(head: SweepHead, rows: Iterable[SweptRow], all_of_them: bool) -> ShownRows:
     """Select the rows to show, reading them once."""
     columns = ColumnBuffer(len(head.measures))
-    recorded, limit = columns.record(rows), None if all_of_them else MAX_ROWS
+    finder = JumpFinder(head.plan, len(head.measures))
+    recorded, limit = columns.record(finder.record(rows)), None if all_of_them else MAX_ROWS
     first = list(islice(recorded, limit))
     best = ExtremeRows(first, len(head.measures))
     last: deque[SweptRow] = deque(maxlen=END_ROWS)
@@ -45,7 +48,7 @@ def select_rows(head: SweepHead, rows: Iterable[SweptRow], all_of_them: bool) ->
     if last:
         selected = dict(enumerate(first[:END_ROWS])) | dict(enumerate(last, len(columns) - len(last)))
         selected |= {place: row for place, row in best.iter_rows() if place not in selected}
-    return ShownRows(dict(sorted(selected.items())), columns, extremes_found)
+    return ShownRows(dict(sorted(selected.items())), columns, extremes_found, finder.jumps)
 
 
 class ExtremeRows:
