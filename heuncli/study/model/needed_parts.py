@@ -98,24 +98,31 @@ def find_needed_bodies(spec: Spec, selection: Selection, ends: Ends) -> set[str]
     requested = find_requested_bodies(spec, selection)
     if requested is None:
         return set(spec.bodies)
-    groups: list[set[str]] = []  # sets of bodies of which none is solved without the others
     neighbours: dict[str, set[str]] = {name: set() for name in spec.bodies}
     for block in BODY_BLOCKS:
-        items: Mapping[str, Any] = getattr(spec, block)
-        groups += ends[block].values()
-        for name, item in items.items():
-            others = find_followed_bodies(item, spec)
-            for body in ends[block][name]:
-                neighbours[body] |= others
-    for group in groups:
-        for body in group:
-            neighbours[body] |= group
-    found, pending = set(requested), list(requested)
+        for group in ends[block].values():  # none of its bodies is solved without the others
+            for body in group:
+                neighbours[body] |= group
+    found = find_reachable(requested, neighbours)
+    if len(found) < len(neighbours):  # seldom; the bodies that a part follows take much longer to find
+        for block in BODY_BLOCKS:
+            items: Mapping[str, Any] = getattr(spec, block)
+            for name, item in items.items():
+                others = find_followed_bodies(item, spec)
+                for body in ends[block][name]:
+                    neighbours[body] |= others
+        found = find_reachable(requested, neighbours)
+    return found or set(spec.bodies)
+
+
+def find_reachable(start: Collection[str], neighbours: Mapping[str, set[str]]) -> set[str]:
+    """Return all that can be reached from some names by way of neighbours, these names included."""
+    found, pending = set(start), list(start)
     while pending:
         new = neighbours[pending.pop()] - found
         found |= new
         pending += new
-    return found or set(spec.bodies)
+    return found
 
 
 def find_requested_bodies(spec: Spec, selection: Selection) -> set[str] | None:
