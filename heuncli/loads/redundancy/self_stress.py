@@ -23,7 +23,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.response import jacobian, multiplier_joint_loads
-from heuncli.multibody.tree.islands import is_couple, mean_lever
+from heuncli.multibody.tree.islands import find_couples, mean_lever
 from heuncli.multibody.tree.layout import Island, Layout
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.sharing import is_same
@@ -171,8 +171,7 @@ def find_coupling_scale(layout: Layout, length: float) -> Array:
     have shares.
     """
     is_coupling = np.array(layout.rows) >= len(layout.mechanism.joints)
-    couples = [is_couple(layout, r) for r in range(len(layout.rows))]
-    return np.where(is_coupling, np.where(couples, 1.0 / length, 1.0), 0.0)
+    return np.where(is_coupling, np.where(find_couples(layout), 1.0 / length, 1.0), 0.0)
 
 
 class SingularValues(NamedTuple):
