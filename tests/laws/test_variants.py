@@ -12,6 +12,7 @@ import pytest
 
 from heuncli.analyses.variants.evaluation import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
+from heuncli.loads.redundancy import count
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
@@ -140,6 +141,15 @@ def test_the_order_of_variants_does_not_matter(text: str, seed: int) -> None:
     random.Random(seed).shuffle(order)
     for k in order:
         assert told(lambda: variants.solve(given[k])) == fresh[k], given[k]  # noqa: B023
+
+
+def test_a_rate_at_the_start_keeps_the_count_of_redundant_conditions(monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = 'drives: {motor: {joint: main, angle: "1 + w*t"}}\n'
+    text = PLANAR.replace(drive, "").replace("initial: {angle: 1}", "initial: {angle: 1, rate: w}")
+    variants, values = VariantSolver("x.yaml", text), {"w": "25"}
+    fresh = told(lambda: solve(load("x.yaml", text, values, checking=False)))
+    monkeypatch.setattr(count, "count_self_stresses", None)
+    assert told(lambda: variants.solve(values)) == fresh
 
 
 @pytest.mark.parametrize(
