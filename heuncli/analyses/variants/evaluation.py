@@ -209,7 +209,7 @@ class CachedEvaluator:
         self, answer: Callable[[Values], VariantResult], report_run: Callable[[int], None] = lambda runs: None
     ) -> None:
         """answer: evaluates a variant
-        report_run: called before each variant is solved, with the number of those before it
+        report_run: called before a variant is solved and after others are added, with the number of those known
         """
         self._answer, self._report_run = answer, report_run
         self.known: KnownResults = {}
@@ -226,6 +226,11 @@ class CachedEvaluator:
             self._report_run(self.runs)
             self.known[key] = self._answer(values)
         return self.known[key]
+
+    def add_known(self, known: KnownResults) -> None:
+        """Add results of variants that were evaluated elsewhere."""
+        self.known.update(known)
+        self._report_run(self.runs)
 
     def count_warnings(self) -> dict[str, int]:
         """Return the first warning of each kind, and how many variants gave one."""

@@ -86,9 +86,10 @@ def solve_ahead(
             compute_slope(make_evaluation(own, k, head, {number.name: number}), number)
 
     def solve_in_worker(number: SpecNumber) -> KnownResults:
-        limit = timeout.remaining_time()
-        own = CachedEvaluator(lambda values: solve_contained(evaluator, values, "sensitivity", limit))
-        own.known.update(cached.known)
+        own = CachedEvaluator(
+            lambda values: solve_contained(evaluator, values, "sensitivity", timeout.remaining_time())
+        )
+        own.add_known(cached.known)
         solve_for(number, own)
         return own.known
 
@@ -100,7 +101,7 @@ def solve_ahead(
             solve_for(number, cached)
         return
     for known in jobs.run_in_order(solve_in_worker, numbers, job_count, refuse):
-        cached.known.update(known)
+        cached.add_known(known)
 
 
 def parse_words(words: Sequence[str]) -> tuple[str, list[str]]:
