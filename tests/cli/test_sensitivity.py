@@ -36,6 +36,14 @@ def test_several_measures_share_their_runs(heun: Heun) -> None:
     assert both["runs"] == one["runs"] and both["measures"] == one["measures"] * 2
 
 
+def test_processes_change_nothing(heun: Heun) -> None:
+    words = (*ASKED, "--measure", "final energy.kinetic", "--spread", "a=1deg,L=5mm", "--format", "json")
+    one, two = (heun(*words, "--jobs", count, text=PENDULUM) for count in ("1", "2"))
+    assert (one.returncode, one.stdout, one.stderr) == (two.returncode, two.stdout, two.stderr)
+    refused = heun(*ASKED, "--jobs", "0", text=PENDULUM)
+    assert refused.returncode == 2 and "--jobs 0: expected 1 or more" in refused.stderr
+
+
 def test_parameters_that_follow_from_others_are_not_asked_by_default(heun: Heun) -> None:
     text = PENDULUM.replace("idle: 3 mm", "idle: 2*L")
     told = json.loads(heun(*ASKED, "--format", "json", text=text).stdout)

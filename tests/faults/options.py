@@ -164,7 +164,7 @@ LINES: Mapping[str, Sequence[str]] = {
     ),
     "sensitivity": (
         "{spec} {number} --measure {measure} --time-limit {limit}",
-        "{spec} {number} --measure {measure} --format json --time-limit {limit}",
+        "{spec} {number} --measure {measure} --format json --jobs 1 --time-limit {limit}",
         "{spec} {number} --measure {measure} --spread {spread} --format csv --time-limit {limit}",
         "{spec} {number} --measure {measure} --spread {spread} -o {out}/s.json --units kN,mm --strict -q"
         " --time-limit {limit}",

@@ -12,9 +12,12 @@ import pytest
 
 from heuncli.analyses.variants.evaluation import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
+from heuncli.loads.redundancy import count
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
+from heuncli.study.queries import measure
+from heuncli.study.queries.measure import MeasureRequest, measure_value
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.bits import bits
@@ -139,3 +142,35 @@ def test_the_order_of_variants_does_not_matter(text: str, seed: int) -> None:
     random.Random(seed).shuffle(order)
     for k in order:
         assert told(lambda: variants.solve(given[k])) == fresh[k], given[k]  # noqa: B023
+
+
+def test_a_rate_at_the_start_keeps_the_count_of_redundant_conditions(monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = 'drives: {motor: {joint: main, angle: "1 + w*t"}}\n'
+    text = PLANAR.replace(drive, "").replace("initial: {angle: 1}", "initial: {angle: 1, rate: w}")
+    variants, values = VariantSolver("x.yaml", text), {"w": "25"}
+    fresh = told(lambda: solve(load("x.yaml", text, values, checking=False)))
+    monkeypatch.setattr(count, "count_self_stresses", None)
+    assert told(lambda: variants.solve(values)) == fresh
+
+
+@pytest.mark.parametrize(
+    "path", [SPECS / "double.yaml", SPECS / "swing.yaml", SPECS / "slider_crank.yaml"], ids=lambda path: path.stem
+)
+def test_a_measure_read_alone_has_the_bits_of_one_from_results(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    joints = load(path).joints
+    measures = [
+        MeasureRequest(how, f"joints.{name}.{what}")
+        for name in joints for how in ("max", "min", "abs") for what in ("force", "moment", "force.x", "moment.z")
+    ]  # fmt: skip
+    study = VariantSolver(path, measures=[request.path for request in measures]).solve({})
+    found = [[*bits(measure_value(request, study))] for request in measures]
+    is_tree = not study.setup.scene.layout.rows
+    reads = [read_one(study, request) is not None for request in measures]
+    assert reads == [is_tree] * len(measures)
+    monkeypatch.setattr(measure, "make_joint_reader", lambda *_: lambda recovery: None)
+    assert [[*bits(measure_value(request, study))] for request in measures] == found
+
+
+def read_one(study: Study, request: MeasureRequest) -> Any:
+    """What is read of a recovery without results."""
+    return measure.make_joint_reader(study, study.find_numbers(request.path), request.path)(study.recovery)

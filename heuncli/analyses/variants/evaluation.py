@@ -199,31 +199,43 @@ class VariantEvaluator:
         return self.find_solver(format_value(case)), {name: value for name, value in values.items() if name != CASE}
 
 
-class CachedEvaluator:
-    """The results of an evaluator by their values: no variant is solved twice."""
+KnownResults = dict[tuple[tuple[str, ParameterValue], ...], VariantResult]  # by the values of the variants
 
-    def __init__(self, evaluator: VariantEvaluator, report_run: Callable[[int], None] = lambda runs: None) -> None:
-        """report_run: called before each variant is solved, with the number of those before it"""
-        self.evaluator, self._report_run = evaluator, report_run
-        self._known: dict[tuple[tuple[str, ParameterValue], ...], VariantResult] = {}
+
+class CachedEvaluator:
+    """The results of variants by their values: no variant is solved twice."""
+
+    def __init__(
+        self, answer: Callable[[Values], VariantResult], report_run: Callable[[int], None] = lambda runs: None
+    ) -> None:
+        """answer: evaluates a variant
+        report_run: called before a variant is solved and after others are added, with the number of those known
+        """
+        self._answer, self._report_run = answer, report_run
+        self.known: KnownResults = {}
 
     @property
     def runs(self) -> int:
         """How many variants were evaluated, including those that could not be solved."""
-        return len(self._known)
+        return len(self.known)
 
     def evaluate(self, values: Values) -> VariantResult:
         """Return the result of a variant."""
         key = tuple(sorted(values.items()))
-        if key not in self._known:
+        if key not in self.known:
             self._report_run(self.runs)
-            self._known[key] = self.evaluator.answer(values)
-        return self._known[key]
+            self.known[key] = self._answer(values)
+        return self.known[key]
+
+    def add_known(self, known: KnownResults) -> None:
+        """Add results of variants that were evaluated elsewhere."""
+        self.known.update(known)
+        self._report_run(self.runs)
 
     def count_warnings(self) -> dict[str, int]:
         """Return the first warning of each kind, and how many variants gave one."""
         warnings_by_kind: dict[str, tuple[str, int]] = {}
-        for result in self._known.values():
+        for result in self.known.values():
             for kind, text in {strip_numbers(text): text for text in result.warnings}.items():
                 first, so_far = warnings_by_kind.get(kind, (text, 0))
                 warnings_by_kind[kind] = first, so_far + 1

@@ -1,4 +1,4 @@
-"""Solve one variant in a process of its own, and print the warnings of all. What ends one early becomes its result.
+"""Solve variants in processes of their own, and print the warnings of all. What ends one early becomes its result.
 
 Impure: the clock.
 """
@@ -9,11 +9,30 @@ from heuncli.analyses.variants.evaluation import CachedEvaluator, Values, Varian
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, WORKER_DIED, VariantResult, make_failed_result
 from heuncli.analyses.variants.parameters import format_value
 from heuncli.app.cli import jobs, timeout
-from heuncli.app.cli.entry import run_contained
+from heuncli.app.cli.entry import UsageError, run_contained
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import print_warnings
-from heuncli.base.errors import HeunError
+from heuncli.base.errors import HeunError, Problem
 from heuncli.scene.file_format.models import Spec
+
+MIN_SECONDS = 0.02  # s; for shorter variants several processes do not pay
+
+
+def require_job_count(requested: int | None) -> None:
+    """Raise UsageError if --jobs is not a number of processes."""
+    if requested is not None and requested < 1:
+        problem = Problem("bad-option", f"--jobs {requested}: expected 1 or more", hint="for example --jobs 2")
+        raise UsageError(problem)
+
+
+def choose_job_count(requested: int | None, item_count: int, seconds: float) -> int:
+    """Return the number of processes for some items; seconds: what one variant takes.
+
+    requested: by the user; None: one per processor, if a variant takes long enough
+    """
+    if requested is None and seconds < MIN_SECONDS:
+        return 1
+    return jobs.choose_job_count(requested, item_count)
 
 
 def solve_contained(evaluator: VariantEvaluator, values: Values, command: str, limit: float | None) -> VariantResult:

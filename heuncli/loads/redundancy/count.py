@@ -55,13 +55,16 @@ class RedundancyCount(NamedTuple):
 
 
 def count_redundancy(scene: PreparedScene, runner: Runner, stage_cache: Stages = NO_CACHE) -> RedundancyCount:
-    """Count the redundancy of a scene, which depends on no load; stage_cache: caches the count of the scene without
-    loads.
+    """Count the redundancy of a scene, which depends on no load and no rate; stage_cache: caches the count of the scene
+    without them.
     """
     if not scene.layout.rows:
         return RedundancyCount(0, 0, 0, 0, None, 0)
     drives = tuple(law.value for law in scene.mechanism.laws)
-    bare_layout, holding = remove_loads(scene.layout), runner.start_holding
+    from heuncli.loads.redundancy.self_stress import stop_motion  # a tree starts faster without it
+
+    layout, holding = scene.layout, runner.start_holding
+    bare_layout = replace(remove_loads(layout), y0=stop_motion(layout, layout.y0))
     return stage_cache.run(
         count_without_loads, bare_layout, drives, holding, fallback=lambda: count_self_stresses(runner)
     )
@@ -84,13 +87,14 @@ def count_self_stresses(runner: Evaluator) -> RedundancyCount:
         find_self_stress,
         find_stress_of_poses,
         make_stress_poses,
+        stop_motion,
     )
 
     layout = runner.layout
-    start = runner.evaluate(np.zeros(1), layout.y0[None, :])
+    start = runner.evaluate(np.zeros(1), stop_motion(layout, layout.y0[None, :]))
     active_rows = int(start.rows["closed"][0].sum())
     states = make_body_states(layout, start)
-    poses = make_stress_poses(start, states)
+    poses = make_stress_poses(layout, start, states)
     stress = find_stress_of_poses(runner, poses)
     start_stress = CachedStress(poses, stress)
     at_start, joints = int(stress.count[0]), layout.mechanism.joints

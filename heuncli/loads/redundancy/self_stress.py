@@ -23,7 +23,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.response import jacobian, multiplier_joint_loads
-from heuncli.multibody.tree.islands import is_couple, mean_lever
+from heuncli.multibody.tree.islands import find_couples, mean_lever
 from heuncli.multibody.tree.layout import Island, Layout
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.sharing import is_same
@@ -70,8 +70,9 @@ class SelfStressPoses:
     """All data that the self-stresses of a scene depend on at some instants; loads and their effects are not among
     them.
 
-    times (n_t,) [s], states (n_t, n), gap (n_t,): as in Evaluation is_active, is_independent (n_t, rows), f, m (n_t,
-    rows, 3): of the closure rows R (n_t, n_b, 3, 3), x (n_t, n_b, 3): of the bodies
+    times (n_t,) [s], states (n_t, n) with all rates zero, gap (n_t,): as in Evaluation
+    is_active, is_independent (n_t, rows), f, m (n_t, rows, 3): of the closure rows
+    R (n_t, n_b, 3, 3), x (n_t, n_b, 3): of the bodies
     """
 
     times: Array
@@ -97,13 +98,20 @@ class CachedStress:
     stress: SelfStress
 
 
-def make_stress_poses(evaluation: Evaluation, states: BodyStates) -> SelfStressPoses:
+def make_stress_poses(layout: Layout, evaluation: Evaluation, states: BodyStates) -> SelfStressPoses:
     """Collect what self-stresses depend on at evaluated states."""
-    rows = evaluation.rows
+    rows, at_rest = evaluation.rows, stop_motion(layout, evaluation.states)
     return SelfStressPoses(
-        evaluation.times, evaluation.states, evaluation.gap, rows["closed"], rows["chosen"], rows["f"], rows["m"],
-        states.R, states.x,
-    )  # fmt: skip
+        evaluation.times,
+        at_rest,
+        evaluation.gap,
+        rows["closed"],
+        rows["chosen"],
+        rows["f"],
+        rows["m"],
+        states.R,
+        states.x,
+    )
 
 
 def find_self_stress(
@@ -115,7 +123,7 @@ def find_self_stress(
     """
     if not runner.layout.rows:
         return None
-    poses = make_stress_poses(evaluation, states)
+    poses = make_stress_poses(runner.layout, evaluation, states)
     if cached_stress is not None and is_same(poses, cached_stress.poses):
         return cached_stress.stress
     return find_stress_of_poses(runner, poses)
@@ -163,8 +171,7 @@ def find_coupling_scale(layout: Layout, length: float) -> Array:
     have shares.
     """
     is_coupling = np.array(layout.rows) >= len(layout.mechanism.joints)
-    couples = [is_couple(layout, r) for r in range(len(layout.rows))]
-    return np.where(is_coupling, np.where(couples, 1.0 / length, 1.0), 0.0)
+    return np.where(is_coupling, np.where(find_couples(layout), 1.0 / length, 1.0), 0.0)
 
 
 class SingularValues(NamedTuple):
@@ -290,6 +297,13 @@ def find_rate_indices(layout: Layout) -> Array:
     groups = layout.tables["groups"]
     indices: Array = np.concatenate([np.arange(g["rates"], g["end"]) for g in groups]).astype(int)
     return indices
+
+
+def stop_motion(layout: Layout, states: Array) -> Array:
+    """Return states (..., n) with all rates zero."""
+    at_rest = states.copy()
+    at_rest[..., find_rate_indices(layout)] = 0.0
+    return at_rest
 
 
 def displace_along_rates(layout: Layout, state: Array, factor: float) -> Array:

@@ -33,12 +33,13 @@ def find_idle_spins(mechanism: Mechanism, size: float) -> list[IdleSpin]:
     """Find the bodies with an undetermined spin."""
     points, free = find_attachments(mechanism)
     spins = []
-    for i, body in enumerate(mechanism.bodies):
+    for i, axes in free.items():
+        body = mechanism.bodies[i]
         null, largest = find_massless_axes(body, size)
-        for axis in free.get(i, ()):
+        for axis in axes:
             along = len(null) and float(np.sum(np.square(null @ axis))) >= tolerances.ALONG_SQUARED
             null = axis[None, :] if along else null[:0]
-        if i not in free or not len(null):
+        if not len(null):
             continue
         arms = [p - body.center for p in points[i]]
         farthest = max(arms, key=lambda d: float(d @ d), default=np.zeros(3))

@@ -16,7 +16,9 @@ from heuncli.multibody.mechanism.couplings import CoupledRow
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Island, Layout
 from heuncli.multibody.tree.rows import IslandRow, make_kernel_table
-from heuncli.results.results import Array
+from heuncli.results.results import Array, Mask
+
+COUPLES = (kernel.DOT, kernel.TURN)  # kinds of closure rows whose load is a couple
 
 
 def add_islands(layout: Layout) -> Layout:
@@ -57,7 +59,8 @@ def find_islands(layout: Layout) -> list[Island]:
         rows, bodies = found.setdefault(root(k), ([], set()))
         rows.append(r)
         bodies |= loops[k]
-    return [_make_island(layout, np.array(rows), sorted(bodies)) for rows, bodies in found.values()]
+    is_couple = find_couples(layout)
+    return [_make_island(layout, np.array(rows), sorted(bodies), is_couple) for rows, bodies in found.values()]
 
 
 def loop_bodies(layout: Layout, joint: int) -> set[int]:
@@ -80,7 +83,7 @@ def coupling_loop_bodies(layout: Layout, row: CoupledRow) -> set[int]:
     return {i for part in row.parts for i in set(layout.path_to_root(part.a)) ^ set(layout.path_to_root(part.b))}
 
 
-def _make_island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
+def _make_island(layout: Layout, rows: Array, bodies: list[int], is_couple: Mask) -> Island:
     freedoms: list[int] = []
     turns: list[bool] = []
     for body in layout.bodies[bodies]:
@@ -91,17 +94,18 @@ def _make_island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
         own = own[own["driven"] == 0]
         freedoms += own["answer_at"].tolist()
         turns += (own["kind"] != kernel.SHIFT).tolist()
-    couples = np.array([is_couple(layout, r) for r in rows.tolist()])
     length = mean_lever(layout, {layout.rows[r] for r in rows.tolist()})
-    return Island(rows, np.array(freedoms, dtype=int), couples, np.array(turns, dtype=bool), length)
+    return Island(rows, np.array(freedoms, dtype=int), is_couple[rows], np.array(turns, dtype=bool), length)
 
 
-def is_couple(layout: Layout, r: int) -> bool:
-    """Whether the load of a closure row is a couple; for a sum, the loads of all its parts."""
-    row = layout.tables["closures"][r]
-    parts = layout.tables["parts"][row["part"] : row["part"] + row["part_count"]]
-    kinds = parts["kind"] if row["kind"] == kernel.SUM else row["kind"]
-    return bool(np.all(np.isin(kinds, (kernel.DOT, kernel.TURN))))
+def find_couples(layout: Layout) -> Mask:
+    """Return whether the load of each closure row is a couple, (rows,); of a sum: the loads of all its parts."""
+    closures, part_kinds = layout.tables["closures"], layout.tables["parts"]["kind"]
+    is_couple = np.isin(closures["kind"], COUPLES)
+    for r in np.flatnonzero(closures["kind"] == kernel.SUM).tolist():
+        first, count = int(closures["part"][r]), int(closures["part_count"][r])
+        is_couple[r] = np.isin(part_kinds[first : first + count], COUPLES).all()
+    return is_couple
 
 
 def mean_lever(layout: Layout, joints: Collection[int]) -> float:

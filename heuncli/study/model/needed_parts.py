@@ -8,7 +8,7 @@ requested.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from heuncli.base.records import fields
@@ -93,29 +93,40 @@ def find_all_bodies(spec: Spec) -> Ends:
     return {block: {name: find_bodies(item, spec) for name, item in own.items()} for block, own in items.items()}
 
 
-def find_needed_bodies(spec: Spec, selection: Selection, ends: Ends) -> set[str]:
+def find_needed_bodies(spec: Spec, selection: Selection) -> set[str]:
     """Return the bodies that the requested results depend on: their parts, and those that these follow."""
     requested = find_requested_bodies(spec, selection)
     if requested is None:
         return set(spec.bodies)
-    groups: list[set[str]] = []  # sets of bodies of which none is solved without the others
     neighbours: dict[str, set[str]] = {name: set() for name in spec.bodies}
-    for block in BODY_BLOCKS:
-        items: Mapping[str, Any] = getattr(spec, block)
-        groups += ends[block].values()
-        for name, item in items.items():
-            others = find_followed_bodies(item, spec)
-            for body in ends[block][name]:
-                neighbours[body] |= others
+    add_groups(neighbours, (find_bodies(joint, spec) for joint in spec.joints.values()))
+    found = find_reachable(requested, neighbours)
+    if len(found) < len(neighbours):  # seldom; all other entries, and what they follow, take much longer
+        for block, bodies_by_name in find_all_bodies(spec).items():
+            add_groups(neighbours, bodies_by_name.values())
+            for name, bodies in bodies_by_name.items():
+                others = find_followed_bodies(getattr(spec, block)[name], spec)
+                for body in bodies:
+                    neighbours[body] |= others
+        found = find_reachable(requested, neighbours)
+    return found or set(spec.bodies)
+
+
+def add_groups(neighbours: Mapping[str, set[str]], groups: Iterable[set[str]]) -> None:
+    """Make all bodies of a group neighbours, for none of them is solved without the others."""
     for group in groups:
         for body in group:
             neighbours[body] |= group
-    found, pending = set(requested), list(requested)
+
+
+def find_reachable(start: Collection[str], neighbours: Mapping[str, set[str]]) -> set[str]:
+    """Return all that can be reached from some names by way of neighbours, these names included."""
+    found, pending = set(start), list(start)
     while pending:
         new = neighbours[pending.pop()] - found
         found |= new
         pending += new
-    return found or set(spec.bodies)
+    return found
 
 
 def find_requested_bodies(spec: Spec, selection: Selection) -> set[str] | None:
@@ -139,8 +150,7 @@ def restrict_spec(spec: Spec, selection: Selection, *, reduce: bool = True) -> S
     """Return the spec without sections that are not requested and, if `reduce`, without parts that nothing depends
     on.
     """
-    ends = find_all_bodies(spec) if reduce else {}
-    needed_bodies = find_needed_bodies(spec, selection, ends) if reduce else set(spec.bodies)
+    needed_bodies = find_needed_bodies(spec, selection) if reduce else set(spec.bodies)
     cut = (
         set(spec.sections)
         if selection.has_whole("sections") or IMPULSES in selection.reports
@@ -152,7 +162,7 @@ def restrict_spec(spec: Spec, selection: Selection, *, reduce: bool = True) -> S
         "bodies": select_items(spec.bodies, needed_bodies),
         "sections": select_items(spec.sections, cut),
     }
-    for block, bodies_by_name in ends.items():
+    for block, bodies_by_name in find_all_bodies(spec).items():
         entries[block] = select_items(
             getattr(spec, block), {name for name, bodies in bodies_by_name.items() if bodies <= needed_bodies}
         )

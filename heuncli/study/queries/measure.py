@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
@@ -23,6 +24,8 @@ from heuncli.results.results_schema import (
     first_element_suffix,
     independent_axes,
 )  # fmt: skip
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.model.selection import EVERYTHING
 from heuncli.study.quantities.channels import Channel, make_path_channel
 from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
@@ -206,7 +209,8 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
         is_one_sided = how == "abs" and make_path_channel(asked).is_magnitude
         sides = BOTH_SIDES if CUT in asked.axes else SIDES["max" if is_one_sided else how]
         error = find_search_error(study, asked.keys)
-        search = ChannelSearch(collect, lambda channel: error if math.isfinite(error) else math.nan, sides)
+        read = make_joint_reader(study, asked, path)
+        search = ChannelSearch(collect, lambda channel: error if math.isfinite(error) else math.nan, sides, read)
         bounds = study.search_extremes(search, find_reports(path), times=times)
         lowest, highest = bounds.places[0] if bounds.places else (None, None)
         low = Peak(float(bounds.low[0]), float(bounds.low_at[0]), lowest)
@@ -215,6 +219,29 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     found = low if is_low else high
     value = (abs(found.value) if how == "abs" else found.value) + 0.0
     return found._replace(value=value, open_at=float(min(open_at)) if open_at else None)
+
+
+def make_joint_reader(study: Study, asked: PathValues, path: str) -> Callable[[Recovery], Array | None]:
+    """Return a function that reads the force or moment of a joint, or a component, from a recovery for a search.
+
+    It reads nothing in closed chains, where loads may be indeterminate, and no number that is not finite: composed
+    results say which.
+    """
+    quantity, component = asked.keys[-1], None if asked.axes else SPACE.find_index(path.rpartition(".")[2])
+    is_load = asked.keys[0] == "joints" and len(asked.keys) == 3 and quantity in ("force", "moment")
+    is_known = is_load and bool(asked.axes or component is not None) and study.setup.selection.axes == EVERYTHING.axes
+
+    def read(recovery: Recovery) -> Array | None:
+        if not is_known or recovery.decided is not None:
+            return None
+        load = next(load for load in recovery.requested_joints if load.joint.name == asked.keys[1])
+        values: Array = getattr(load, quantity)
+        if not np.isfinite(values).all():
+            return None
+        values = values if component is None else values[:, component]
+        return make_path_channel(asked._replace(values=values)).searched_values
+
+    return read
 
 
 def find_lowest_and_highest(channel: Channel, time: float) -> tuple[Peak, Peak]:

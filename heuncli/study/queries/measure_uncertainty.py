@@ -69,10 +69,12 @@ def find_search_error(study: Study, keys: Sequence[str]) -> float:
 
     If angles and travels have different units, it is the smaller of the two errors.
     """
-    row, magnitudes = find_quantity(keys), study.magnitudes
+    row = find_quantity(keys)
     if row is None:
         return math.nan
-    kind, lost = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1]), magnitudes.rounding_errors()
+    kind = error_kind_of_path(keys[0], ".".join(keys[1:-1]), keys[-1])
+    magnitudes = study.load_magnitudes if all(is_load(kind, unit) for unit in row.units) else study.magnitudes
+    lost = magnitudes.rounding_errors()
     error_kind = {"travels": "motion"}.get(kind, kind) if (kind, row.units[0]) not in magnitudes.errors else kind
     known = [(magnitudes.errors.get((error_kind, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
     return min(map(max, known)) or math.nan

@@ -30,11 +30,14 @@ class ChannelSearch(NamedTuple):
     collect: takes the channels from results; those along series of cuts stand last, and are searched as whole lengths
     find_error: gives the error of a channel's numbers
     sides: the extremes that are needed, -1 the lowest, 1 the highest; others are not searched between the samples
+    read: the columns of a recovery, (n_t, n_columns), with the bits of those from results, which then need not be
+    composed; None where it cannot give them
     """
 
     collect: Callable[[Results], Sequence[Channel]]
     find_error: Callable[[Channel], float]
     sides: tuple[float, ...] = BOTH_SIDES
+    read: Callable[[Recovery], Array | None] = lambda recovery: None
 
 
 class Sampleable(Protocol):
@@ -79,7 +82,7 @@ class StudyColumns:
         self, study: Sampleable, search: ChannelSearch, reports: frozenset[str], setup: Setup | None = None
     ) -> None:
         """setup: with series of cuts as whole lengths; by default all of the study's, if channels run along them."""
-        self.study, self.reports, self.collect = study, reports, search.collect
+        self.study, self.reports, self.collect, self.read = study, reports, search.collect, search.read
         channels = search.collect(study.results)
         self.paths = tuple(channel.path for channel in channels)
         self.errors = np.array([search.find_error(channel) for channel in channels])
@@ -107,7 +110,7 @@ class StudyColumns:
         if self.grid:
             return np.concatenate([self._sample_between(part) for part in parts])
         self.grid = [self.study.find_recovery(part, self.reports, self.setup, keep=len(parts) == 1) for part in parts]
-        return np.concatenate([self._rows(self._compose(recovery)) for recovery in self.grid])
+        return np.concatenate([self._read_or_compose(recovery) for recovery in self.grid])
 
     @cached_property
     def grid_verdicts(self) -> VerdictsBetween | None:
@@ -129,7 +132,7 @@ class StudyColumns:
         """Return the columns at instants between those of the grid."""
         recovery, verdicts = self.study.find_recovery(times, self.reports, self.setup), self.grid_verdicts
         if verdicts is None:
-            return self._rows(self._compose(recovery))
+            return self._read_or_compose(recovery)
         is_decided = verdicts.covers(recovery.solutions)
         if is_decided.all():
             return self._rows(self._compose(recovery.without_indeterminacy_search(), verdicts))
@@ -140,6 +143,10 @@ class StudyColumns:
         rows = np.empty((len(times), decided_rows.shape[1]))
         rows[is_decided], rows[~is_decided] = decided_rows, other_rows
         return rows
+
+    def _read_or_compose(self, recovery: Recovery) -> Array:
+        rows = self.read(recovery)
+        return self._rows(self._compose(recovery)) if rows is None else rows
 
     def _compose(self, recovery: Recovery, verdicts: VerdictsBetween | None = None) -> Results:
         results = self.study.results

@@ -56,7 +56,7 @@ def main(request: FindRequest) -> int:
     unit = find_unit(measure_request.path, evaluator.spec)
     condition = resolve_condition(words, unit, scenes, HINT)
     with show_progress(request.quiet) as report:
-        cached = CachedEvaluator(evaluator, lambda runs: report(min(runs, 2 * scan), 2 * scan, "variants"))
+        cached = CachedEvaluator(evaluator.answer, lambda runs: report(min(runs, 2 * scan), 2 * scan, "variants"))
         sample_at = make_sampler(cached, interval, condition)
         findings = find_meetings(
             sample_at,

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from heuncli.analyses.sensitivity import NoisyDerivative, compute_derivative
 from heuncli.analyses.tolerance_analysis import NumberSpread, combine_tolerances, parse_spreads
-from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
+from heuncli.analyses.variants.evaluation import CachedEvaluator, KnownResults, Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue, Reason
 from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
+from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
@@ -17,10 +19,10 @@ from heuncli.app.cli.options import FORMATS
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import collect_results, parse_overrides, require_tolerance
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units
-from heuncli.app.cli.variant_workers import print_variant_warnings
+from heuncli.app.cli.variant_workers import choose_job_count, print_variant_warnings, require_job_count, solve_contained
 from heuncli.app.commands.sensitivity.page import MeasureFindings, SensitivityPage, make_document
 from heuncli.app.commands.sensitivity.request import SensitivityRequest
-from heuncli.base.errors import Problem
+from heuncli.base.errors import Problem, SolveError
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
@@ -49,15 +51,55 @@ def main(request: SensitivityRequest) -> int:
     heads = [MeasureLabel(text, find_unit(measure_request.path, spec)) for text, measure_request in texts]
     variant_count = 1 + VARIANTS_PER_NUMBER * len(numbers)
     with show_progress(request.quiet) as report:
-        cached = CachedEvaluator(evaluator, lambda runs: report(min(runs, variant_count), variant_count, "variants"))
+        cached = CachedEvaluator(
+            evaluator.answer, lambda runs: report(min(runs, variant_count), variant_count, "variants")
+        )
+        begun = time.perf_counter()
         if cached.evaluate({}).code:
             evaluator.solve({})  # raises the error with its location
+        job_count = choose_job_count(request.jobs, len(numbers), time.perf_counter() - begun)
+        solve_ahead(cached, evaluator, heads, numbers, job_count)
         all_findings = [analyse_measure(cached, k, head, numbers, spreads) for k, head in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(all_findings), cached.runs, units_shown)
     emit_document(make_document(page), form, request.output)
     note_si_format(request.units, form, request.quiet)
     print_variant_warnings(spec, cached, request.quiet)
     return int(request.strict and any(one.kind == "refused" for each in all_findings for one in each.slopes.values()))
+
+
+def solve_ahead(
+    cached: CachedEvaluator,
+    evaluator: VariantEvaluator,
+    heads: Sequence[MeasureLabel],
+    numbers: Sequence[SpecNumber],
+    job_count: int,
+) -> None:
+    """Solve the variants that the derivatives need, those of one number in the same process, and cache their results.
+
+    The order of the results does not depend on the number of processes. Raises SolveError if a process died.
+    """
+
+    def solve_for(number: SpecNumber, own: CachedEvaluator) -> None:
+        for k, head in enumerate(heads):
+            compute_slope(make_evaluation(own, k, head, {number.name: number}), number)
+
+    def solve_in_worker(number: SpecNumber) -> KnownResults:
+        own = CachedEvaluator(
+            lambda values: solve_contained(evaluator, values, "sensitivity", timeout.remaining_time())
+        )
+        own.add_known(cached.known)
+        solve_for(number, own)
+        return own.known
+
+    def refuse(number: SpecNumber, death: jobs.ProcessDeath) -> KnownResults:
+        raise SolveError(death.make_problem(f"solved the variants of {number.name}", "try --jobs 1"))
+
+    if job_count == 1:
+        for number in numbers:
+            solve_for(number, cached)
+        return
+    for known in jobs.run_in_order(solve_in_worker, numbers, job_count, refuse):
+        cached.add_known(known)
 
 
 def parse_words(words: Sequence[str]) -> tuple[str, list[str]]:
@@ -77,6 +119,7 @@ def make_recipe(request: SensitivityRequest, path: str) -> Recipe:
     if not request.measure:
         hint = "for example --measure 'max abs joints.main.force'"
         raise UsageError(Problem("bad-option", "sensitivity: no --measure is given", hint=hint))
+    require_job_count(request.jobs)
     options = Options(tolerance=require_tolerance(request.tolerance))
     measures = tuple(measure.parse_measures(request.measure))
     return Recipe(path, read_text(path), measures, options, parse_overrides(request.set), request.case)

@@ -39,6 +39,9 @@ class SensitivityRequest(NamedTuple):
     format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
+    jobs: Annotated[
+        int | None, Option(("--jobs", "-j"), "Number of processes; each solves the variants of one parameter.", "N")
+    ] = None
     strict: Annotated[bool, Option(("--strict",), "Exit with 1 if a derivative cannot be given.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

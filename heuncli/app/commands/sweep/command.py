@@ -25,6 +25,7 @@ from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, parse_units, require_writable
+from heuncli.app.cli.variant_workers import require_job_count
 from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis, parse_shard
 from heuncli.app.commands.sweep.checks import find_problems, find_warnings
 from heuncli.app.commands.sweep.output.writer import SweepOutput, require_writable_form
@@ -79,9 +80,7 @@ def make_recipe(request: SweepRequest, path: str) -> Recipe:
     if not request.measure:
         hint = "for example --measure 'max abs joints.main.force'"
         raise UsageError(Problem("bad-option", "sweep: no --measure is given", hint=hint))
-    if request.jobs is not None and request.jobs < 1:
-        message = f"--jobs {request.jobs}: expected 1 or more"
-        raise UsageError(Problem("bad-option", message, hint="for example --jobs 2"))
+    require_job_count(request.jobs)
     if request.jobs is not None and request.dask is not None:
         hint = "leave out --jobs: a cluster uses all its workers"
         raise UsageError(Problem("bad-option", "--jobs and --dask cannot be combined", hint=hint))

@@ -16,6 +16,7 @@ from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tolerance
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_writable
+from heuncli.app.cli.variant_workers import require_job_count
 from heuncli.app.commands.tune.page import make_document
 from heuncli.app.commands.tune.request import FORMATS, TuneRequest
 from heuncli.app.commands.tune.result_block import TunedScene, format_command, make_history
@@ -56,10 +57,7 @@ def main(request: TuneRequest) -> int:
 
 def require_consistent_options(request: TuneRequest, options: TuningOptions) -> None:
     """Raise UsageError if options contradict each other, or a number is invalid."""
-    if request.jobs is not None and request.jobs < 1:
-        raise UsageError(
-            Problem("bad-option", f"--jobs {request.jobs}: expected 1 or more", hint="for example --jobs 2")
-        )
+    require_job_count(request.jobs)
     if request.history is None:
         return
     require_writable(request.history, "--history")

@@ -10,13 +10,12 @@ from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.variant_workers import make_death_result, solve_contained
+from heuncli.app.cli.variant_workers import choose_job_count, make_death_result, solve_contained
 from heuncli.base.errors import HeunError, Problem
 from heuncli.study.queries.measure import NotOneNumber
 
 NO_NUMBER = "bad-option"  # the code of a measure that is not one number
 MIN_REMAINING = 1e-9  # s; less than this left means that the limit is reached
-MIN_SECONDS = 0.02  # s; for shorter variants several processes do not pay
 
 
 class TrialSolver:
@@ -44,8 +43,7 @@ class TrialSolver:
         """Yield the outcomes of variants, by their values. Raises UsageError if a measure is not a single
         number.
         """
-        is_short = self.jobs is None and self.seconds < MIN_SECONDS
-        job_count = 1 if is_short or len(variants) == 1 else jobs.choose_job_count(self.jobs, len(variants))
+        job_count = choose_job_count(self.jobs, len(variants), self.seconds) if len(variants) > 1 else 1
         work: Callable[[Values], VariantResult] = partial(
             solve_in_worker if job_count > 1 else solve_variant, self.evaluator
         )
