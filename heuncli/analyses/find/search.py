@@ -23,27 +23,27 @@ from heuncli.analyses.find.touches import (
     is_deep,
     is_far_from_value,
     iter_minima,
+    leads_to_touch,
+    step_towards_value,
 )
 from heuncli.analyses.variants.course import (
     FIRST_DISTRUST,
     GOLDEN,
     MAX_DISTRUST,
     NOISE,
-    CoursePrediction,
     MeasureCourse,
     clip_inside,
 )
 from heuncli.analyses.variants.samples import Sample, interpolate
 from heuncli.base import tolerances
 
-FINE_GAP = (
-    1.0 / 32.0
-)  # of the scan's spacing: before neighbours closer than this are parted, minima of |g| are followed
+FINE_GAP = 0.125  # of the scan's spacing: before neighbours closer than this are parted, minima of |g| are followed
 MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
 WIDE_BRACKET = 1000.0  # times the narrowest bracket: a wider one, across which a jump has the same size
 MIN_BRACKET = 10.0  # times the narrowest bracket: a comparison bracket that is not wider proves no jump
 WIDE_GAP = 0.5  # of the scan's spacing: neighbours farther apart count as an interval of the scan
 CHECK_OFFSET = 0.1  # of a scan interval: offset from its middle, so that no wave is hidden by aliasing
+FIRST_POLE_SHARE, MIN_POLE_SHARE = 0.05, 1e-6  # of a bracket: distance to both sides of the predicted pole
 PEAK_GROWTH = 2.0  # times the predicted rise of a peak: its possible rise
 
 
@@ -63,7 +63,7 @@ def search(course: MeasureCourse) -> None:
         elif (x := find_possible_peak(course, i)) is not None:
             course.sample_and_learn(x)
         else:
-            course.sample_and_learn(choose_place(left, right, course.predict(i)))
+            course.sample_and_learn(choose_place(course, i))
 
 
 def follow_new_minimum(course: MeasureCourse) -> bool:
@@ -125,6 +125,8 @@ def is_uncertain(course: MeasureCourse, i: int, ends: list[tuple[float, float]])
     if find_possible_peak(course, i) is not None:
         return True
     if is_near_jump(course, left, right, ends) or is_far_from_value(course, left, right):
+        return False
+    if leads_to_touch(course, i):
         return False
     prediction = course.predict(i)
     side, error = left.side or right.side, max(left.error, right.error)
@@ -258,6 +260,8 @@ def may_meet_value(course: MeasureCourse, i: int, ends: list[tuple[float, float]
     left, right = course.samples[i], course.samples[i + 1]
     if is_far_from_value(course, left, right) or is_near_jump(course, left, right, ends) or leads_to_meeting(course, i):
         return False
+    if leads_to_touch(course, i):
+        return False
     prediction = course.predict(i)
     nearest = (left.side or 0) * prediction.gaps - prediction.total_uncertainty
     return bool((nearest <= 0.0).any()) or find_possible_peak(course, i) is not None
@@ -312,12 +316,14 @@ def find_possible_peak(course: MeasureCourse, i: int) -> float | None:
     return clip_inside(left, right, peak.place) if peak_height >= abs(course.value) else None
 
 
-def choose_place(left: Sample, right: Sample, prediction: CoursePrediction) -> float:
-    """Choose where to evaluate between two neighbours: where the measure may come nearest to the value, else in the
-    middle.
+def choose_place(course: MeasureCourse, i: int) -> float:
+    """Choose where to evaluate between two neighbours: where the measure may come nearest to the value; beside a sample
+    that meets it just off the value; else in the middle.
     """
+    left, right, prediction = course.samples[i], course.samples[i + 1], course.predict(i)
     if not left.side or left.side != right.side:
-        return 0.5 * (left.x + right.x)
+        place = step_towards_value(course, i)
+        return 0.5 * (left.x + right.x) if place is None else place
     return clip_inside(
         left, right, float(prediction.places[np.argmin(left.side * prediction.gaps - prediction.uncertainty)])
     )
@@ -326,11 +332,22 @@ def choose_place(left: Sample, right: Sample, prediction: CoursePrediction) -> f
 def narrow_pair(course: MeasureCourse, i: int) -> None:
     """Narrow two neighbours on different sides down to a crossing or a jump.
 
-    By Brent's rule: the root of the predicted measure, and the middle whenever that gained too little.
+    By Brent's rule: the root of the predicted measure, and the middle whenever that gained too little. At a pole both
+    sides of the root of the inverse measure are tried, ever closer to it.
     """
     left, right = course.samples[i], course.samples[i + 1]
-    failures = 0
+    failures, pole_share = 0, FIRST_POLE_SHARE
     while right.x - left.x > course.finest:
+        if failures and (pole := course.find_pole(course.samples.index(left))) is not None:
+            width = right.x - left.x
+            left, right = narrow_pole(course, left, right, pole, pole_share)
+            if left.gap is None or right.gap is None or not left.side or not right.side:
+                return
+            is_narrower = right.x - left.x < 2.5 * pole_share * width
+            pole_share = max(pole_share * pole_share, MIN_POLE_SHARE) if is_narrower else FIRST_POLE_SHARE
+            failures = 1 if right.x - left.x < 0.5 * width else 2
+            if is_narrower or failures == 1:
+                continue
         x = (
             0.5 * (left.x + right.x)
             if failures > 1
@@ -346,6 +363,18 @@ def narrow_pair(course: MeasureCourse, i: int) -> None:
         left, right = (sample, right) if sample.side == left.side else (left, sample)
     is_jump = not is_steep(course, left, right) and is_jump_size(course, left, right)
     (course.jumps if is_jump else course.steep).add((left.x, right.x))
+
+
+def narrow_pole(course: MeasureCourse, left: Sample, right: Sample, pole: float, share: float) -> tuple[Sample, Sample]:
+    """Evaluate both sides of a predicted pole, at a share of the bracket, and return the narrower bracket."""
+    distance = max(share * (right.x - left.x), 0.25 * course.finest)
+    for x in (pole - distance, pole + distance):
+        if left.x < x < right.x:
+            sample = course.sample_at(x)
+            if not sample.side:
+                return left, sample
+            left, right = (sample, right) if sample.side == left.side else (left, sample)
+    return left, right
 
 
 def step_past_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
@@ -411,7 +440,7 @@ def predict_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
     near = min((left, right), key=lambda sample: abs(sample.gap or 0.0))
     stretch = find_stretch(course, left)
     others = sorted((each for each in stretch if each not in (left, right)), key=lambda each: abs(each.x - near.x))
-    samples = [left, right, *others[:2]]
+    samples = _straighten_pole(course, [left, right, *others[:2]])
     low, high = left.x, right.x
     for _ in range(60):  # halvings of a polynomial, which cost nothing
         middle = 0.5 * (low + high)
@@ -421,6 +450,23 @@ def predict_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
         low, high = (middle, high) if is_before_root else (low, middle)
     margin = 0.25 * course.finest
     return min(max(0.5 * (low + high), left.x + margin), right.x - margin)
+
+
+def _straighten_pole(course: MeasureCourse, samples: list[Sample]) -> list[Sample]:
+    """Return samples of 1/value - 1/measure, which has the same root, where it is followed better by a polynomial, as
+    towards a pole; else the same samples. The nearest to the root is predicted from the others.
+    """
+    m = [(sample.gap or 0.0) + course.value for sample in samples]
+    if len(samples) < 4 or min(x * course.value for x in m) <= 0.0:
+        return samples
+    near, others = samples[k := int(np.argmin([abs(sample.gap or 0.0) for sample in samples]))], [*samples]
+    del others[k]
+    inverses = [sample._replace(gap=1.0 / course.value - 1.0 / x) for sample, x in zip(samples, m, strict=True)]
+    expected, inverse = (
+        float(interpolate(part, np.array([near.x]))[0]) for part in (others, inverses[:k] + inverses[k + 1 :])
+    )
+    inverse_error = abs((inverse - (inverses[k].gap or 0.0)) * m[k] * course.value)
+    return inverses if inverse_error < abs(expected - (near.gap or 0.0)) else samples
 
 
 def find_stretch(course: MeasureCourse, one: Sample) -> list[Sample]:

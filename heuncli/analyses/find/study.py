@@ -28,7 +28,7 @@ from heuncli.analyses.find.results import (
     UnresolvedBracket,
 )
 from heuncli.analyses.find.search import check_scan, iter_possible_meetings, narrow_all, search
-from heuncli.analyses.find.touches import compute_distance, find_touches
+from heuncli.analyses.find.touches import compute_distance, find_touches, step_towards_value
 from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError, find_extreme, refine_extreme
 from heuncli.analyses.variants.measures import SIDES, Relation
 from heuncli.analyses.variants.samples import Sample, withhold
@@ -218,7 +218,8 @@ def enclose_crossings(course: MeasureCourse) -> None:
 def enclose_touches(course: MeasureCourse) -> None:
     """Enclose touches from both sides.
 
-    Each end is halved towards the touch until |g| is only a few errors. Raises SampleLimitError.
+    Each end is moved towards the touch, by its power or by halves, until |g| is only a few errors. Raises
+    SampleLimitError.
     """
     for group in find_touching_groups(course):
         for end, direction in ((group[0], -1), (group[-1], 1)):
@@ -229,7 +230,8 @@ def enclose_touches(course: MeasureCourse) -> None:
                 outer = course.samples[k + direction]
                 if compute_distance(outer) <= CLOSE_TO_VALUE * end.error or abs(outer.x - end.x) <= course.finest:
                     break
-                sample = course.sample_at(0.5 * (end.x + outer.x))
+                place = step_towards_value(course, min(k, k + direction))
+                sample = course.sample_at(0.5 * (end.x + outer.x) if place is None else place)
                 if sample.gap is None:
                     break
                 if sample.side == 0:

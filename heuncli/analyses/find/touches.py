@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.analyses.variants.course import NOISE, MeasureCourse
+from heuncli.analyses.variants.course import FIRST_DISTRUST, NOISE, MeasureCourse
 from heuncli.analyses.variants.samples import Sample
 from heuncli.base import tolerances
 
@@ -27,6 +27,8 @@ MAX_MISFIT = 3.0  # largest ratio between the middle sample and its prediction b
 MIN_GAIN = 0.5  # of |g|: largest ratio after a useful step, and of a minimum to its neighbours
 MAX_STEPS = 60  # steps towards one touch
 DOUBLING = 2.0
+CLEAR_OF_VALUE = 2.0 * NOISE  # times its error: |g| of a sample next to one that meets the value
+MAX_POWER_CHANGE = 0.1  # of a power: how much it may differ outside of two samples, at the first distrust
 
 
 def find_touches(course: MeasureCourse) -> None:
@@ -133,6 +135,72 @@ def predict_minimum(left: Sample, middle: Sample, right: Sample) -> float | None
         if ratio < best_misfit:
             best_misfit, best_place = ratio, x
     return best_place
+
+
+def find_power(met: Sample, near: Sample, far: Sample) -> float | None:
+    """Return p of |g| = a |x - x_met|^p through two samples on one side of one that meets the value; None if |g| does
+    not grow from it.
+    """
+    size = compute_distance(near)
+    if not near.side or near.side != far.side or not size < compute_distance(far):
+        return None
+    return math.log(compute_distance(far) / size) / math.log((far.x - met.x) / (near.x - met.x))
+
+
+def step_towards_value(course: MeasureCourse, i: int) -> float | None:
+    """Return the place between a sample and the only one that meets the value at which |g| is a few of its errors, if
+    it grows from there as a power of the distance; None if it does not.
+    """
+    left, right = course.samples[i], course.samples[i + 1]
+    outer, met, direction = (left, right, -1) if right.side == 0 else (right, left, 1)
+    beyond = next(iter(course.find_neighbours(i, direction)), None)
+    others = course.samples[i + 2 : i + 3] if met is right else course.samples[max(i - 1, 0) : i]
+    if (
+        met.side != 0
+        or any(other.side == 0 for other in others)
+        or beyond is None
+        or (power := find_power(met, outer, beyond)) is None
+    ):
+        return None
+    small = CLEAR_OF_VALUE * max(outer.error, met.error)
+    share = (small / compute_distance(outer)) ** (1.0 / power)
+    distance = max(share * abs(outer.x - met.x), course.finest)
+    if not distance < 0.5 * abs(outer.x - met.x):
+        return None
+    return met.x + math.copysign(distance, outer.x - met.x)
+
+
+def leads_to_touch(course: MeasureCourse, i: int) -> bool:
+    """Return whether |g| falls between two neighbours as the power of the distance from a sample that meets the value
+    beside them, by which it falls outside of them, too.
+    """
+    samples, allowed = course.samples, MAX_POWER_CHANGE * FIRST_DISTRUST / course.distrust
+    for near, direction in ((i, -1), (i + 1, 1)):
+        far = i + 1 if near == i else i
+        beyond = next(iter(course.find_neighbours(i, -direction)), None)
+        met = find_met(course, near, direction)
+        if met is None or beyond is None or compute_distance(samples[near]) < NOISE * samples[near].error:
+            continue
+        inside = find_power(met, samples[near], samples[far])
+        outside = find_power(met, samples[far], beyond)
+        if inside is not None and outside is not None and abs(inside - outside) <= allowed * outside:
+            return True
+    return False
+
+
+def find_met(course: MeasureCourse, k: int, direction: int) -> Sample | None:
+    """Return the first sample that meets the value, or is a touch, in a direction, with all between them on one side;
+    None without one.
+    """
+    samples = course.samples
+    while 0 <= k + direction < len(samples) and not course.is_interrupted(k + min(direction, 0)):
+        k += direction
+        is_lowest = compute_distance(samples[k]) < compute_distance(samples[k - direction])
+        if samples[k].side == 0 or (is_lowest and find_touch_range(course, samples[k]) is not None):
+            return samples[k]
+        if not is_lowest or samples[k].side != samples[k - direction].side:
+            return None
+    return None
 
 
 def compute_distance(sample: Sample) -> float:

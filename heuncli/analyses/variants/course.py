@@ -44,6 +44,8 @@ FIRST_DISTRUST = 1.25
 MAX_DISTRUST = 16.0
 LOG_RATIO = 4.0  # ratio of neighbouring magnitudes from which on their logarithms are interpolated
 LARGEST_LOG = 690.0  # of a magnitude that does not overflow
+POLE_POWERS = (1.0, 2.0)  # orders of poles towards which the measure may rise
+TINY_INVERSE = 1e-3  # of the least: an inverse measure that is interpolated to less counts as this
 POLE_MARGIN = 0.5  # of an interval: distance outside of it that a predicted pole may have
 
 
@@ -168,7 +170,7 @@ class MeasureCourse:
             return None
         one, other = self.samples[i], self.samples[i + 1]
         if self._measure_at(i) * self._measure_at(i + 1) < 0.0:
-            place = self._find_pole(i)
+            place = self.find_pole(i)
             return None if place is None else CoursePeak(place, math.inf)
         peaks = [peak for k in (i, i + 1) if (peak := self._find_top(k)) is not None]
         inside = [peak for peak in peaks if one.x < peak.place < other.x]
@@ -194,13 +196,16 @@ class MeasureCourse:
         minimum = 1.0 - 0.25 * middle * middle / bend
         return CoursePeak(place, abs(m[1]) / math.sqrt(minimum) if minimum > 0.0 else math.inf)
 
-    def _find_pole(self, i: int) -> float | None:
+    def find_pole(self, i: int) -> float | None:
         """Find where 1/measure passes 0 between two neighbours of different signs; None if neither side's rise predicts
         a pole.
         """
         one, other = self.samples[i], self.samples[i + 1]
         width = other.x - one.x
-        a, b = 1.0 / self._measure_at(i), 1.0 / self._measure_at(i + 1)
+        a, b = self._measure_at(i), self._measure_at(i + 1)
+        if not a * b < 0.0:
+            return None
+        a, b = 1.0 / a, 1.0 / b
         is_predicted = False
         for k, far in ((i, i - 1), (i + 1, i + 2)):
             if not 0 <= far < len(self.samples) or self.is_interrupted(min(k, far)):
@@ -253,11 +258,20 @@ class MeasureCourse:
             return CoursePrediction(x, expected, uncertainty, noise, uncertainty)
         parts = [part for part in (samples[:-1], samples[1:]) if one in part and other in part]
         models = [[interpolate(part, x) for part in (samples, *parts)]]
+        if left and right:
+            models[0].append(interpolate_corner([left[0], one], [other, right[0]], x, models[0][0]))
         if self._is_graded(samples, bool(left and right)):
             models.append([self._interpolate_logarithm(part, x) for part in (samples, *parts)])
-        expected, *others = min(models, key=lambda model: float(np.max(np.abs(np.array(model[1:]) - model[0]))))
-        if left and right:
-            others.append(interpolate_corner([left[0], one], [other, right[0]], x, expected))
+            if left and right:
+                models[1].append(interpolate_corner([left[0], one], [other, right[0]], x, models[1][0]))
+            models.extend(
+                self._interpolate_inverses(samples, parts, x, power, has_corner=bool(left and right))
+                for power in POLE_POWERS
+                if self.value != 0.0  # towards which it may fall instead
+            )
+        expected, *others = min(
+            models, key=lambda model: float(np.max(np.abs(np.array(model[1 : 1 + len(parts)]) - model[0])))
+        )
         spread = np.max([np.abs(each - expected) for each in others], axis=0)
         uncertainty = np.maximum(spread - noise, 0.0)
         known = [_gap(sample) for sample in samples]
@@ -288,6 +302,23 @@ class MeasureCourse:
         logs = [sample._replace(gap=math.log(abs(_gap(sample) + self.value))) for sample in samples]
         found: Array = sign * np.exp(np.minimum(interpolate(logs, x), LARGEST_LOG)) - self.value
         return found
+
+    def _interpolate_inverses(
+        self, samples: list[Sample], parts: list[list[Sample]], x: Array, power: float, *, has_corner: bool
+    ) -> list[Array]:
+        """Interpolate samples, parts of them and, if wanted, their corner by polynomials of |m|^(-1/power), as near a
+        pole of that order.
+        """
+        sign = math.copysign(1.0, _gap(samples[0]) + self.value)
+        inverses = {
+            sample.x: sample._replace(gap=abs(_gap(sample) + self.value) ** (-1.0 / power)) for sample in samples
+        }
+        least = TINY_INVERSE * min(inverse.gap or 0.0 for inverse in inverses.values())
+        found = [interpolate([inverses[sample.x] for sample in part], x) for part in (samples, *parts)]
+        if has_corner:
+            ordered = [inverses[sample.x] for sample in samples]
+            found.append(interpolate_corner(ordered[:2], ordered[2:], x, found[0]))
+        return [sign * np.maximum(inverse, least) ** -power - self.value for inverse in found]
 
     def find_neighbours(self, i: int, direction: int) -> list[Sample]:
         """Return up to two samples before a sample (direction -1) or after its next (1), without an interruption; the

@@ -49,6 +49,7 @@ MAX_STEPS = 2_000
 MAX_GROWTH, MIN_GROWTH = 10.0, 0.2  # limits of the growth of s from step to step
 RETRY_FACTOR = 0.5
 MAX_TRIES = 60  # of one step
+MAX_STANDING_STEPS = 20  # in a row that move by rounding only, at a singular position
 MAX_CLOSURE_STEPS = 8  # of a displaced pose; each must reduce the miss to a tenth, or the step is too long
 HALVINGS = 60  # of a step, to find where in it a contact closes or opens
 CONTACT_SAMPLES = (0.25, 0.5, 0.75, 1.0)  # fractions of a step at which contacts are checked
@@ -98,7 +99,7 @@ class RestSearch:
         self.slowest = SlowestPoint(self.start, self.deviation, np.inf)
         self.doubt = self.relative_delay = 0.0
         self.total_displacement = np.zeros(self.coordinates.count)
-        self.steps = self.evaluations = 0
+        self.steps = self.evaluations = self.standing_steps = 0
         self.step_size = self.largest_terms = 0.0
 
     def find(self) -> RestPose:
@@ -132,13 +133,15 @@ class RestSearch:
             raise SolveError(self.find_singularity(pose) or jumping_load_problem(self.coordinates, pose, shape))
 
     def require_bounded(self, pose: Pose, law: RestLaw) -> None:
-        """Raise SolveError where something runs away or the steps are used up."""
+        """Raise SolveError where something runs away, stands still at a singular position, or the steps are used up."""
         self.largest_terms = max(self.largest_terms, float(law.sum_rounding.max(initial=0.0)) / tolerances.SUM_ROUNDING)
         distances = np.abs(self.total_displacement) * self.coordinates.weights
         limit = np.where(self.coordinates.shifts, tolerances.RUN_AWAY, tolerances.TURNS_ON)
         relative_distances = self.coupled_pairs.take_minimum(distances / limit)
         if (relative_distances > 1.0).any():
             raise SolveError(runaway_problem(self.coordinates, self.total_displacement, relative_distances))
+        if self.standing_steps >= MAX_STANDING_STEPS and (problem := self.find_singularity(pose)):
+            raise SolveError(problem)
         if self.steps >= MAX_STEPS * np.sqrt(tolerances.REST_BENT / self.tolerance):
             raise SolveError(self.find_singularity(pose) or endless_search_problem(self.coordinates, pose, self.steps))
 
@@ -228,9 +231,10 @@ class RestSearch:
             )
         else:
             new_pose = event
-        self.total_displacement = self.total_displacement + self.coordinates.find_displacement(
-            pose.state, new_pose.state
-        )
+        moved = self.coordinates.find_displacement(pose.state, new_pose.state)
+        self.total_displacement = self.total_displacement + moved
+        rounding = tolerances.PUSHED_BY_ROUNDING * tolerances.START_ROUNDING
+        self.standing_steps = self.standing_steps + 1 if self.coordinates.max_magnitude(moved) <= rounding else 0
         if not self.evaluator.layout.contacts:
             return self.count_turns(pose, new_pose)
         return self.count_turns(pose, make_bearing_pose(self.evaluator, self.coordinates, self.t, new_pose.state))
