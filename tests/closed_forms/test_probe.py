@@ -117,7 +117,7 @@ def test_the_horizon_of_the_double_pendulum(joint: str, whole: bool) -> None:
 
 @pytest.mark.parametrize("tilt", [1e-8, 1e-4, 1e-1])
 def test_the_condition_of_euler_angles(tilt: float) -> None:
-    """manual/theory.md, "Limits of methods": 2e8 at 1e-8, 2e4 at 1e-4, 20 at 1e-1: the cotangent of half the angle."""
+    """manual/theory.md, "Attitudes": 2e8 at 1e-8, 2e4 at 1e-4, 20 at 1e-1: the cotangent of half the angle."""
     body = f"{{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], orientation: {{axis: [1, 0, 0], angle: {tilt}}}}}"
     found = probed(f"heun: 1\nbodies: {{b: {body}}}\nanalysis: {{type: state}}\n")
     zxz, _ = found.attitudes[0].euler["zxz"]
