@@ -15,6 +15,7 @@ from heuncli.output.tables.page import Page
 from heuncli.results.results import SIDE_SIGNS, Array, Block, Extremes, Magnitudes, Results
 from heuncli.results.results_paths import PathValues, find_values
 from heuncli.results.results_schema import REPORT_OF
+from heuncli.study.model.selection import EVERYTHING
 from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.study.queries.study import Study
 
@@ -135,7 +136,8 @@ class FakeStudy:
     def setup(self) -> Any:
         """What stands for the scene: a tree."""
         return SimpleNamespace(
-            scene=SimpleNamespace(layout=SimpleNamespace(rows=0), mechanism=SimpleNamespace(loads=()))
+            scene=SimpleNamespace(layout=SimpleNamespace(rows=0), mechanism=SimpleNamespace(loads=())),
+            selection=EVERYTHING,
         )
 
     @property
@@ -169,7 +171,12 @@ class FakeStudy:
 
     def find_recovery(self, times: Array, reports: Set[str], setup: Any = None, *, keep: bool = False) -> Any:
         """What stands for the answers at any instants: of a tree, in which nothing can be open."""
-        return SimpleNamespace(solutions=SimpleNamespace(times=np.asarray(times)), decided=None, setup=setup)
+        joints = [
+            SimpleNamespace(joint=SimpleNamespace(name=name), force=block["force"], moment=block.get("moment"))
+            for name, block in self.resample(times).joints.items()
+        ]
+        solutions = SimpleNamespace(times=np.asarray(times))
+        return SimpleNamespace(solutions=solutions, decided=None, setup=setup, requested_joints=joints)
 
     def compose_reports(self, recovery: Any, reports: Set[str], open_marker: Any = None) -> Results:
         """Some reports of such answers."""
@@ -188,7 +195,7 @@ class FakeStudy:
 
     chunk_size = 1000
     search_extremes = Study.search_extremes
-    magnitudes = MAGNITUDES
+    magnitudes = load_magnitudes = MAGNITUDES
 
 
 def stretch_like(name: str, section: dict[str, Any]) -> Stretch:

@@ -227,9 +227,9 @@ class CachedEvaluator:
             self.known[key] = self._answer(values)
         return self.known[key]
 
-    def add_known(self, known: KnownResults) -> None:
+    def add_known(self, results: KnownResults) -> None:
         """Add results of variants that were evaluated elsewhere."""
-        self.known.update(known)
+        self.known.update(results)
         self._report_run(self.runs)
 
     def count_warnings(self) -> dict[str, int]:

@@ -188,7 +188,8 @@ def make_path_channel(numbers: PathValues) -> Channel:
 def iter_channels(results: Results, labels: Labels) -> Iterator[Channel]:
     """Yield every quantity of the results that changes over the instants, in the order of the JSON."""
     for kind in REPORT_OF:
-        yield from _Walk(kind, labels).iter_block((), _find_node(TREE, kind), getattr(results, kind))
+        if block := getattr(results, kind):
+            yield from _Walk(kind, labels).iter_block((), _find_node(TREE, kind), block)
 
 
 def make_energy_sum(results: Results) -> Channel | None:

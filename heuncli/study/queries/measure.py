@@ -221,25 +221,25 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     return found._replace(value=value, open_at=float(min(open_at)) if open_at else None)
 
 
-def make_joint_reader(study: Study, asked: PathValues, path: str) -> Callable[[Recovery], Array | None]:
+def make_joint_reader(study: Study, numbers: PathValues, path: str) -> Callable[[Recovery], Array | None]:
     """Return a function that reads the force or moment of a joint, or a component, from a recovery for a search.
 
     It reads nothing in closed chains, where loads may be indeterminate, and no number that is not finite: composed
     results say which.
     """
-    quantity, component = asked.keys[-1], None if asked.axes else SPACE.find_index(path.rpartition(".")[2])
-    is_load = asked.keys[0] == "joints" and len(asked.keys) == 3 and quantity in ("force", "moment")
-    is_known = is_load and bool(asked.axes or component is not None) and study.setup.selection.axes == EVERYTHING.axes
+    quantity, component = numbers.keys[-1], None if numbers.axes else SPACE.find_index(path.rpartition(".")[2])
+    is_load = numbers.keys[0] == "joints" and len(numbers.keys) == 3 and quantity in ("force", "moment")
+    is_known = is_load and bool(numbers.axes or component is not None) and study.setup.selection.axes == EVERYTHING.axes
 
     def read(recovery: Recovery) -> Array | None:
         if not is_known or recovery.decided is not None:
             return None
-        load = next(load for load in recovery.requested_joints if load.joint.name == asked.keys[1])
+        load = next(load for load in recovery.requested_joints if load.joint.name == numbers.keys[1])
         values: Array = getattr(load, quantity)
         if not np.isfinite(values).all():
             return None
         values = values if component is None else values[:, component]
-        return make_path_channel(asked._replace(values=values)).searched_values
+        return make_path_channel(numbers._replace(values=values)).searched_values
 
     return read
 
