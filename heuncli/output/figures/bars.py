@@ -9,7 +9,7 @@ load that moves over the body moves too, and is at its place of that instant.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -62,6 +62,9 @@ class Extreme(NamedTuple):
     value: float
     s: float
     time: float
+
+
+BarExtremes = Mapping[str, tuple[Extreme, Extreme]]  # lowest and highest, by the six loads
 
 
 class BarLine(NamedTuple):
@@ -312,10 +315,13 @@ class WholeBar:
             lines[name] = BarLine(time, s, loads[name], *extremes_of_line)
         return lines
 
-    def make_ranges(self) -> dict[str, BarRange]:
-        """Make the ranges of all quantities along the bar over the run, up to its horizon."""
+    def make_ranges(self, known: BarExtremes | None = None) -> dict[str, BarRange]:
+        """Make the ranges of all quantities along the bar over the run, up to its horizon.
+
+        known: the extremes, if they are searched already
+        """
         times = choose_instants(self.study)
-        searched_extremes = self._search_extremes()
+        searched_extremes = self._search_extremes() if known is None else known
         all_extremes = [extreme for both in searched_extremes.values() for extreme in both]
         lines = {
             time: self.make_lines(time)

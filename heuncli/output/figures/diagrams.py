@@ -21,7 +21,7 @@ import numpy as np
 from heuncli.output.drawing.figure import Blank, Figure, Panel, Scaling, VerticalMark
 from heuncli.output.drawing.ticks import choose_ends, format_short
 from heuncli.output.figures.bar_sketches import make_sketch
-from heuncli.output.figures.bars import Attachment, WholeBar
+from heuncli.output.figures.bars import Attachment, BarExtremes, WholeBar
 from heuncli.output.figures.courses import FigureSource, make_title
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
@@ -44,16 +44,18 @@ def make_diagrams(
     units: Units,
     times: Sequence[float] | None = None,
     tension_side: bool = False,
+    known: BarExtremes | None = None,
 ) -> Figure:
     """Make the section diagrams of some series of cuts, of one run or of several over each other.
 
     times: instants [s] within all runs and before their horizons, a curve each; by default the range over the whole run
+    known: extremes of the only series of cuts over the only run, if they are searched already
     """
     panels, notes, legend = list[Panel](), list[str](), list[tuple[str, int]]()
     words = [sentence for source in sources for sentence in _describe_source(source, times)]
     headings, has_bands = dict[str, None](), False
     for name in names:
-        bars = list(_make_bars(sources, name, times))
+        bars = list(_make_bars(sources, name, times, known))
         for source in sources:
             headings[_make_heading(source, name)] = None
         for bar in bars:
@@ -70,14 +72,16 @@ def make_diagrams(
     return Figure(make_title(sources), words, panels, legend, notes)
 
 
-def _make_bars(sources: Sequence[FigureSource], name: str, given_times: Sequence[float] | None) -> Iterator[BarCurves]:
+def _make_bars(
+    sources: Sequence[FigureSource], name: str, given_times: Sequence[float] | None, known: BarExtremes | None
+) -> Iterator[BarCurves]:
     """Yield the curves of a section, each with its pen."""
     number = 0
     for source in sources:
         bar = WholeBar(source.study, name)
         times = bar.instants
         if given_times is None and len(times) > 1:
-            ranges = bar.make_ranges()
+            ranges = bar.make_ranges(known)
             yield BarCurves(
                 source.name, number, bar, {q: load_range.main_line for q, load_range in ranges.items()}, ranges
             )
