@@ -95,6 +95,12 @@ def test_free_joints_start_where_their_parameters_say_within_their_stops():
     assert (spec.stops["limits_j"].low, spec.stops["limits_j"].high) == (0.2, 1.5)
 
 
+def test_a_name_that_has_to_change_stays_as_a_label():
+    text = imported(robot(link("base"), link("arm-1"), joint("yaw: 1", "base", "arm-1", "continuous")))
+    assert spec_of(text).labels == {"bodies.arm_1": "arm-1", "joints.yaw_1": "yaw: 1"}
+    assert "label" not in imported(robot(link("base"), link("arm"), joint("yaw", "base", "arm", "continuous")))
+
+
 def test_links_without_mass_are_points_of_what_they_are_fixed_to():
     """Above a body, below it, between two; and of the ground."""
     up = '<origin xyz="0 0 1"/>'

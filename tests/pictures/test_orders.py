@@ -66,7 +66,7 @@ def test_the_words_are_those_of_the_tables(heun: Heun) -> None:
     table = heun("balance", CRANK).stdout
     assert "force: orders 1, 2 (along x) and 4 (along x) remain" in words
     assert "orders 1, 2 (along x) and 4 (along x) remain" in re.sub(r"\s+", " ", table)
-    assert "about O = (0, 0, 0) m" in words and "one revolution of main.angle" in words
+    assert "about O = (0, 0, 0) m" in words and "one revolution of the main angle" in words
 
 
 def test_save_draws_the_same_and_counterweights_beside_it(heun: Heun) -> None:

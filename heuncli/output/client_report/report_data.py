@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -118,6 +118,7 @@ class ReportData:
     options: the values of --set and of the solver's options
     omitted_cases: load cases of the spec that were not requested
     unchecked_scenes: scenes with expected values that were not solved
+    summarise: makes the summary of these data when it is needed
     chapters: names of those that are printed, in their order; none: all but the spec
     """
 
@@ -132,6 +133,7 @@ class ReportData:
     reduce: bool
     units: Units
     imprint: Imprint
+    summarise: Callable[[ReportData], Summary]
     chapters: Sequence[str] = ()
 
     @cached_property
@@ -142,9 +144,7 @@ class ReportData:
     @cached_property
     def summary(self) -> Summary:
         """The greatest load of each thing over all cases."""
-        from heuncli.output.client_report.summary_table import summarise_cases  # it reads these data
-
-        return summarise_cases(self)
+        return self.summarise(self)
 
     @property
     def labels(self) -> Labels:

@@ -11,6 +11,7 @@ from heuncli.output.client_report.extremes import (
     CaseExtremes,
     Family,
     choose_family,
+    find_extremes,
     find_governing,
     find_uncertain_cases,
     format_instant,
@@ -28,6 +29,7 @@ from heuncli.output.tables.table_plans import SECTIONS
 from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import FAMILIES
+from heuncli.study.queries.bar_curves import BarExtremes, Extreme
 
 UTIL_NOTE = (
     "utilisation: largest von Mises stress (mises) divided by the given strength; above 1 the section is overloaded"
@@ -59,7 +61,7 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
         if not is_claimed(run.study):
             yield Sentence(f"{name} has no diagram: all output times are past the horizon.")
             continue
-        figure = make_diagrams([FigureSource("", run.study)], [name], data.units)
+        figure = make_diagrams([FigureSource("", run.study)], [name], data.units, known=_collect_extremes(run, name))
         figure = figure._replace(title="", words=())
         case = f", load case {run.case_label}" if run.name else ""
         words = describe_object("sections", name, data.labels)
@@ -76,6 +78,23 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
         yield Sentence(
             f"{len(cut_runs) - len(drawn_runs)} further sections are not shown: heun plot SPEC sections.NAME"
         )
+
+
+def _collect_extremes(run: ReportedRun, name: str) -> BarExtremes | None:
+    """Collect the extremes of a series of cuts that the tables show; None if one is not known or not searched."""
+    found = {}
+    for quantity in RESULTANTS:
+        ends = find_extremes(run, f"sections.{name}.{quantity}")
+        if ends is None or not run.is_searched:
+            return None
+        extremes = []
+        for end in (ends.low, ends.high):
+            if isinstance(end.value, str) or end.place is None:
+                return None
+            time = float(run.results.time[0]) if end.time is None else end.time  # the same at all instants
+            extremes.append(Extreme(end.value, float(end.place.partition(" m")[0]), time))
+        found[quantity] = (extremes[0], extremes[1])
+    return found
 
 
 def _split_panels(figure: Figure) -> list[Figure]:

@@ -16,17 +16,16 @@ from heuncli.output.client_report.extremes import (
 )
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import OutputTable, join_names
-from heuncli.output.figures.turning import TURN, find_span, is_monotonic
+from heuncli.output.figures.turning import find_span, is_monotonic
 from heuncli.output.figures.worst_instant import select_worst
 from heuncli.output.snapshots.tables import SearchedPage
 from heuncli.output.summary.run_document import summarise
 from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases
-from heuncli.output.summary.summary_rows import SummaryRow
+from heuncli.output.summary.summary_rows import MIN_TURN, SummaryRow
 from heuncli.output.tables.cut_runs import collect_runs
 from heuncli.results.results import NOWHERE, CutPosition, Extremes
 from heuncli.study.quantities.captions import describe_object
 
-MIN_TURN = 0.75 * TURN  # of a joint whose angle is the axis of histories
 MORE_NOTE = "{} smaller ones: chapter Loads"
 UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"
 

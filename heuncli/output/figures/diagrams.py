@@ -41,7 +41,7 @@ from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, format_error
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
-from heuncli.study.queries.bar_curves import BarAttachment
+from heuncli.study.queries.bar_curves import BarAttachment, BarExtremes
 from heuncli.study.queries.bars import WholeBar
 
 INVERTED = frozenset({"M2"})  # on the tension side their ordinates point against e1
@@ -64,16 +64,18 @@ def make_diagrams(
     units: Units,
     times: Sequence[float] | None = None,
     tension_side: bool = False,
+    known: BarExtremes | None = None,
 ) -> Figure:
     """Make the section diagrams of some series of cuts, of one run or of several over each other.
 
     times: instants [s] within all runs and before their horizons, a curve each; by default the range over the whole run
+    known: extremes of the only series of cuts over the only run, if they are searched already
     """
     panels, notes, legend = list[Panel](), list[str](), list[tuple[str, int]]()
     words = [sentence for source in sources for sentence in _describe_source(source, times)]
     headings, has_bands = dict[str, None](), False
     for name in names:
-        bars = list(_make_bars(sources, name, times))
+        bars = list(_make_bars(sources, name, times, known))
         for source in sources:
             headings[_make_heading(source, name)] = None
         for bar in bars:
@@ -90,7 +92,9 @@ def make_diagrams(
     return Figure(make_title(sources), words, panels, legend, notes)
 
 
-def _make_bars(sources: Sequence[FigureSource], name: str, given_times: Sequence[float] | None) -> Iterator[BarCurves]:
+def _make_bars(
+    sources: Sequence[FigureSource], name: str, given_times: Sequence[float] | None, known: BarExtremes | None
+) -> Iterator[BarCurves]:
     """Yield the curves of a section, each with its pen."""
     number = 0
     for source in sources:
@@ -99,7 +103,7 @@ def _make_bars(sources: Sequence[FigureSource], name: str, given_times: Sequence
             require_claimed(source.study)
         times = bar.instants
         if given_times is None and len(times) > 1:
-            ranges = bar.make_ranges()
+            ranges = bar.make_ranges(known)
             yield BarCurves(
                 source.name, number, bar, {q: load_range.main_line for q, load_range in ranges.items()}, ranges
             )

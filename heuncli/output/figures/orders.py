@@ -10,6 +10,7 @@ from heuncli.analyses.balancing.results import BalanceResults, OrderRow, format_
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot, share_x_axis
 from heuncli.output.drawing.ticks import choose_ends, format_short
+from heuncli.study.quantities.captions import make_readable
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
@@ -132,9 +133,12 @@ def _label_bars(sizes: Mapping[float, float], largest: float, pen: int) -> Itera
 
 
 def _describe_source(source: BalancedScene) -> Iterator[str]:
-    """Yield the cycle, and what becomes of its orders, in the words of `heun balance`."""
+    """Yield the cycle, and what becomes of its orders, in the words of `heun balance` but for paths."""
     results = source.results
     prefix = f"{source.name}: " if source.name else ""
-    yield prefix + format_cycle(results)
+    words = format_cycle(results)
+    if results.coordinate:
+        words = words.replace(f"of {results.coordinate}", f"of the {make_readable(results.coordinate)}")
+    yield prefix + words
     for name in ("force", "moment"):
         yield f"{prefix}{name}: {results.summaries[name]}"

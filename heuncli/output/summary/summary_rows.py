@@ -30,7 +30,7 @@ from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import sort_distinct
 
-FULL_TURN = 2.0 * math.pi
+MIN_TURN = 0.75 * 2.0 * math.pi  # of a joint whose angle tells the instants
 DIRECTION_DECIMALS = 2  # shown of a unit vector; what is equal in these is one direction
 
 
@@ -315,7 +315,7 @@ def _find_crank(study: Study, results: Results, instants: Array, rows: Sequence[
     driven = set(_iter_driven_angles(study))
     angles = {name: np.asarray(block["angle"]) for name, block in results.coordinates.items() if "angle" in block}
     grounded = [name for name in angles if GROUND in (study.spec.joints[name].a, study.spec.joints[name].b)]
-    turning = [name for name in grounded if abs(angles[name][-1] - angles[name][0]) >= FULL_TURN]
+    turning = [name for name in grounded if abs(angles[name][-1] - angles[name][0]) > MIN_TURN]
     names = [name for name in angles if name in driven] or turning
     forces = {row.name: abs(row.value) for row in rows if row.kind == "joint"}
     if not names:

@@ -25,9 +25,10 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from heuncli.base.errors import Problem
+from heuncli.base.errors import Finding, Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.expressions.names import RESERVED
+from heuncli.scene.file_format.labels import LABEL, check_plain_text
 from heuncli.scene.file_format.loads import Matrix
 from heuncli.scene.file_format.models import Vec
 from heuncli.scene.file_format.names import CAUSE_NAMES, GROUND, is_name
@@ -198,6 +199,16 @@ def clean_name(original: str, kind: str) -> str:
 def format_original_name(kind: str, name: str, original: str) -> str:
     """Make the remark for an entry that is renamed: `link "panda-link1"`. Empty if the name is the file's."""
     return "" if name == original else f'{kind} "{original}"'
+
+
+def make_label(name: str, original: str) -> dict[str, SpecValue]:
+    """Return the key `label` with the name in the file for an entry that is renamed; none for what no label can be."""
+    if name == original:
+        return {}
+    try:
+        return {LABEL: check_plain_text(original)}
+    except Finding:
+        return {}
 
 
 # Usage comments

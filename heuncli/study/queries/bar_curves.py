@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -34,6 +34,9 @@ class Extreme(NamedTuple):
     value: float
     s: float
     time: float
+
+
+BarExtremes = Mapping[str, tuple[Extreme, Extreme]]  # lowest and highest, by the six loads
 
 
 class BarLine(NamedTuple):

@@ -27,6 +27,7 @@ from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.bar_curves import (
     BarAttachment,
+    BarExtremes,
     BarLine,
     BarRange,
     Extreme,
@@ -196,10 +197,13 @@ class WholeBar:
             lines[name] = BarLine(time, s, loads[name], *extremes_of_line)
         return lines
 
-    def make_ranges(self) -> dict[str, BarRange]:
-        """Make the ranges of all quantities along the bar over the run, up to its horizon."""
+    def make_ranges(self, known: BarExtremes | None = None) -> dict[str, BarRange]:
+        """Make the ranges of all quantities along the bar over the run, up to its horizon.
+
+        known: the extremes, if they are searched already
+        """
         times = choose_curve_instants(self.study)
-        searched_extremes = self._search_extremes()
+        searched_extremes = self._search_extremes() if known is None else known
         all_extremes = [extreme for both in searched_extremes.values() for extreme in both]
         lines = {
             time: self.make_lines(time)

@@ -23,6 +23,7 @@ from heuncli.output.client_report.report_data import (
 )
 from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.snapshots.take_snapshot import is_searched_between_samples, take_run_snapshot
+from heuncli.output.summary.summary_document import Summary
 from heuncli.output.tables.page import make_page
 from heuncli.scene.file_format.file_contents import read_logo
 from heuncli.scene.file_format.load import load_with_cases
@@ -90,8 +91,14 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     unchecked += [name for name in left_out if cases[name].expect]
     return ReportData(
         spec, text, files.digests, runs, outcomes, list(_iter_numeric_options(request)), left_out, unchecked,
-        not request.no_reduce, units_shown, imprint, chapters or spec.report.chapters or (),
+        not request.no_reduce, units_shown, imprint, _summarise, chapters or spec.report.chapters or (),
     )  # fmt: skip
+
+
+def _summarise(data: ReportData) -> Summary:
+    from heuncli.output.client_report.summary_table import summarise_cases  # after solving, with the figures
+
+    return summarise_cases(data)
 
 
 def parse_chapters(words: str | None) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from heuncli.scene.importers.description import (
     ImportOptions,
     Namer,
     format_original_name,
+    make_label,
 )
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel, collect_model_files, compile_model
 from heuncli.scene.importers.mjcf.laws import JointLaws, build_joint_laws
@@ -137,9 +138,9 @@ class _MachineBuilder:
             return DescribedEntry(step.name, keys, f"{c.describe_part('body', step.body)} has no joint")
         if step.kind != "ball":
             keys["axis"] = self.frames.transform_direction(step.body, c.model.jnt_axis[step.joint])
-        return DescribedEntry(
-            step.name, keys, format_original_name("joint", step.name, c.name("joint", step.joint) or step.name)
-        )
+        original = c.name("joint", step.joint) or step.name
+        keys |= make_label(step.name, original)
+        return DescribedEntry(step.name, keys, format_original_name("joint", step.name, original))
 
     def add_initial(self, joint: DescribedEntry) -> DescribedEntry:
         initial = self.laws.initial.get(joint.name)
@@ -196,7 +197,7 @@ class _MachineBuilder:
                 mass.inertia,
                 self.points.get_points(name),
                 (),
-                start.keys,
+                {**make_label(name, self.tree.originals[owners[name]]), **start.keys},
                 remark,
                 start.notes,
             )

@@ -28,6 +28,7 @@ from heuncli.scene.importers.description import (
     ImportOptions,
     assign_names,
     format_original_name,
+    make_label,
 )
 from heuncli.scene.importers.urdf.carriers import (
     GROUND,
@@ -119,6 +120,7 @@ def _make_body(
     validated_robot: ValidatedRobot, link: str, name: str, points: RobotPoints, start: dict[str, Any]
 ) -> DescribedBody:
     R, remark = validated_robot.placed_links[link].R, format_original_name("link", name, link)
+    start = {**make_label(name, link), **start}
     mass = validated_robot.masses.get(link)
     if mass is None:
         source, shapes = validated_robot.shapes[link]
@@ -141,7 +143,9 @@ def _make_joint(spec_joint: SpecJoint, name: str, points: RobotPoints, initial: 
         f'joint "{spec_joint.joint.name}"' if is_renamed and spec_joint.joint is not None else "",
         *spec_joint.remarks,
     )
-    return DescribedEntry(name, keys | ({"initial": initial} if initial else {}), "; ".join(filter(None, remarks)))
+    keys |= {"initial": initial} if initial else {}
+    keys |= make_label(name, spec_joint.joint.name) if is_renamed and spec_joint.joint is not None else {}
+    return DescribedEntry(name, keys, "; ".join(filter(None, remarks)))
 
 
 def _find_starts(validated_robot: ValidatedRobot) -> dict[str, dict[str, Any]]:
