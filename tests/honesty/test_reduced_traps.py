@@ -5,6 +5,7 @@ less moves in a scene's place the numbers are those of the whole.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -290,3 +291,40 @@ def test_bearings_in_line_let_a_shaft_turn_whatever_its_direction(axis: tuple[fl
         "analysis": {"times": [0.0, 0.5, 1.0]},
     })  # fmt: skip
     assert found.bodies["shaft"]["angular_velocity"] @ n == pytest.approx([0.0, 2.0, 4.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("reduce", [True, False])
+@pytest.mark.parametrize("axis", ["z", "x"])
+@pytest.mark.parametrize(
+    ("text", "law"),
+    [
+        ("1 + 2*step(g.speed)", lambda x, u: 3.0),
+        ("1 + 2*step(g.travel - 0.3)", lambda x, u: 1.0 if x < 0.3 else 3.0),
+        ("abs(g.travel - 0.25)", lambda x, u: abs(x - 0.25)),
+        ("3 if 0.1 < g.travel and g.travel < 0.21 else u0", lambda x, u: 3.0 if 0.1 < x < 0.21 else 1.0),
+        ("sign(1.3 - g.speed)", lambda x, u: math.copysign(1.0, 1.3 - u)),
+    ],
+)
+def test_a_load_across_the_plane_by_cases_is_that_of_its_case(
+    text: str, law: Callable[[float, float], float], axis: str, reduce: bool
+) -> None:
+    """A slider at 1 m/s and 1 m/s^2: nothing in the plane of its motion has the cases of the load across it."""
+    vector = f'[0, 0, "{text}"]' if axis == "z" else f'["{text}", 0, 0]'
+    kind = (
+        f"{{type: force, on: b.p, vector: {vector}}}" if axis == "z" else f"{{type: couple, on: b, vector: {vector}}}"
+    )
+    found = solved(
+        f"""
+heun: 1
+parameters: {{u0: 1}}
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{b: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{p: [0, 0, 0]}}}}}}
+joints: {{g: {{type: slide, from: ground.O, to: b.p, axis: [1, 0, 0], initial: {{travel: 0, speed: 1}}}}}}
+forces: {{push: {{type: force, on: b.p, vector: [2, 0, 0]}}, across: {{type: {kind}}}}}
+analysis: {{times: [0, 0.05, 0.15, 0.2, 0.35, 0.4]}}
+""",
+        reduce=reduce,
+    )
+    block = found.joints["g"]["force" if axis == "z" else "moment"][:, 2 if axis == "z" else 0]
+    expected = [-law(t + 0.5 * t * t, 1.0 + t) for t in found.time.tolist()]
+    assert block == pytest.approx(expected, abs=1e-9)

@@ -84,10 +84,16 @@ def find_used_names(mechanism: Mechanism) -> frozenset[str]:
 
 
 def lay_out_loads(
-    frame: LayoutFrame, mechanism: Mechanism, programs: ValuePrograms, stages: Stages = NO_CACHE
+    frame: LayoutFrame,
+    mechanism: Mechanism,
+    programs: ValuePrograms,
+    stages: Stages = NO_CACHE,
+    left_out: Sequence[Expression] = (),
 ) -> Layout:
     """Make the layout of a frame with the loads and conditions of its mechanism; the table without the values is a
     stage.
+
+    left_out: more values whose branches the kernel follows, though they load nothing here
     """
     load_programs = tuple(tuple(programs.find_program(e) for e in load.values) for load in mechanism.loads)
     loads = stages.run(make_load_table, mechanism, frame, load_programs).copy()
@@ -100,7 +106,7 @@ def lay_out_loads(
             vector[rows, i] = 0.0 if e.constant is None else e.constant
     tables = empty_load_tables() | {"loads": loads}
     if programs.pack.code:
-        tables["watches"] = make_kernel_table(kernel.Watch, make_watch_rows(mechanism, programs))
+        tables["watches"] = make_kernel_table(kernel.Watch, make_watch_rows(mechanism, programs, left_out))
     if len(programs.pack.variables) > 1:
         tables["variables"] = make_kernel_table(
             kernel.Variable, make_variable_rows(frame, mechanism, programs.pack.variables)
@@ -287,16 +293,18 @@ def law_numbers(load: Load) -> tuple[int, ...]:
     return tuple(getattr(kernel, law) for law in load.row.kernel_laws)
 
 
-def make_watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
+def make_watch_rows(
+    mechanism: Mechanism, programs: ValuePrograms, left_out: Sequence[Expression] = ()
+) -> list[WatchRow]:
     """Make the rows of the watched programs of loads and drives, whose changes between the stages of a step must not be
-    missed.
+    missed; left_out: more values that are watched as loads are.
 
     Conditions are watched only where they change sign, and elastic ropes only where they go slack: otherwise these are
     springs, which the error control of the steps follows.
     """
     rope_values = {id(load.value) for load in mechanism.loads if isinstance(load, RopeLoad)}
     law_values = {id(law.value): law.value for law in mechanism.laws}
-    loads = {id(e): e for load in mechanism.loads for e in load.values}
+    loads = {id(e): e for load in mechanism.loads for e in load.values} | {id(e): e for e in left_out}
     parts = {
         id(e): row
         for load, rows in mechanism.iter_load_rows()

@@ -49,13 +49,15 @@ def lay_out_like(
 ) -> Layout:
     """Lay out a scene that was made from one laid out already, with its tree, size and programs; starts: of the joints.
 
-    Its own programs come after those of the other scene, so that the branches of both are the same.
+    Its own programs come after those of the other scene, so that the branches of both are the same. Those of load
+    components that it leaves out are watched as well: the other scene's loads are recovered with them.
     """
     programs = make_programs(layout.mechanism).extend(mechanism)
     tree = PresetTree(layout.spanning, tuple(starts))
     work = layout.work_at >= 0
     frame = build_frame(mechanism, start, inertias, layout.size, work, frozenset(), programs.drives, tree)
-    return lay_out_loads(frame, mechanism, programs)
+    left_out = [e for load in layout.mechanism.loads for e in load.values if e.held_branches]
+    return lay_out_loads(frame, mechanism, programs, left_out=left_out)
 
 
 def build_frame(
