@@ -173,8 +173,24 @@ class Study:
         return [find_impulse_extremes(setup, block) for block in self.make_impulse_blocks(setup)]
 
     def compute_reports(self, times: Array, reports: frozenset[str], setup: Setup | None = None) -> Results:
-        """Return only the blocks of some reports at other instants of the same run; setup: with other cuts."""
-        return self.compose_reports(self.find_recovery(times, reports, setup), reports)
+        """Return only the blocks of some reports at other instants of the same run; setup: with other cuts.
+
+        The last ones are cached: figures ask for several numbers at the same instants.
+        """
+        if setup is not None:
+            return self.compose_reports(self.find_recovery(times, reports, setup), reports)
+        key = times.tobytes(), reports
+        found = self._recent_reports.pop(key, None) or self.compose_reports(self.find_recovery(times, reports), reports)
+        self._recent_reports[key] = found
+        counts = [len(own.time) for own in self._recent_reports.values()]
+        while len(counts) > 1 and sum(counts) > self.chunk_size:
+            del self._recent_reports[next(iter(self._recent_reports))], counts[0]
+        return found
+
+    @cached_property
+    def _recent_reports(self) -> dict[tuple[bytes, frozenset[str]], Results]:
+        """Blocks of reports by their instants, those used last at the end; no more instants than one call solves."""
+        return {}
 
     def compose_reports(
         self, recovery: Recovery, reports: frozenset[str], open_marker: OpenMarker | None = None
