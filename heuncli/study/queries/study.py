@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NONE: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose solutions are in memory at a time
+RECENT_PARTS = 8  # of such a chunk: the share that stays cached for the next question
 TOO_FEW = "extremes are searched from {} samples: too few to find every peak and jump of this motion"
 CUT_SHORT = "the search for extremes was stopped early: higher values may exist"
 
@@ -183,13 +184,13 @@ class Study:
         found = self._recent_reports.pop(key, None) or self.compose_reports(self.find_recovery(times, reports), reports)
         self._recent_reports[key] = found
         counts = [len(own.time) for own in self._recent_reports.values()]
-        while len(counts) > 1 and sum(counts) > self.chunk_size:
+        while sum(counts) > self.chunk_size // RECENT_PARTS:
             del self._recent_reports[next(iter(self._recent_reports))], counts[0]
         return found
 
     @cached_property
     def _recent_reports(self) -> dict[tuple[bytes, frozenset[str]], Results]:
-        """Blocks of reports by their instants, those used last at the end; no more instants than one call solves."""
+        """Blocks of reports by their instants, those used last at the end."""
         return {}
 
     def compose_reports(
