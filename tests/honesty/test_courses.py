@@ -221,6 +221,26 @@ def test_touches(f: Function) -> None:
     assert found.crossings == () and touch.low - 1e-2 <= 0.4 <= touch.high + 1e-2
 
 
+@pytest.mark.parametrize(
+    ("f", "value", "most"),
+    [
+        (lambda x: 2.0 * (x - 0.3456) ** 2 + 1.5, 1.5, 25),
+        (lambda x: 2.0 * abs(x - 0.3456) + 1.5, 1.5, 25),
+        (lambda x: 2.0 / (x - 0.3456), 7.0, 30),
+        (lambda x: 2.0 / (x - 0.3456), -20.0, 40),
+        (lambda x: 2.0 / (x - 0.3456) ** 2, 700.0, 40),  # a pole that is passed twice
+    ],
+)
+def test_touches_and_poles_take_few_runs(f: Function, value: float, most: int) -> None:
+    """Halving takes 20 runs to each side of a touch whose error is 1e-12, and 30 to a pole."""
+    found = find_meetings(
+        lambda x: Sample(x, f(x) - value, 1e-12 * abs(f(x))),
+        -1.0, 2.0, "=", scan_count=7, max_evaluations=300, value=value,
+    )  # fmt: skip
+    assert found.is_complete and len(found.samples) <= most
+    assert len(found.touches) + len(found.jumps) + len(found.crossings) == (1 if value == 1.5 else 2), found
+
+
 def test_a_measure_that_is_the_value_everywhere() -> None:
     (touch,) = looked(lambda x: 0.0, 1e-9).touches
     assert (touch.low, touch.high, touch.side) == (0.0, 1.0, 0)

@@ -304,7 +304,7 @@ def find_possible_peak(course: MeasureCourse, i: int) -> float | None:
     if peak is None or not left.side or left.side != right.side:
         return None
     if np.isinf(peak.size) and (left.gap + course.value) * (right.gap + course.value) < 0.0:  # type: ignore[operator]
-        return clip_inside(left, right, peak.place)
+        return clip_inside(left, right, step_to_pole(course, left, right, peak.place))
     largest = (
         max((sample.gap or 0.0) + course.value for sample in (left, right))
         if course.value > 0.0
@@ -314,6 +314,15 @@ def find_possible_peak(course: MeasureCourse, i: int) -> float | None:
         return None
     peak_height = abs(largest) + PEAK_GROWTH * (peak.size - abs(largest))
     return clip_inside(left, right, peak.place) if peak_height >= abs(course.value) else None
+
+
+def step_to_pole(course: MeasureCourse, left: Sample, right: Sample, pole: float) -> float:
+    """Return the place beside a pole at which the measure is twice the value, by the line through its inverse: at the
+    pole itself it has no measure.
+    """
+    before, after = ((sample.gap or 0.0) + course.value for sample in (left, right))
+    distance = 0.5 * (right.x - left.x) / abs(course.value * (1.0 / after - 1.0 / before))
+    return pole - distance if before * course.value > 0.0 else pole + distance
 
 
 def choose_place(course: MeasureCourse, i: int) -> float:

@@ -137,14 +137,14 @@ def predict_minimum(left: Sample, middle: Sample, right: Sample) -> float | None
     return best_place
 
 
-def find_power(met: Sample, near: Sample, far: Sample) -> float | None:
-    """Return p of |g| = a |x - x_met|^p through two samples on one side of one that meets the value; None if |g| does
+def find_power(touch: Sample, inner: Sample, outer: Sample) -> float | None:
+    """Return p of |g| = a |x - x_touch|^p through two samples on one side of one that meets the value; None if |g| does
     not grow from it.
     """
-    size = compute_distance(near)
-    if not near.side or near.side != far.side or not size < compute_distance(far):
+    size = compute_distance(inner)
+    if not inner.side or inner.side != outer.side or not size < compute_distance(outer):
         return None
-    return math.log(compute_distance(far) / size) / math.log((far.x - met.x) / (near.x - met.x))
+    return math.log(compute_distance(outer) / size) / math.log((outer.x - touch.x) / (inner.x - touch.x))
 
 
 def step_towards_value(course: MeasureCourse, i: int) -> float | None:

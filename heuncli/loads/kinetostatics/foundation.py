@@ -75,8 +75,17 @@ def total_load(
     return force, moment
 
 
-def foundation_block(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], reference: Array) -> Block:
-    """Return the foundation's block of the results; `reference` (3,) is where moments are taken."""
+def foundation_block(
+    mechanism: Mechanism,
+    states: BodyStates,
+    actions: Sequence[Action],
+    reference: Array,
+    inner_forces: Sequence[Array] = (),
+) -> Block:
+    """Return the foundation's block of the results; `reference` (3,) is where moments are taken.
+
+    inner_forces: those between bodies that are not among the actions, (n_t, 3) each
+    """
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     force, moment = total_load(states, weight - ma, spin, actions, reference)
@@ -88,9 +97,10 @@ def foundation_block(mechanism: Mechanism, states: BodyStates, actions: Sequence
     if mechanism.planar:
         force, moment = project_to_plane(force, moment)
         _, orbital = project_to_plane(force, orbital)
+    largest = largest_force(mechanism, force, ma, actions, inner_forces)
     block: Block = {
         "about": reference, "force": force, "moment": moment,
-        "axis": central_axis(force, moment, reference, largest_force(mechanism, force, ma, actions)),
+        "axis": central_axis(force, moment, reference, largest),
         "mass_effect": {
             "force": ma.sum(axis=1), "moment_orbital": orbital, "moment_spin": spin.sum(axis=1),
         },
@@ -163,14 +173,16 @@ def find_element_key(keys: ElementKeys, action: Action) -> str:
     return keys.get((block, action.name), action.name)
 
 
-def largest_force(mechanism: Mechanism, s: Array, ma: Array, actions: Sequence[Action]) -> float:
+def largest_force(
+    mechanism: Mechanism, s: Array, ma: Array, actions: Sequence[Action], inner_forces: Sequence[Array] = ()
+) -> float:
     """Return the largest force at any instant [N], of s and the forces that it is the sum of: the scale below which s
     is zero.
 
-    s (n_t, 3); ma: m x_s.. of every body, (n_t, n, 3).
+    s (n_t, 3); ma: m x_s.. of every body, (n_t, n, 3); inner_forces: as of `foundation_block`.
     """
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-    acting = np.array([action.force for action in actions if action.kind != "drive"])
+    acting = np.array([*(action.force for action in actions if action.kind != "drive"), *inner_forces])
     scale = max(float(np.abs(x).max(initial=0.0)) for x in (ma, weight, acting))
     return max(float(np.sqrt(np.sum(s * s, axis=1).max(initial=0.0))), scale)
 

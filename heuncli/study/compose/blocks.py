@@ -42,7 +42,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     blocks_by_name: dict[str, Any] = {}
     if "foundation" in reports:
         blocks_by_name["foundation"] = foundation_block(
-            mechanism, states, recovery.separate_actions, recovery.setup.moment_point
+            mechanism, states, recovery.ground_actions, recovery.setup.moment_point, recovery.inner_forces
         )
     if "joints" in reports:
         blocks_by_name["joints"] = {j.joint.name: make_joint_block(j) for j in recovery.requested_joints}

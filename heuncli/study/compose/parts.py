@@ -116,8 +116,8 @@ def copy_part(target: Mapping[str, Any], part: Mapping[str, Any], first: int) ->
 def find_largest_force(recovery: Recovery, s: Array) -> float:
     """Return the largest force of a part that its foundation's s (n_t, 3) is compared with [N]."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    actions = recovery.separate_actions
-    return largest_force(mechanism, s, inertia_loads(mechanism, states)[0], actions)
+    ma, _ = inertia_loads(mechanism, states)
+    return largest_force(mechanism, s, ma, recovery.ground_actions, recovery.inner_forces)
 
 
 def drop_axes(foundation: Mapping[str, Any], largest: float, parts: list[slice]) -> None:

@@ -32,7 +32,7 @@ from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, 
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.loads import PairLoad
+from heuncli.multibody.mechanism.loads import GROUND, PairLoad
 from heuncli.results.results import Array, Block, DeterminateSum, Magnitudes, Mask
 from heuncli.results.results_schema import IMPULSES, SHARED_BLOCKS
 from heuncli.study.model.setup import Setup
@@ -249,6 +249,20 @@ class Recovery:
         elements.
         """
         return [*self.applied_actions, *list_joint_actions(self.joints), *list_coupling_actions(self.couplings)]
+
+    @property
+    def ground_actions(self) -> list[Action]:
+        """The separate actions without those of joints between bodies, of which a foundation needs `inner_forces`
+        alone.
+        """
+        joints = [load for load in self.joints if GROUND in (load.joint.a, load.joint.b)]
+        return [*self.applied_actions, *list_joint_actions(joints), *list_coupling_actions(self.couplings)]
+
+    @property
+    def inner_forces(self) -> list[Array]:
+        """The forces of constraints and stops in joints between bodies, (n_t, 3) each."""
+        joints = [load for load in self.joints if GROUND not in (load.joint.a, load.joint.b)]
+        return [force for load in joints for force in (load.force, *(stop.force for stop in load.stops))]
 
     @cached_property
     def energy(self) -> Block:

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NONE: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose solutions are in memory at a time
+RECENT_PARTS = 8  # of such a chunk: the share that stays cached for the next question
 TOO_FEW = "extremes are searched from {} samples: too few to find every peak and jump of this motion"
 CUT_SHORT = "the search for extremes was stopped early: higher values may exist"
 
@@ -173,8 +174,24 @@ class Study:
         return [find_impulse_extremes(setup, block) for block in self.make_impulse_blocks(setup)]
 
     def compute_reports(self, times: Array, reports: frozenset[str], setup: Setup | None = None) -> Results:
-        """Return only the blocks of some reports at other instants of the same run; setup: with other cuts."""
-        return self.compose_reports(self.find_recovery(times, reports, setup), reports)
+        """Return only the blocks of some reports at other instants of the same run; setup: with other cuts.
+
+        The last ones are cached: figures ask for several numbers at the same instants.
+        """
+        if setup is not None:
+            return self.compose_reports(self.find_recovery(times, reports, setup), reports)
+        key = times.tobytes(), reports
+        found = self._recent_reports.pop(key, None) or self.compose_reports(self.find_recovery(times, reports), reports)
+        self._recent_reports[key] = found
+        counts = [len(own.time) for own in self._recent_reports.values()]
+        while sum(counts) > self.chunk_size // RECENT_PARTS:
+            del self._recent_reports[next(iter(self._recent_reports))], counts[0]
+        return found
+
+    @cached_property
+    def _recent_reports(self) -> dict[tuple[bytes, frozenset[str]], Results]:
+        """Blocks of reports by their instants, those used last at the end."""
+        return {}
 
     def compose_reports(
         self, recovery: Recovery, reports: frozenset[str], open_marker: OpenMarker | None = None
