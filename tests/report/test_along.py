@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.documents.document import OutputTable
+from heuncli.output.documents.document import OutputTable, format_cell
 from heuncli.output.snapshots import tables as snapshot_tables
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, CutPosition, Extremes
@@ -50,7 +50,7 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extre
 
 
 def cells(table: OutputTable) -> list[tuple[str, ...]]:
-    return [row for row in table.rows if not isinstance(row, str)]
+    return [tuple(map(format_cell, row)) for row in table.rows if not isinstance(row, str)]
 
 
 @pytest.mark.heavy
