@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from heuncli.app.api import solve_cases as solve_cases
     from heuncli.app.api import validate as validate
     from heuncli.app.python.diagrams import Diagram as Diagram
-    from heuncli.app.python.locked_run import HeunWarning as HeunWarning
     from heuncli.app.python.locked_run import UnknownPath as UnknownPath
     from heuncli.app.python.number import Number as Number
+    from heuncli.app.python.python_warnings import HeunWarning as HeunWarning
     from heuncli.app.python.signals import Signal as Signal
     from heuncli.app.python.solved_scene import Solved as Solved
     from heuncli.base.errors import HeunError as HeunError

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.output.documents.document import format_cell
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.page import make_page
 from heuncli.results.results_schema import REPORTS
@@ -29,7 +30,7 @@ def in_table(run: Study, heading: str, label: str) -> list[str]:
         page.make_tables_at_instants(run.results, search_result=found) if one else page.make_tables_of_extremes(found)
     )
     table = next(t for t in tables if t.heading.startswith(heading) and any(row[0] == label for row in t.rows))
-    return list(next(row for row in table.rows if row[0] == label))
+    return list(map(format_cell, next(row for row in table.rows if row[0] == label)))
 
 
 # ---- in time

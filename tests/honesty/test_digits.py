@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from heuncli.output.documents.document import format_cell
 from heuncli.output.documents.text_table import format_plain
 from heuncli.output.snapshots import measure
 from heuncli.output.tables.page import make_page
@@ -230,13 +231,13 @@ def numbers(run: Study, at: list[float]) -> dict[tuple[str, str, int], Cell]:
     page = make_page(run.results, make_labels(run.spec), run.magnitudes)
     cells: dict[tuple[str, str, int], Cell] = {}
     for k, table in enumerate(page.make_tables_at_instants(run.resample(np.array(at)))):
-        units = [column.head.partition("[")[2] for column in table.columns]
-        lines = [line for line in table.rows if not isinstance(line, str)]
+        units = [column.title.partition("[")[2] for column in table.columns]
+        lines = [tuple(map(format_cell, line)) for line in table.rows if not isinstance(line, str)]
         for n, column in enumerate(table.columns):
             alike = [line[m] for line in lines for m, unit in enumerate(units) if unit == units[n]]
             last = max(map(last_place, alike))
             for i, line in enumerate(lines):
-                cells[f"{k} {table.heading[:20]}", column.head, i] = Cell(line[n], last)
+                cells[f"{k} {table.heading[:20]}", column.title, i] = Cell(line[n], last)
     return cells
 
 

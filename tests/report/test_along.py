@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.documents.document import OutputTable
+from heuncli.output.documents.document import OutputTable, format_cell
 from heuncli.output.snapshots import tables as snapshot_tables
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, CutPosition, Extremes
@@ -50,7 +50,7 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Page, Extre
 
 
 def cells(table: OutputTable) -> list[tuple[str, ...]]:
-    return [row for row in table.rows if not isinstance(row, str)]
+    return [tuple(map(format_cell, row)) for row in table.rows if not isinstance(row, str)]
 
 
 @pytest.mark.heavy
@@ -75,7 +75,7 @@ def test_head_and_rows_are_of_one_source(solved: tuple[Study, Page, Extremes]) -
     weight = 9.81 * 7850.0 * math.pi * 1e-4
     most = weight * (1.0 + 0.25 / (1.0 / 3.0 + 0.25e-4))
     bounds = {row[0]: row for row in cells(head)}
-    columns = {column.head: [row[i] for row in cells(rows)] for i, column in enumerate(rows.columns)}
+    columns = {column.title: [row[i] for row in cells(rows)] for i, column in enumerate(rows.columns)}
     assert bounds["N"][5] == columns["N max [N]"][0] == f"{most:.4f}"
     assert float(bounds["M2"][5]) > max(map(float, columns["M2 max [N·m]"]))  # between the cuts, at a third
     assert bounds["mises"][1] == "MPa"

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.output.documents.document import format_cell
 from heuncli.output.documents.text_table import format_plain
 from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
 from heuncli.output.tables.page import Page, make_page
@@ -128,7 +129,7 @@ def test_open_components_read_open_at_an_instant() -> None:
     study = Changed(T, change=opened)
     page = make_page(restrict(study.results, {"joints"}), LABELS, MAGNITUDES)
     (table,) = page.make_tables_at_instants(restrict(study.resample(np.array([0.5])), {"joints"}))
-    assert table.rows[0][2:6] == ("2.52441", "0", "open", "open")
+    assert [format_cell(cell) for cell in table.rows[0][2:6]] == ["2.52441", "0", "open", "open"]
 
 
 def test_a_chosen_split_is_labelled() -> None:
@@ -175,7 +176,7 @@ def test_a_peak_between_the_samples_makes_the_scale() -> None:
     found = peaks.search_extremes(lambda _: columns, T[[0, -1]], search_between=False)
     found = found._replace(high=np.array([0.4, 0.0, 0.0, 0.4]), paths=tuple(channel.path for channel in channels))
     (table,) = page.make_tables_of_extremes(found)
-    assert [row[:3] + row[6:7] for row in table.rows[1:]] == [("Fx", "N", "0", "0.4")]
+    assert [[format_cell(row[k]) for k in (0, 1, 2, 6)] for row in table.rows[1:]] == [["Fx", "N", "0", "0.4"]]
 
 
 def test_fewer_certain_digits_show_fewer_digits() -> None:

@@ -6,15 +6,14 @@ Impure: caches results.
 
 from __future__ import annotations
 
-import sys
-import warnings
 from _thread import RLock  # the lock of threading, whose import takes 0.5 ms
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.app.python.python_warnings import emit_warnings
 from heuncli.base.errors import Problem, SpecError, UsageError
 from heuncli.output.snapshots.run_warnings import collect_warnings
 from heuncli.results.results import Array, Results
@@ -24,7 +23,6 @@ from heuncli.study.queries.study import Study
 
 if TYPE_CHECKING:
     from heuncli.app.python.number import Number
-OWN_FRAMES = (__name__.partition(".")[0], "contextlib")  # frames that are heun's own
 
 
 class UnknownPath(SpecError, KeyError):
@@ -35,7 +33,7 @@ class UnknownPath(SpecError, KeyError):
 
 
 class LockedRun:
-    """A study and its results at some instants; a lock admits one thread at a time."""
+    """A study, and its results at its own instants or at others, behind a lock."""
 
     def __init__(self, study: Study, results: Results | None = None, lock: RLock | None = None) -> None:
         """results: results at other instants than the study's
@@ -98,19 +96,3 @@ def find_distinct_instants(times: object) -> tuple[Array, Array]:
     """Return the instants as an array (...), and each of them once, ascending (n,)."""
     requested = np.asarray(times, dtype=np.float64)
     return requested, np.unique(requested)
-
-
-class HeunWarning(UserWarning):
-    """A warning of a run: `warnings.simplefilter("error", heuncli.HeunWarning)` turns it into an error."""
-
-
-def emit_warnings(texts: Iterable[str]) -> None:
-    """Emit each text as a Python warning, at the line of the first caller outside heun."""
-    messages = list(texts)
-    if not messages:
-        return
-    depth, frame = 1, sys._getframe()
-    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in OWN_FRAMES:
-        depth, frame = depth + 1, frame.f_back
-    for text in messages:
-        warnings.warn(text, HeunWarning, stacklevel=depth)

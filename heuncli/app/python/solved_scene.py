@@ -23,7 +23,8 @@ from heuncli.app.python.arguments import (
     TEXTS,
     check_arguments,
 )
-from heuncli.app.python.locked_run import LockedRun, emit_warnings, find_distinct_instants
+from heuncli.app.python.locked_run import LockedRun, find_distinct_instants
+from heuncli.app.python.python_warnings import emit_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.queries.study import Study
