@@ -206,9 +206,11 @@ def make_panels(figure: Figure) -> list[Drawing]:
 
 def format_cell(cell: Cell) -> str:
     """Format a cell as text, without escaping it."""
+    if isinstance(cell, NumberCell):  # most cells
+        return cell.cached_text or cell.text
     if isinstance(cell, str):
         return cell
-    if isinstance(cell, (TextCell, NumberCell)):
+    if isinstance(cell, TextCell):
         return cell.text
     return "" if cell is None else str(cell) if isinstance(cell, int) else f"{cell:.6g}"
 
