@@ -42,8 +42,8 @@ def make_instants_tables(
         columns = [OutputColumn(label, unit=units[label], vector=vectors[label]) for label in labels]
         lead, rows = layout(block, groups, labels, cells, times)
         tables += [OutputTable("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
-    rows = [row for table in tables for row in table.rows if not isinstance(row, str)]
-    shown = {cell.cached_text if isinstance(cell, NumberCell) else cell for row in rows for cell in row}
+    shown_rows = [row for table in tables for row in table.rows if not isinstance(row, str)]
+    shown = {cell.cached_text if isinstance(cell, NumberCell) else cell for row in shown_rows for cell in row}
     notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     if not tables:
         return [OutputTable(block.heading, notes=("all values 0",))]
