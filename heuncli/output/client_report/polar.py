@@ -69,9 +69,8 @@ def make_polar_parts(data: ReportData) -> list[Part]:
             continue
         case = f", load case {greatest.run.case_label}" if greatest.run.name else ""
         firing = ", filled: peaks of actuators" if any(map(_is_firing, figure.panels[0].items)) else ""
-        largest = next(
-            (item.text for item in figure.panels[0].items if isinstance(item, Spot) and _is_largest(item)), ""
-        )
+        spots = [item for item in figure.panels[0].items if isinstance(item, Spot)]
+        largest = next((spot.text for spot in spots if _is_largest(spot)), "")
         words = describe_object("joints", name, data.labels)
         caption = f"{words}: force{case}{f', greatest {largest}' if largest else ''}; marks: crank angle{firing}"
         figure = figure._replace(
