@@ -100,10 +100,11 @@ def test_a_load_case_is_chosen(browser: Chromium, tmp_path: Path) -> None:
     assert enter(("show", str(find_spec("v_engine")), "--case", "all", "-o", str(target), "-q")) == 0
     with browser.open(target) as tab:
         first = tab.evaluate(SUMMARY)
+        tab.evaluate("window.isLeft = true")
         tab.evaluate(
             "(list => (list.value = '1', list.dispatchEvent(new Event('change'))))(document.querySelector('#case'))"
         )
-        tab.until("document.readyState === 'complete' && document.querySelectorAll('#summary tr').length > 3")
+        tab.until("!window.isLeft && document.readyState === 'complete' && document.querySelectorAll('#summary tr').length > 3")
         assert tab.evaluate("document.querySelector('#case').value") == "1"
         assert tab.evaluate(SUMMARY) != first
         assert tab.faults == []

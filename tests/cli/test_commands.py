@@ -174,7 +174,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["run", "hanging.yaml", "--method", "rk5"], "'rk5' is not an integration method [unknown-method]"),
         (["run", "hanging.yaml", "-o", "hanging.yaml"], "the spec itself"),
         (["validate", "hanging.yaml", "wrong.yaml"], "wrong.yaml:9:"),
-        (["model", "hanging.yaml", "--format", "csv"], "known: text, json"),
+        (["model", "hanging.yaml", "--format", "csv"], "expected text, json"),
         (["check", "nosuch.yaml"], "nosuch.yaml"),
         (["check", "hanging.yaml", "--jobs", "0"], "expected 1 or more"),
         (["check", "hanging.yaml", "-k", "nosuch"], "none of 1 specs"),

@@ -114,7 +114,7 @@ def test_collectives_and_load_cases_are_those_of_the_command(heun: Heun) -> None
     force = sum(action.force for action in cases[1].actions if action.name == "big")
     rotation = study["bodies.rod.rotation"].at(0.01)
     assert np.abs(rotation @ force) == pytest.approx(np.abs(study["joints.big.force"].at(0.01)), abs=1e-6)
-    with pytest.raises(heuncli.UsageError, match="known: crank, rod, piston"):
+    with pytest.raises(heuncli.UsageError, match="expected crank, rod, piston"):
         study.load_cases("rood", at=0)
 
 

@@ -180,7 +180,7 @@ class Study:
         """
         if setup is not None:
             return self.compose_reports(self.find_recovery(times, reports, setup), reports)
-        key = times.tobytes(), reports
+        key = times.tobytes(), frozenset(reports)
         found = self._recent_reports.pop(key, None) or self.compose_reports(self.find_recovery(times, reports), reports)
         self._recent_reports[key] = found
         counts = [len(own.time) for own in self._recent_reports.values()]
