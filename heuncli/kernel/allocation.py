@@ -107,21 +107,21 @@ def copy_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
             freedoms: cython.p_void = memory.copy_structs(tables["freedoms"], cython.sizeof(Freedom))
             scene.freedoms_beside = cython.cast(cython.pointer[Freedom], freedoms)
     else:
-        scene.bodies_beside = [Body(row) for row in tables["bodies"].tolist()]
-        scene.freedoms_beside = [Freedom(row) for row in tables["freedoms"].tolist()]
-        scene.bodies = [Body(row) for row in tables["bodies"].tolist()]
-        scene.freedoms = [Freedom(row) for row in tables["freedoms"].tolist()]
-        scene.loads = [Load(row) for row in tables["loads"].tolist()]
-        scene.closures = [Closure(row) for row in tables["closures"].tolist()]
-        scene.parts = [Closure(row) for row in tables["parts"].tolist()]
-        scene.counters = [Counter(row) for row in tables["counters"].tolist()]
-        scene.pieces = [PathPiece(row) for row in tables["pieces"].tolist()]
-        scene.variables = [Variable(row) for row in tables["variables"].tolist()]
-        scene.lents = [ArtificialInertia(row) for row in tables["lents"].tolist()]
-        scene.islands = [Island(row) for row in tables["islands"].tolist()]
-        scene.watches = [Watch(row) for row in tables["watches"].tolist()]
-        scene.contacts = [Contact(row) for row in tables["contacts"].tolist()]
-        scene.limits = Limits(tables["limits"].tolist()[0])
+        scene.bodies_beside = [Body.from_numbers(row) for row in tables["bodies"].tolist()]
+        scene.freedoms_beside = [Freedom.from_numbers(row) for row in tables["freedoms"].tolist()]
+        scene.bodies = [Body.from_numbers(row) for row in tables["bodies"].tolist()]
+        scene.freedoms = [Freedom.from_numbers(row) for row in tables["freedoms"].tolist()]
+        scene.loads = [Load.from_numbers(row) for row in tables["loads"].tolist()]
+        scene.closures = [Closure.from_numbers(row) for row in tables["closures"].tolist()]
+        scene.parts = [Closure.from_numbers(row) for row in tables["parts"].tolist()]
+        scene.counters = [Counter.from_numbers(row) for row in tables["counters"].tolist()]
+        scene.pieces = [PathPiece.from_numbers(row) for row in tables["pieces"].tolist()]
+        scene.variables = [Variable.from_numbers(row) for row in tables["variables"].tolist()]
+        scene.lents = [ArtificialInertia.from_numbers(row) for row in tables["lents"].tolist()]
+        scene.islands = [Island.from_numbers(row) for row in tables["islands"].tolist()]
+        scene.watches = [Watch.from_numbers(row) for row in tables["watches"].tolist()]
+        scene.contacts = [Contact.from_numbers(row) for row in tables["contacts"].tolist()]
+        scene.limits = Limits.from_numbers(tables["limits"].tolist()[0])
 
 
 def allocate_work(scene: cython.pointer[Scene], memory: Memory, indices: array[int], numbers: dict[str, Any]) -> None:

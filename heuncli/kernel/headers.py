@@ -149,7 +149,7 @@ def declare_struct(node: ast.ClassDef, structs: frozenset[str]) -> str:
     """Declare a struct; a tuple of structs of one kind is an array."""
     lines = [f"cdef struct {node.name}:\n"]
     for field in node.body:
-        if isinstance(field, ast.AnnAssign):
+        if isinstance(field, ast.AnnAssign) and ast.unparse(field.annotation) != "Computed":
             kind, name = field.annotation, ast.unparse(field.target)
             if isinstance(kind, ast.Subscript) and isinstance(kind.slice, ast.Tuple):
                 name += f"[{len(kind.slice.elts)}]"

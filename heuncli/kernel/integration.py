@@ -137,7 +137,7 @@ class Integration:
             groups: cython.p_void = self.memory.copy_structs(start["groups"], cython.sizeof(Group))
             run.groups = cython.cast(cython.pointer[Group], groups)
         else:
-            run.groups = [Group(row) for row in start["groups"].tolist()]
+            run.groups = [Group.from_numbers(row) for row in start["groups"].tolist()]
 
     def allocate_chart(self, n: cython.int) -> None:
         """Allocate the numbers that steps are taken in, if they are not the state's own."""

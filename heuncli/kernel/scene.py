@@ -3,16 +3,17 @@
     [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on the branch from its body
                                                                  outward, about the body's joint point r; world axes
 
-Rows of NumPy tables (multibody/tree/tables.py makes their types from these classes) are the compiled kernel's memory;
-the plain kernel makes objects of them. Fields up to the blank line are set when the scene is packed, the others belong
-to the kernel. World axes unless stated otherwise; `a` always is the acceleration minus that of gravity.
+Each field is declared here alone: C's structs (headers.py) and the NumPy types of the tables that are the compiled
+kernel's memory (multibody/tree/tables.py) follow. The rows of a scene are packed as objects of these classes, by the
+names of the fields: a field that is ZERO here may be left out, what stands below `Computed` belongs to the kernel.
+World axes unless stated otherwise; `a` always is the acceleration minus that of gravity.
 """
 
 from __future__ import annotations
 
 from heuncli.kernel.algebra import Ldl3, Mat3, Sym3, Vec3
 from heuncli.kernel.programs import Program, Programs
-from heuncli.kernel.structs import Pointer, Record, Struct
+from heuncli.kernel.structs import ZERO, Computed, Pointer, Record, Struct
 
 # Kinds of freedoms, loads (named in base/load_kinds.py; their order means nothing) and closure rows.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
@@ -48,6 +49,7 @@ class Body(Record):
     joint_in_parent: Vec3  # the joint point in the parent, from its joint point, its axes
     frame: Mat3  # attitude in the parent where all coordinates are zero
 
+    _: Computed
     R: Mat3  # attitude, body to world
     r: Vec3  # joint point
     omega: Vec3
@@ -87,15 +89,16 @@ class Freedom(Record):
     program: Program  # value of the drive
     direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
     offset: float  # coordinate minus the drive's value
-    path: int  # first piece of the path along which a point runs
-    pieces: int  # and how many it has; 0: its direction is fixed
-    period: float  # period of the coordinate on a closed path; else 0
-    reach: float  # bounds of the path's |r|, |r'| and |r''|
-    slope: float
-    bend: float
-    radius: float  # distance of a roller's centre from the path; 0: on it
-    normal: Vec3  # normal of the path's plane; the roller is to its left
+    path: int = ZERO  # first piece of the path along which a point runs
+    pieces: int = ZERO  # and how many it has; 0: its direction is fixed
+    period: float = ZERO  # period of the coordinate on a closed path; else 0
+    reach: float = ZERO  # bounds of the path's |r|, |r'| and |r''|
+    slope: float = ZERO
+    bend: float = ZERO
+    radius: float = ZERO  # distance of a roller's centre from the path; 0: on it
+    normal: Vec3 = ZERO  # normal of the path's plane; the roller is to its left
 
+    _: Computed
     s: Vec3  # its direction, of unit length or, along a path, r'
     curved: Vec3  # along a path r'', else zero
     twisted: Vec3  # and r'''
@@ -115,39 +118,39 @@ class Load(Record):
     kind: int
     a: int
     b: int
-    in_body: int  # the vector's components are in b's axes; of joint loads: told along the axis; of ropes: only pulls
-    freedom: int  # for a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
-    counter: int  # that then counts its turns
-    x: Program  # components of `vector` that vary; x alone for a single value
-    y: Program  # for a rope: its length without load
-    z: Program
-    p: Vec3  # point of a, from its joint point, its axes
-    q: Vec3  # point of b
-    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator, size of friction) stands in x
-    stiffness: float  # spring [N/m], torsion spring [N m/rad]
-    length: float  # free length of a spring or rope [m]; torsion spring: free angle; bushing: largest angle [rad]
-    coefficient: float  # damping [N s/m], [N m s]; for friction the factor on its size
-    axis: Vec3  # in a
-    speed: float  # for friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
-    factor: float  # for a force or couple: by which the vector is to be multiplied; of a thread's friction its force by
-    # its moment [1/m]
-    offset: float
-    across: Vec3  # for a joint that was cut: a direction across the axis, in a
-    mark: Vec3  # and the one in b that agrees with it at angle 0
+    in_body: int = ZERO  # the vector is in b's axes; of joint loads: reported along the axis; of ropes: only pulls
+    freedom: int = ZERO  # for a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
+    counter: int = ZERO  # that then counts its turns
+    x: Program = ZERO  # components of `vector` that vary; x alone for a single value
+    y: Program = ZERO  # for a rope: its length without load
+    z: Program = ZERO
+    p: Vec3 = ZERO  # point of a, from its joint point, its axes
+    q: Vec3 = ZERO  # point of b
+    vector: Vec3 = ZERO  # force [N], couple [N m]; a single value (torque, actuator, size of friction) stands in x
+    stiffness: float = ZERO  # spring [N/m], torsion spring [N m/rad]
+    length: float = ZERO  # free length of a spring or rope [m]; free angle of a torsion spring, largest of a bushing
+    coefficient: float = ZERO  # damping [N s/m], [N m s]; for friction the factor on its size
+    axis: Vec3 = ZERO  # in a
+    speed: float = ZERO  # for friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
+    factor: float = ZERO  # on the vector of a force or couple; of a thread's friction its force by its moment [1/m]
+    offset: float = ZERO
+    across: Vec3 = ZERO  # for a joint that was cut: a direction across the axis, in a
+    mark: Vec3 = ZERO  # and the one in b that agrees with it at angle 0
     # for friction: GIVEN, or which part of the joint's own load is the normal force; the coefficient then
     # multiplies it
-    presses: int
-    held_by: int  # the body whose joint it is; -1: the joint was cut
-    row: int  # for a joint that was cut: its first closure row; of a thread its own
-    row_count: int
-    reach: float  # for ENDS: the distance between the two ends [m]
-    frame: Mat3  # for a bushing: its axes, in a
-    to_frame: Mat3  # and those in b that agree with them where it is not turned
-    stiffnesses: Vec3  # along its axes [N/m], of turning [N m/rad]
-    resistances: Vec3  # [N s/m], [N m s]
-    part: int  # for a rope: the first of its parts
-    part_count: int
+    presses: int = ZERO
+    held_by: int = ZERO  # the body whose joint it is; -1: the joint was cut
+    row: int = ZERO  # for a joint that was cut: its first closure row; of a thread its own
+    row_count: int = ZERO
+    reach: float = ZERO  # for ENDS: the distance between the two ends [m]
+    frame: Mat3 = ZERO  # for a bushing: its axes, in a
+    to_frame: Mat3 = ZERO  # and those in b that agree with them where it is not turned
+    stiffnesses: Vec3 = ZERO  # along its axes [N/m], of turning [N m/rad]
+    resistances: Vec3 = ZERO  # [N s/m], [N m s]
+    part: int = ZERO  # for a rope: the first of its parts
+    part_count: int = ZERO
 
+    _: Computed
     force: Vec3  # on b
     moment: Vec3
     at: Vec3  # where on b
@@ -183,41 +186,42 @@ class Closure(Record):
     kind: int
     a: int
     b: int
-    freedom: int  # for a TURN: whose angle
-    program: Program  # driven length
-    path: int  # first of the bodies between its two ends and the ground, tips first, in `indices`
-    path_count: int
-    column: int  # its first number in `columns`
-    answers: int  # which answers of the freedoms these are, in `indices`: first those of its path, then what fills in
-    answer_count: int  # number of answers of its path
-    filled_count: int  # with those that fill in when earlier rows are taken out of it
-    couplings: int  # earlier rows that fill in, in `indices`
-    coupling_count: int
-    rank: int  # its place among the independent rows; -1: left out
-    e: Vec3
-    g: Vec3
-    p: Vec3  # point of a, from its joint point, its axes
-    q: Vec3  # point of b
-    length: float
+    freedom: int = ZERO  # for a TURN: whose angle
+    program: Program = ZERO  # driven length
+    path: int = ZERO  # first of the bodies between its two ends and the ground, tips first, in `indices`
+    path_count: int = ZERO
+    column: int = ZERO  # its first number in `columns`
+    answers: int = ZERO  # which answers of the freedoms, in `indices`: first those of its path, then what fills in
+    answer_count: int = ZERO  # number of answers of its path
+    filled_count: int = ZERO  # with those that fill in when earlier rows are taken out of it
+    couplings: int = ZERO  # earlier rows that fill in, in `indices`
+    coupling_count: int = ZERO
+    rank: int = ZERO  # its place among the independent rows; -1: left out
+    e: Vec3 = ZERO
+    g: Vec3 = ZERO
+    p: Vec3 = ZERO  # point of a, from its joint point, its axes
+    q: Vec3 = ZERO  # point of b
+    length: float = ZERO
     weight: float  # weight of the gap [m per unit]
-    part: int  # for a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
-    part_count: int
-    factor: float  # for a part of a SUM its factor; 1 for a row itself
-    c: int  # for a MESH or WOUND: the body that carries its place and directions; -1: the ground
-    ratio: float  # factor on the coordinate of `freedom`
-    freedom_b: int
-    ratio_b: float
-    lift: int  # for a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
-    pieces: int
-    period: float
-    swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
-    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
-    radius: float  # radius of the roller; 0: a point
-    pivot: Vec3
-    h: Vec3
-    counter: int  # for a TRACK: which counter counts its place
-    measure: float  # size of its unit load: 1 for a force, the island's length for a couple
+    part: int = ZERO  # for a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
+    part_count: int = ZERO
+    factor: float = ZERO  # for a part of a SUM its factor; 1 for a row itself
+    c: int = ZERO  # for a MESH or WOUND: the body that carries its place and directions; -1: the ground
+    ratio: float = ZERO  # factor on the coordinate of `freedom`
+    freedom_b: int = ZERO
+    ratio_b: float = ZERO
+    lift: int = ZERO  # for a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
+    pieces: int = ZERO
+    period: float = ZERO
+    swings: int = ZERO  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
+    faced: int = ZERO  # 1: touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
+    radius: float = ZERO  # radius of the roller; 0: a point
+    pivot: Vec3 = ZERO
+    h: Vec3 = ZERO
+    counter: int = ZERO  # for a TRACK: which counter counts its place
+    measure: float = ZERO  # size of its unit load: 1 for a force, the island's length for a couple
 
+    _: Computed
     f: Vec3
     m: Vec3
     Q: Vec3
@@ -254,8 +258,9 @@ class Contact(Record):
     sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
     opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
     freedom: int  # which it limits or holds; -1: no single one
-    held_at: int  # for a latch 1 + where, behind these, it is told at which length it holds; 0: of others
+    held_at: int = ZERO  # for a latch 1 + where, behind these, it is told at which length it holds; 0: of others
 
+    _: Computed
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
     least: float  # what the stages of a step saw of it
@@ -290,6 +295,7 @@ class Counter(Record):
     axis: Vec3  # in a
     track: int  # for a place: 1 + its TRACK among the closure rows; 0: an angle
 
+    _: Computed
     counted: float  # the state's angle, which is right to half a turn; or its place, right to its branch of the path
 
 
@@ -300,15 +306,15 @@ class Variable(Record):
     component of its strain.
     """
 
-    freedom: int
-    is_rate: int
-    is_point: int  # 0, AT_POINT, OF_LOAD
-    load: int
-    part: int  # part of the load: along its axis 0, 1 or 2; ALONG_LINE, DRAWN
-    body: int  # body of the point; -1: the ground
-    q: Vec3  # the point, from the body's joint point, its axes
-    direction: Vec3  # unit vector, world axes
-    offset: float  # offset of its place along the direction
+    freedom: int = ZERO
+    is_rate: int = ZERO
+    is_point: int = ZERO  # 0, AT_POINT, OF_LOAD
+    load: int = ZERO
+    part: int = ZERO  # part of the load: along its axis 0, 1 or 2; ALONG_LINE, DRAWN
+    body: int = ZERO  # body of the point; -1: the ground
+    q: Vec3 = ZERO  # the point, from the body's joint point, its axes
+    direction: Vec3 = ZERO  # unit vector, world axes
+    offset: float = ZERO  # offset of its place along the direction
 
 
 class Watch(Record):
@@ -319,6 +325,7 @@ class Watch(Record):
     condition: int  # 1: its branches alone count
     load: int  # for a bushing: the load of whose force or moment it is a part; -1: it is of none
 
+    _: Computed
     low: float  # what the stages of a step saw of it
     high: float
     scale: float  # how large it may be in the step
@@ -334,6 +341,7 @@ class ArtificialInertia(Record):
     root: float  # square root of the inertia
     axis: Vec3  # unit vector, body axes
 
+    _: Computed
     n: Vec3  # root times the axis, world
     z: float  # n . alpha: the artificial inertia takes the load z n on the body
 
@@ -345,6 +353,7 @@ class Group(Record):
     rates: int
     end: int
 
+    _: Computed
     rate: float  # the largest it has had
     trial: float  # step being tried
 

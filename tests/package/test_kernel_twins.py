@@ -241,11 +241,3 @@ def test_answers_fill_their_records() -> None:
     """Sizes as kernel/answers.py writes them."""
     sizes = {"BODY": 30, "FREEDOM": 4, "LOAD": 20, "CLOSURE": 14, "PART": 16, "STATE": 4}
     assert {name: getattr(records, f"{name}_SOLUTION").itemsize // 8 for name in sizes} == sizes
-
-
-def test_a_table_takes_rows_of_different_fields() -> None:
-    """What only later rows give is kept, and what a row leaves out is zero."""
-    made = records.make_table(scene.Closure, [{"a": 1, "length": 2.0}, {"a": 3, "e": (4.0, 5.0, 6.0)}])
-    assert made["a"].tolist() == [1, 3]
-    assert made["length"].tolist() == [2.0, 0.0]
-    assert made["e"].tolist() == [(0.0, 0.0, 0.0), (4.0, 5.0, 6.0)]

@@ -38,7 +38,7 @@ ENDS_IN_ED = {"speed", "seed", "need", "embed", "exceed", "feed", "proceed"}  # 
 # Fields of these files are names that users write or read: keys of specs, options, JSON; or of the kernel's structs.
 FILES_OF_KEYS = re.compile(
     r"scene/file_format/(format\w*|entries|fields|models|loads|couplings)\.py|app/commands/\w+/request\.py|app/python/\w+\.py"
-    r"|kernel/(scene|stepping|values|programs)\.py|multibody/tree/rows\.py|analyses/(balancing/results|lagrange/study)\.py"
+    r"|kernel/(scene|stepping|values|programs)\.py|analyses/(balancing/results|lagrange/study)\.py"
 )
 DECKS = ("abaqus", "ansys", "as_csv", "as_json", "calculix", "nastran")
 # Others that strings refer to, or whose name a protocol of Python's prescribes.

@@ -10,56 +10,58 @@ import math
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 
-from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.multibody.mechanism.model import Assembly
-from heuncli.multibody.tree.rows import ZERO, BodyRow, ClosureIndices, ClosureRow, Program, Vector
 from heuncli.multibody.tree.starts import body_state
+from heuncli.multibody.tree.tables import ZERO, Program, Vector
 
 # Closure paths
 
 
-def index_rows(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[list[ClosureIndices], array[int], int]:
-    """Return, for each closure row by its path, where its indices are; these indices; and the total length of all
-    columns.
+def index_rows(
+    rows: Sequence[kernel.Closure], paths: Sequence[list[int]], bodies: Sequence[kernel.Body]
+) -> tuple[list[kernel.Closure], array[int], int]:
+    """Return the closure rows with the positions of their paths, answers and couplings; the indices that these point
+    into; and the total length of all columns.
 
-    paths: tree indices, tips first
+    paths: tree indices, tips first, of each row
 
     Rows with the same path share their indices.
     """
     indices = array("i")
-    shared: dict[tuple[int, ...], tuple[int, int, int, int]] = {}
-    places: list[ClosureIndices] = []
+    shared: dict[tuple[int, ...], dict[str, int]] = {}
+    indexed: list[kernel.Closure] = []
     column = 0
-    coupled, filled = find_fill_in(paths)
 
     def append_data(data: Sequence[int]) -> int:
         indices.extend(data)
         return len(indices) - len(data)
 
-    for path, rows, others in zip(paths, coupled, filled, strict=True):
-        key = (*path, -1, *others)
+    for row, path, coupled, filled in zip(rows, paths, *find_fill_in(paths), strict=True):
+        key = (*path, -1, *filled)
         if key not in shared:
-            answers = [n for i in path for n in bodies[i].answers]
-            more = [n for i in others for n in bodies[i].answers]
-            shared[key] = append_data(path), append_data(answers + more), len(answers), len(answers) + len(more)
-        path_at, answers_at, count, filled_count = shared[key]
-        places.append(
-            ClosureIndices(
-                path=path_at,
-                path_count=len(path),
-                column=column,
-                answers=answers_at,
-                answer_count=count,
-                filled_count=filled_count,
-                couplings=append_data(rows),
-                coupling_count=len(rows),
-                rank=-1,
+            answers = [n for i in path for n in list_answers(bodies[i])]
+            more = [n for i in filled for n in list_answers(bodies[i])]
+            shared[key] = {
+                "path": append_data(path),
+                "path_count": len(path),
+                "answers": append_data(answers + more),
+                "answer_count": len(answers),
+                "filled_count": len(answers) + len(more),
+            }
+        indexed.append(
+            row.replace(
+                column=column, couplings=append_data(coupled), coupling_count=len(coupled), rank=-1, **shared[key]
             )
         )
-        column += filled_count
-    return places, indices, column
+        column += shared[key]["filled_count"]
+    return indexed, indices, column
+
+
+def list_answers(body: kernel.Body) -> range:
+    """Return the indices of a body's freedoms among the answers."""
+    return range(body.answer_at, body.answer_at + 3 * body.ball + body.end_freedom - body.first_freedom)
 
 
 def find_fill_in(paths: Sequence[list[int]]) -> tuple[list[list[int]], list[list[int]]]:
@@ -105,7 +107,7 @@ Relative = Callable[[int, Vector], Vector]  # a body's point from its joint poin
 
 def make_part_row(
     part: CouplingPart, first_part: int, in_tree: TreeIndex, relative: Relative, freedoms: Mapping[tuple[int, str], int]
-) -> ClosureRow:
+) -> kernel.Closure:
     """Make the kernel's row for a condition between two bodies.
 
     first_part: index of the first part of the row that it belongs to
@@ -113,7 +115,7 @@ def make_part_row(
     """
     coordinates = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*coordinates, (0, 0.0), (0, 0.0)][:2]
-    return ClosureRow(
+    return kernel.Closure(
         kind=KINDS[part.kind],
         a=in_tree(part.a),
         b=in_tree(part.b),
@@ -133,13 +135,13 @@ def make_part_row(
     )
 
 
-def add_lift(row: ClosureRow, part: CouplingPart, first: int, relative: Relative) -> ClosureRow:
+def add_lift(row: kernel.Closure, part: CouplingPart, first: int, relative: Relative) -> kernel.Closure:
     """Add the lift to the row of a cam, where its first piece is at `first`; other parts are returned unchanged."""
     cam = part.cam
     if cam is None:
         return row
-    return replace(
-        row, lift=first, pieces=len(cam.lift.coefficients), period=cam.lift.period, swings=int(cam.swings),
+    return row.replace(
+        lift=first, pieces=len(cam.lift.coefficients), period=cam.lift.period, swings=int(cam.swings),
         faced=int(cam.face is not None), radius=cam.radius, pivot=relative(part.c, cam.pivot),
         h=ZERO if cam.face is None else cam.face,
     )  # fmt: skip
@@ -163,14 +165,12 @@ def _part_gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[in
     return float(e @ (Rb @ part.g if part.kind == "dot" else D))
 
 
-def make_sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> ClosureRow:
+def make_sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> kernel.Closure:
     """Make the row that is the sum of its parts, from the first one on; program: added to its length in time."""
-    return ClosureRow(
+    return kernel.Closure(
         kind=kernel.SUM,
         a=-1,
         b=-1,
-        p=ZERO,
-        q=ZERO,
         weight=row.weight or size,
         length=length,
         program=program,

@@ -15,7 +15,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import CoupledRow
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Island, Layout
-from heuncli.multibody.tree.rows import IslandRow, make_kernel_table
+from heuncli.multibody.tree.tables import make_table
 from heuncli.results.results import Array
 
 
@@ -31,9 +31,9 @@ def add_islands(layout: Layout) -> Layout:
         layout.indices.extend(island.rows.tolist() + island.freedoms.tolist())
         n = len(island.rows)
         rows.append(
-            IslandRow(rows=first_index, row_count=n, freedoms=first_index + n, freedom_count=len(island.freedoms))
+            kernel.Island(rows=first_index, row_count=n, freedoms=first_index + n, freedom_count=len(island.freedoms))
         )
-    tables = layout.tables | {"islands": make_kernel_table(kernel.Island, rows)}
+    tables = layout.tables | {"islands": make_table(kernel.Island, rows)}
     return replace(layout, islands=tuple(islands_found), measure=measure, tables=tables)
 
 

@@ -14,10 +14,9 @@ from heuncli.base.records import fields, record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.rows import VariableRow, make_kernel_table
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart
-from heuncli.multibody.tree.tables import Table
+from heuncli.multibody.tree.tables import Table, make_table
 from heuncli.results.results import Array, Mask
 from heuncli.scene.expressions.programs import Pack
 
@@ -250,7 +249,7 @@ def empty_load_tables() -> dict[str, Table]:
     them.
     """
     return {
-        "loads": make_kernel_table(kernel.Load, []),
-        "variables": make_kernel_table(kernel.Variable, [VariableRow()]),
-        "watches": make_kernel_table(kernel.Watch, []),
+        "loads": make_table(kernel.Load, []),
+        "variables": make_table(kernel.Variable, [kernel.Variable()]),
+        "watches": make_table(kernel.Watch, []),
     }

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS, Direction
-from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.loads import GROUND, JointLoad, RopeLoad
 from heuncli.multibody.mechanism.model import Assembly, Joint, Mechanism, Stop
@@ -24,20 +24,6 @@ from heuncli.multibody.tree.closure_rows import (
 from heuncli.multibody.tree.islands import add_islands
 from heuncli.multibody.tree.layout import Contact, Freedom, Layout, LayoutFrame, make_frame
 from heuncli.multibody.tree.load_rows import find_used_names, lay_out_loads, make_programs
-from heuncli.multibody.tree.rows import (
-    NO_PROGRAM,
-    ZERO,
-    BodyRow,
-    ClosureRow,
-    ContactRow,
-    CounterRow,
-    FreedomRow,
-    GroupRow,
-    PieceRow,
-    Program,
-    Vector,
-    make_kernel_table,
-)
 from heuncli.multibody.tree.spanning import SpanningTree, TreeLink, find_spanning_tree
 from heuncli.multibody.tree.starts import (
     JointStart,
@@ -50,7 +36,18 @@ from heuncli.multibody.tree.starts import (
     point_distance,
     to_direction,
 )
-from heuncli.multibody.tree.tables import limits_table, moves_in_plane, remove_direction_tilt, remove_tilt, to_sym3
+from heuncli.multibody.tree.tables import (
+    NO_PROGRAM,
+    ZERO,
+    Program,
+    Vector,
+    limits_table,
+    make_table,
+    moves_in_plane,
+    remove_direction_tilt,
+    remove_tilt,
+    to_sym3,
+)
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.expressions.programs import Pack
@@ -152,14 +149,14 @@ class _LayoutBuilder:
         self.place = {h.body: i for i, h in enumerate(spanning.links)}
         self.size = size
         self.reference = np.array([self._joint_point(h) for h in spanning.links]).reshape(-1, 3)
-        self.body_rows: list[BodyRow] = []
-        self.freedom_rows: list[FreedomRow] = []
-        self.pieces: list[PieceRow] = []
+        self.body_rows: list[kernel.Body] = []
+        self.freedom_rows: list[kernel.Freedom] = []
+        self.pieces: list[kernel.PathPiece] = []
         self.coordinates: dict[tuple[int, str], float] = {}  # at the start, of the tree's joints
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
-        self.groups: list[GroupRow] = []
+        self.groups: list[kernel.Group] = []
         self.answer_count = 0
 
     def build(self, work: bool) -> LayoutFrame:
@@ -193,7 +190,7 @@ class _LayoutBuilder:
             first, group = len(self.freedoms), self._add_state(i, link, ball, freedoms)
             self.groups.append(group)
             self.body_rows.append(
-                BodyRow(
+                kernel.Body(
                     parent=self.in_tree(link.parent),
                     ball=int(ball),
                     attitude_at=group.coordinates,
@@ -211,7 +208,7 @@ class _LayoutBuilder:
             )
             self.answer_count += 3 * ball + len(freedoms)
 
-    def _add_state(self, i: int, link: TreeLink, ball: bool, freedoms: list[Scalar]) -> GroupRow:
+    def _add_state(self, i: int, link: TreeLink, ball: bool, freedoms: list[Scalar]) -> kernel.Group:
         """Add a body's part of the state and its freedoms; return its position in the state.
 
         For a ball the attitude comes first, then the coordinates; then the angular velocity and the rates.
@@ -232,17 +229,24 @@ class _LayoutBuilder:
                 coordinates.append(x)
                 rates.append(u)
                 scalar_weights.append(1.0 / self.size if kind == kernel.SHIFT else 1.0)
-            answer = self.answer_count + 3 * ball + k
-            driven, program = int(program is not None), program or NO_PROGRAM
-            row = FreedomRow(kind, *places, driven, answer, i, program, direction)
+            row = kernel.Freedom(
+                kind=kind,
+                q_at=places[0],
+                u_at=places[1],
+                driven=int(program is not None),
+                answer_at=self.answer_count + 3 * ball + k,
+                body=i,
+                program=program or NO_PROGRAM,
+                direction=direction,
+            )
             self.freedom_rows.append(self._add_path(link, quantity, row))
             self.freedoms.append(Freedom(link.joint, quantity, *places))
             self.coordinates[link.joint, quantity] = x
         self.y += coordinates + rates
         self.weights += [1.0] * (4 * ball) + scalar_weights + weights + scalar_weights
-        return GroupRow(begin, rates_at, len(self.y))
+        return kernel.Group(coordinates=begin, rates=rates_at, end=len(self.y))
 
-    def _add_path(self, link: TreeLink, quantity: str, row: FreedomRow) -> FreedomRow:
+    def _add_path(self, link: TreeLink, quantity: str, row: kernel.Freedom) -> kernel.Freedom:
         """Add the path of a freedom that runs along one to the table of pieces; other freedoms are returned
         unchanged.
         """
@@ -255,8 +259,7 @@ class _LayoutBuilder:
             any(stop.high is not None and stop.high <= path.last for stop in stops),
         )
         reach, slope, bend = path.bounds
-        return replace(
-            row,
+        return row.replace(
             path=self._add_pieces(path),
             pieces=len(path.coefficients),
             period=path.period,
@@ -270,8 +273,9 @@ class _LayoutBuilder:
     def _add_pieces(self, path: Path) -> int:
         """Add the pieces of a path; return the index of the first."""
         first = len(self.pieces)
-        self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
-        self.pieces.append(PieceRow(path.last, *np.zeros((4, 3))))
+        for begin, (c0, c1, c2, c3) in zip(path.knots[:-1].tolist(), path.coefficients, strict=True):
+            self.pieces.append(kernel.PathPiece(begin=begin, c0=c0, c1=c1, c2=c2, c3=c3))
+        self.pieces.append(kernel.PathPiece(begin=path.last, c0=ZERO, c1=ZERO, c2=ZERO, c3=ZERO))
         return first
 
     def _find_drive_program(self, link: TreeLink, quantity: str) -> Program | None:
@@ -354,12 +358,12 @@ class _LayoutBuilder:
         angles.
         """
         self.row_joint: list[int] = []
-        self.closure_rows: list[ClosureRow] = []
+        self.closure_rows: list[kernel.Closure] = []
         self.paths: list[list[int]] = []
         self.counters: dict[int, int] = {}
         self.contacts: list[Contact] = []
-        self.one_sided: list[ContactRow] = []
-        self.part_rows: list[ClosureRow] = []
+        self.one_sided: list[kernel.Contact] = []
+        self.part_rows: list[kernel.Closure] = []
         length_limited = {stop.joint for stop in self.mechanism.stops if stop.quantity == "length"}
         for k in self.spanning.cut:
             joint, start = self.mechanism.joints[k], self.starts[k]
@@ -400,8 +404,8 @@ class _LayoutBuilder:
         self._add_row(k, kernel.SUM, weight=self.size, part=first, part_count=len(terms))
         for factor, d, e in terms:
             directions = {"e": joint_direction(joint, d), "g": bent_direction(joint, self.starts[k].R_ref, e)}
-            dot = replace(
-                self.closure_rows[-1], kind=kernel.DOT, weight=1.0, part=0, part_count=0, factor=factor, **directions
+            dot = self.closure_rows[-1].replace(
+                kind=kernel.DOT, weight=1.0, part=0, part_count=0, factor=factor, **directions
             )
             self.part_rows.append(dot)
 
@@ -415,8 +419,8 @@ class _LayoutBuilder:
             if joint.one_sided and not faced:
                 self._mark_one_sided(k, joint.name, joint.restitution)
             self._add_row(k, kernel.TRACK)
-            self.closure_rows[-1] = replace(
-                self.closure_rows[-1], lift=first, pieces=len(path.coefficients), period=path.period,
+            self.closure_rows[-1] = self.closure_rows[-1].replace(
+                lift=first, pieces=len(path.coefficients), period=path.period,
                 radius=side * path.radius, h=side * h, faced=faced, counter=len(self.counters),
             )  # fmt: skip
         self.counters[k] = -1
@@ -458,7 +462,7 @@ class _LayoutBuilder:
         if restitution is not None:
             self.contacts.append(Contact(name, True, owner, row, 1, restitution))
         opens = len(self.contacts) if restitution is not None else 0
-        self.one_sided.append(ContactRow(row, 1, opens, freedom=-1))
+        self.one_sided.append(kernel.Contact(row=row, sense=1, opens=opens, freedom=-1))
 
     def _add_latches(self) -> None:
         """Add the rows of all latches."""
@@ -474,7 +478,9 @@ class _LayoutBuilder:
         self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
         coordinate = (stop.joint, stop.quantity)
         limited = next((i for i, f in enumerate(self.freedoms) if (f.joint, f.quantity) == coordinate), -1)
-        self.one_sided.append(ContactRow(row, sense, len(self.contacts), limited, held_at))
+        self.one_sided.append(
+            kernel.Contact(row=row, sense=sense, opens=len(self.contacts), freedom=limited, held_at=held_at)
+        )
         if stop.quantity == "length":
             self._add_row(stop.joint, kernel.ROD, length=limit)
         elif joint.path is not None:
@@ -487,27 +493,13 @@ class _LayoutBuilder:
         else:
             self._add_row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=limited, weight=self.size)
 
-    def _add_row(
-        self,
-        joint: int,
-        kind: int,
-        *,
-        e: Vector = ZERO,
-        g: Vector = ZERO,
-        length: float = 0.0,
-        program: Program = NO_PROGRAM,
-        freedom: int = 0,
-        weight: float = 1.0,
-        part: int = 0,
-        part_count: int = 0,
-    ) -> None:
-        """Add a closure row of a joint; weight: of its gap [m per unit]."""
+    def _add_row(self, joint: int, kind: int, weight: float = 1.0, **fields: Any) -> None:
+        """Add a closure row of a joint; weight: of its gap [m per unit]; fields: the others that its kind needs."""
         joint_data = self.mechanism.joints[joint]
         a, b = self.in_tree(joint_data.a), self.in_tree(joint_data.b)
         p, q = self.relative(joint_data.a, joint_data.p), self.relative(joint_data.b, joint_data.q)
         self.row_joint.append(joint)
-        row = ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length, part, part_count, factor=1.0)
-        self.closure_rows.append(row)
+        self.closure_rows.append(kernel.Closure(kind=kind, a=a, b=b, p=p, q=q, weight=weight, factor=1.0, **fields))
         self.paths.append(sorted(set(self._path_to_root(a)) | set(self._path_to_root(b)), reverse=True))
 
     def _path_to_root(self, i: int) -> list[int]:
@@ -533,18 +525,18 @@ class _LayoutBuilder:
             if driven:
                 # the drives' work may vary where the motion does not: it has a say in the step
                 energy_group = len(self.groups)
-                self.groups.append(GroupRow(work_at, work_at, work_at + 1))
-        places, indices, column_count = index_rows(self.paths, self.body_rows)
+                self.groups.append(kernel.Group(coordinates=work_at, rates=work_at, end=work_at + 1))
+        closure_rows, indices, column_count = index_rows(self.closure_rows, self.paths, self.body_rows)
         tables = {
-            "bodies": make_kernel_table(kernel.Body, self.body_rows),
-            "freedoms": make_kernel_table(kernel.Freedom, self.freedom_rows),
-            "closures": make_kernel_table(kernel.Closure, self.closure_rows, places),
-            "pieces": make_kernel_table(kernel.PathPiece, self.pieces),
-            "parts": make_kernel_table(kernel.Closure, self.part_rows),
-            "counters": make_kernel_table(kernel.Counter, self._make_counter_rows()),
-            "contacts": make_kernel_table(kernel.Contact, self.one_sided),
-            "groups": make_kernel_table(kernel.Group, self.groups),
-            "lents": make_kernel_table(kernel.ArtificialInertia, []),
+            "bodies": make_table(kernel.Body, self.body_rows),
+            "freedoms": make_table(kernel.Freedom, self.freedom_rows),
+            "closures": make_table(kernel.Closure, closure_rows),
+            "pieces": make_table(kernel.PathPiece, self.pieces),
+            "parts": make_table(kernel.Closure, self.part_rows),
+            "counters": make_table(kernel.Counter, self._make_counter_rows()),
+            "contacts": make_table(kernel.Contact, self.one_sided),
+            "groups": make_table(kernel.Group, self.groups),
+            "lents": make_table(kernel.ArtificialInertia, []),
             "limits": limits_table(tolerances.KERNEL),
         }
         layout = Layout(
@@ -578,12 +570,15 @@ class _LayoutBuilder:
         kinds = {row.kind for row in self.closure_rows}
         return self.mechanism.planar and kinds.isdisjoint((kernel.TRACK, kernel.ALONG))
 
-    def _make_counter_rows(self) -> list[CounterRow]:
+    def _make_counter_rows(self) -> list[kernel.Counter]:
         joints, owners = self.mechanism.joints, self.row_joint
         return [
-            CounterRow(
-                self.in_tree(joints[k].a), self.in_tree(joints[k].b), at, joints[k].axis,
-                1 + owners.index(k) if joints[k].path is not None else 0,
+            kernel.Counter(
+                a=self.in_tree(joints[k].a),
+                b=self.in_tree(joints[k].b),
+                at=at,
+                axis=joints[k].axis,
+                track=1 + owners.index(k) if joints[k].path is not None else 0,
             )
             for k, at in self.counters.items()
-        ]  # fmt: skip
+        ]
