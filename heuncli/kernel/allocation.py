@@ -5,34 +5,9 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3
-    from heuncli.kernel.events import find_angles
-    from heuncli.kernel.memory import Memory
-    from heuncli.kernel.scene import (
-        ArtificialInertia,
-        Body,
-        BodyAtState,
-        BodyTangent,
-        Closure,
-        Contact,
-        Counter,
-        Freedom,
-        FreedomTangent,
-        Island,
-        Limits,
-        Load,
-        PathPiece,
-        Scene,
-        Variable,
-        Watch,
-    )
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.events import find_angles
+from heuncli.kernel.memory import Memory
 
 
 def set_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: dict[str, Any]) -> None:

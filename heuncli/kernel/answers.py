@@ -2,38 +2,15 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, scale_vector
-    from heuncli.kernel.closures import apply_multipliers, measure_rows, row_acceleration, size_of_row_acceleration
-    from heuncli.kernel.columns import largest_relative_residual, measure_row_responses, solve_causes, write_vector
-    from heuncli.kernel.loads import load_potential
-    from heuncli.kernel.orthogonal import estimate_multiplier_doubt
-    from heuncli.kernel.programs import FREE, HELD
-    from heuncli.kernel.response import evaluate, must_choose_rows, project_state
-    from heuncli.kernel.row_choice import choose_rows_again
-    from heuncli.kernel.scene import (
-        APART,
-        CARRIES,
-        LEANS,
-        MESH,
-        SUM,
-        TURN,
-        Body,
-        Closure,
-        Contact,
-        Freedom,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import balance_joints
-    from heuncli.kernel.values import Instants
+from heuncli.kernel.closures import apply_multipliers, measure_rows, row_acceleration, size_of_row_acceleration
+from heuncli.kernel.columns import largest_relative_residual, measure_row_responses, solve_causes, write_vector
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import load_potential
+from heuncli.kernel.orthogonal import estimate_multiplier_doubt
+from heuncli.kernel.response import evaluate, must_choose_rows, project_state
+from heuncli.kernel.row_choice import choose_rows_again
+from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
+from heuncli.kernel.tree import balance_joints
 
 
 def write_matrix(buffer: cython.p_double, offset: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:

@@ -14,20 +14,12 @@ state (the fourth number of an attitude is then 0). Throughout this module y is 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, fabs, sqrt
 
-if not cython.compiled:
-    from math import atan2, fabs, sqrt
+from heuncli.kernel.declarations import *
 
-    from heuncli.kernel.algebra import Quaternion, Vec3, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.scene import Body, Scene
-    from heuncli.kernel.shadow import cython
-
-    # How a method holds attitudes.
-    QUATERNION, GLOBAL, RECENTRED = range(3)
+# How a method holds attitudes.
+QUATERNION, GLOBAL, RECENTRED = range(3)
 
 
 def chart_centre(chart: cython.int, y: cython.p_double, offset: cython.Py_ssize_t) -> Quaternion:

@@ -15,35 +15,13 @@ there it has no value.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import sqrt
 
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.algebra import (
-        Mat3,
-        Vec3,
-        add,
-        add_scaled,
-        cross,
-        dot,
-        norm,
-        rotate,
-        rotate_back,
-        scale_vector,
-        sub,
-    )
-    from heuncli.kernel.evaluator import area_under, read_table
-    from heuncli.kernel.libm import NAN, tan
-    from heuncli.kernel.programs import TABLE, Program, Programs
-    from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import bushing_axes, bushing_strain
-    from heuncli.kernel.tree import add_load_to_body
-
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import area_under, read_table
+from heuncli.kernel.libm import NAN, tan
+from heuncli.kernel.strains import bushing_axes, bushing_strain
+from heuncli.kernel.tree import add_load_to_body
 
 # The map between turns and rotation vectors
 

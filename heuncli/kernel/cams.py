@@ -15,21 +15,11 @@ cannot be moved by a force normal to it, the load is NaN.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.paths import evaluate_path
-    from heuncli.kernel.scene import Closure, FreedomTangent, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
-    from heuncli.kernel.values import CamContact, CamStance, PathPoint, PointKinematics, RowTangent
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.paths import evaluate_path
+from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
 
 
 def cam_lift(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> PathPoint:

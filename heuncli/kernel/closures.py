@@ -9,34 +9,14 @@ ground.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
-
-    from heuncli.kernel.algebra import (
-        Vec3,
-        add,
-        add_cross,
-        add_scaled,
-        dot,
-        norm,
-        rotate_back,
-        scale_vector,
-        sub,
-    )
-    from heuncli.kernel.conditions import condition, condition_count, measure_condition, set_load_places
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.plane_rows import zero_acceleration_in_plane
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import SUM, TURN, Body, Closure, Counter, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tracks import track_speed
-    from heuncli.kernel.tree import add_load_to_body, eliminate_load
+from heuncli.kernel.conditions import condition, condition_count, measure_condition, set_load_places
+from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import jet
+from heuncli.kernel.plane_rows import zero_acceleration_in_plane
+from heuncli.kernel.tracks import track_speed
+from heuncli.kernel.tree import add_load_to_body, eliminate_load
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:

@@ -14,24 +14,16 @@ sum_i e_i Z_i), g the real number of L: the filter keeps stiff parts of it bound
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, pow
 
-if not cython.compiled:
-    from math import fabs, pow
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time
+from heuncli.kernel.jacobian import find_jacobian
+from heuncli.kernel.landing import begin_step_extremes, record_stage
+from heuncli.kernel.linear import factor_complex, factor_real, solve_complex, solve_real
+from heuncli.kernel.response import evaluate, project_state
 
-    from heuncli.kernel.dense import clip_time
-    from heuncli.kernel.jacobian import find_jacobian
-    from heuncli.kernel.landing import begin_step_extremes, record_stage
-    from heuncli.kernel.linear import factor_complex, factor_real, solve_complex, solve_real
-    from heuncli.kernel.response import evaluate, project_state
-    from heuncli.kernel.scene import Group, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Collocation, Factors, Method, Newton, Run
-
-    MAX_NEWTON_ITERATIONS = 25
+MAX_NEWTON_ITERATIONS = 25
 
 
 # A step

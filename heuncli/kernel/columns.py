@@ -10,22 +10,14 @@ and velocity terms, with the same factors.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import sqrt
 
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.algebra import Vec3, add_scaled, scale_vector
-    from heuncli.kernel.closures import measure_rows, row_residual, size_of_row_acceleration
-    from heuncli.kernel.loads import apply_rope_pull
-    from heuncli.kernel.orthogonal import response_of_row, size_of_multipliers
-    from heuncli.kernel.response import configure, solve_applied
-    from heuncli.kernel.scene import APART, ROPE, SHIFT, Body, Closure, Freedom, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import add_load_to_body, update_kinematics
+from heuncli.kernel.closures import measure_rows, row_residual, size_of_row_acceleration
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import apply_rope_pull
+from heuncli.kernel.orthogonal import response_of_row, size_of_multipliers
+from heuncli.kernel.response import configure, solve_applied
+from heuncli.kernel.tree import add_load_to_body, update_kinematics
 
 
 def write_vector(buffer: cython.p_double, offset: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:

@@ -5,39 +5,14 @@ A row is one condition, or, for a coupling, a sum of several: callers go through
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, sub
-    from heuncli.kernel.cams import measure_cam
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.meshing import measure_mesh
-    from heuncli.kernel.plane_rows import measure_in_plane
-    from heuncli.kernel.rolling import measure_rolling
-    from heuncli.kernel.scene import (
-        ALONG,
-        ARC,
-        CAM,
-        DOT,
-        GUIDE,
-        MESH,
-        ROD,
-        STRAND,
-        SUM,
-        TRACK,
-        TURN,
-        WOUND,
-        Closure,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.sheaves import measure_arc, measure_strand, measure_wound
-    from heuncli.kernel.tracks import measure_track
-    from heuncli.kernel.values import PointKinematics
+from heuncli.kernel.cams import measure_cam
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.meshing import measure_mesh
+from heuncli.kernel.plane_rows import measure_in_plane
+from heuncli.kernel.rolling import measure_rolling
+from heuncli.kernel.sheaves import measure_arc, measure_strand, measure_wound
+from heuncli.kernel.tracks import measure_track
 
 
 def condition_count(row: cython.pointer[Closure]) -> cython.Py_ssize_t:

@@ -13,21 +13,12 @@ do work on the rates it produces. What is left is the rounding of the terms of J
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
-
-    from heuncli.kernel.algebra import Quaternion, Vec3, add_cross, add_scaled, quaternion_rate
-    from heuncli.kernel.closures import row_acceleration, row_motion, size_of_row_acceleration
-    from heuncli.kernel.dense import clip_time
-    from heuncli.kernel.response import add_motion, refactor_at, solve_demands_only
-    from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
+from heuncli.kernel.closures import row_acceleration, row_motion, size_of_row_acceleration
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time
+from heuncli.kernel.response import add_motion, refactor_at, solve_demands_only
 
 # Bound of the sum of the stages' weights: for high order they are some tens, of either sign.
 MAX_STAGE_SUM = 32.0

@@ -8,34 +8,25 @@ The step is repeated up to there until both agree. What happens then is decided 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.closures import measure_row
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import (
+    CONTACT_EVENT,
+    MAX_LANDINGS,
+    NO_EVENT,
+    REPEAT_TO,
+    clip_time,
+    ensure_interpolant,
+    interpolate,
+)
+from heuncli.kernel.response import evaluate, project_state
+from heuncli.kernel.tree import update_kinematics
 
-    from heuncli.kernel.algebra import norm
-    from heuncli.kernel.closures import measure_row
-    from heuncli.kernel.dense import (
-        CONTACT_EVENT,
-        MAX_LANDINGS,
-        NO_EVENT,
-        REPEAT_TO,
-        clip_time,
-        ensure_interpolant,
-        interpolate,
-    )
-    from heuncli.kernel.response import evaluate, project_state
-    from heuncli.kernel.scene import APART, CARRIES, LEANS, Closure, Contact, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
-    from heuncli.kernel.tree import update_kinematics
-
-    # Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
-    # checked before only rounding can be in doubt.
-    HALVINGS, POINTS, MAX_MARGIN_PARTS = 46, 8, 400
+# Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
+# checked before only rounding can be in doubt.
+HALVINGS, POINTS, MAX_MARGIN_PARTS = 46, 8, 400
 
 
 # Margins

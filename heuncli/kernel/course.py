@@ -9,35 +9,25 @@ Rajan, On the numerical condition of polynomials in Bernstein form (1987).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.bernstein import (
-        PARABOLA_END,
-        PARABOLA_MIDDLE,
-        PARABOLA_START,
-        bound_polynomial,
-        convert_rows,
-        differentiate,
-    )
-    from heuncli.kernel.dense import clip_time
-    from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.intervals import all_numbers
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.points import (
-        bound_point_variables,
-        build_state_course,
-        build_state_window,
-        set_point_variables_at,
-    )
-    from heuncli.kernel.programs import Bounds, Jet, Programs, Span
-    from heuncli.kernel.scene import Freedom, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Course, Method, Run
-
+from heuncli.kernel.bernstein import (
+    PARABOLA_END,
+    PARABOLA_MIDDLE,
+    PARABOLA_START,
+    bound_polynomial,
+    convert_rows,
+    differentiate,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time
+from heuncli.kernel.enclosure import enclose
+from heuncli.kernel.intervals import all_numbers
+from heuncli.kernel.jets import jet
+from heuncli.kernel.points import (
+    bound_point_variables,
+    build_state_course,
+    build_state_window,
+    set_point_variables_at,
+)
 
 # Laying a course
 

@@ -5,26 +5,18 @@ A method is data (integration/methods): rows of (stage, coefficient).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.attitudes import chart_slopes, half_turn_rate, leave_chart
+from heuncli.kernel.declarations import *
+from heuncli.kernel.response import evaluate, project_state
 
-if not cython.compiled:
-    from heuncli.kernel.attitudes import chart_slopes, half_turn_rate, leave_chart
-    from heuncli.kernel.response import evaluate, project_state
-    from heuncli.kernel.scene import Freedom, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
-
-    # What a step tried comes to.
-    NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
-    # Rows of the interpolating polynomial: the cubic, and what accelerations at both ends add to it.
-    CHANGE, START_SLOPE, END_SLOPE, START_BEND, END_BEND = range(5)
-    HERMITE_ROWS = 3  # those of the cubic, which every method has
-    # A record of the track: whether the step's polynomial is recorded, its start, its length.
-    HAS_COURSE, STEP_START, STEP_LENGTH = range(3)
-    MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
+# What a step tried comes to.
+NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
+# Rows of the interpolating polynomial: the cubic, and what accelerations at both ends add to it.
+CHANGE, START_SLOPE, END_SLOPE, START_BEND, END_BEND = range(5)
+HERMITE_ROWS = 3  # those of the cubic, which every method has
+# A record of the track: whether the step's polynomial is recorded, its start, its length.
+HAS_COURSE, STEP_START, STEP_LENGTH = range(3)
+MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
 
 
 def combine_stages(

@@ -16,118 +16,61 @@ third ones to its cube.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
 from collections.abc import Sequence
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.evaluator import (
-        angle_on_branch,
-        evaluate_integral,
-        find_integrand,
-        find_piece,
-        find_unwrapped_piece,
-        read_integral_table,
-        read_table,
-        side_of_cut,
-        takes_two,
-    )
-    from heuncli.kernel.expressions import Expressions
-    from heuncli.kernel.intervals import (
-        all_numbers,
-        arccosine,
-        arcsine,
-        arctangent,
-        cosine,
-        distance,
-        empty_interval,
-        exact_times,
-        exponential_function,
-        hull,
-        hyperbolic_cosine,
-        hyperbolic_sine,
-        hyperbolic_tangent,
-        intersect,
-        is_empty,
-        is_off_cut,
-        is_zero,
-        library_above,
-        library_below,
-        logarithm,
-        magnitude,
-        minus,
-        negative,
-        plus,
-        point_interval,
-        polar_angle,
-        quotient,
-        raise_to_interval,
-        raise_to_number,
-        raise_to_whole,
-        scale_bounds,
-        sine,
-        square_of,
-        square_root,
-        tangent,
-        times,
-    )
-    from heuncli.kernel.libm import INFINITY, floor
-    from heuncli.kernel.programs import (
-        ABS,
-        ADD,
-        ASIN,
-        ATAN,
-        ATAN2,
-        CONST,
-        COS,
-        COSH,
-        DIV,
-        EQ,
-        EXP,
-        EXTENDED,
-        GE,
-        GT,
-        HELD,
-        HOLD,
-        HYPOT,
-        INTEGRAL,
-        JUMP,
-        KNOT,
-        LE,
-        LOG,
-        LT,
-        MAX,
-        MIN,
-        MUL,
-        NE,
-        NEG,
-        PERIODIC,
-        POW,
-        POWER,
-        SIGN,
-        SIN,
-        SINH,
-        SQRT,
-        STEP,
-        SUB,
-        TABLE,
-        TAN,
-        TANH,
-        UNLESS,
-        VAR,
-        Bounds,
-        Program,
-        Programs,
-        Span,
-        Table,
-    )
-    from heuncli.kernel.shadow import cython
-
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import (
+    angle_on_branch,
+    evaluate_integral,
+    find_integrand,
+    find_piece,
+    find_unwrapped_piece,
+    read_integral_table,
+    read_table,
+    side_of_cut,
+    takes_two,
+)
+from heuncli.kernel.expressions import Expressions
+from heuncli.kernel.intervals import (
+    all_numbers,
+    arccosine,
+    arcsine,
+    arctangent,
+    cosine,
+    distance,
+    empty_interval,
+    exact_times,
+    exponential_function,
+    hull,
+    hyperbolic_cosine,
+    hyperbolic_sine,
+    hyperbolic_tangent,
+    intersect,
+    is_empty,
+    is_off_cut,
+    is_zero,
+    library_above,
+    library_below,
+    logarithm,
+    magnitude,
+    minus,
+    negative,
+    plus,
+    point_interval,
+    polar_angle,
+    quotient,
+    raise_to_interval,
+    raise_to_number,
+    raise_to_whole,
+    scale_bounds,
+    sine,
+    square_of,
+    square_root,
+    tangent,
+    times,
+)
+from heuncli.kernel.libm import INFINITY, floor
 
 # Programs
 

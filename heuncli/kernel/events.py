@@ -9,34 +9,24 @@ Interval Analysis (1966).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.course import bound_derivatives, bound_variables, course_instant, set_time_range, set_variables
+from heuncli.kernel.declarations import *
+from heuncli.kernel.enclosure import enclose, enclose_closely
+from heuncli.kernel.evaluator import evaluate_program
+from heuncli.kernel.intervals import all_numbers, magnitude
+from heuncli.kernel.jets import jet
+from heuncli.kernel.libm import INFINITY
+from heuncli.kernel.points import has_far_turn
 
-    from heuncli.kernel.algebra import norm
-    from heuncli.kernel.course import bound_derivatives, bound_variables, course_instant, set_time_range, set_variables
-    from heuncli.kernel.enclosure import enclose, enclose_closely
-    from heuncli.kernel.evaluator import evaluate_program
-    from heuncli.kernel.intervals import all_numbers, magnitude
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.points import has_far_turn
-    from heuncli.kernel.programs import ATAN2, HELD, HOLD, TAKEN, Bounds, Program, Programs, Span
-    from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene, Watch
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Course
-
-    # What happens in an interval of time, and what bounds leave undecided.
-    NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
-    AS_HELD, BRANCH_TURNED, UNCERTAIN = range(3)  # branches at an instant
-    # Divisions of an interval after which a value counts as seen, a millionth of the step; parts in which a
-    # load's
-    # peak is searched; parts checked for values that bounds do not decide, and in all.
-    MAX_DIVISIONS, MAX_PEAK_PARTS, MAX_VALUE_PARTS, MAX_PARTS = 20, 60, 1000, 4000
+# What happens in an interval of time, and what bounds leave undecided.
+NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
+AS_HELD, BRANCH_TURNED, UNCERTAIN = range(3)  # branches at an instant
+# Divisions of an interval after which a value counts as seen, a millionth of the step; parts in which a
+# load's
+# peak is searched; parts checked for values that bounds do not decide, and in all.
+MAX_DIVISIONS, MAX_PEAK_PARTS, MAX_VALUE_PARTS, MAX_PARTS = 20, 60, 1000, 4000
 
 
 # What the stages see

@@ -2,75 +2,17 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
 from array import array
 from collections.abc import Sequence
 from typing import Any
 
-if not cython.compiled:
-    from heuncli.kernel.evaluator import evaluate_program
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.programs import (
-        ABS,
-        ACOS,
-        ADD,
-        ASIN,
-        ATAN,
-        ATAN2,
-        CONST,
-        COS,
-        COSH,
-        DIV,
-        EQ,
-        EXP,
-        FREE,
-        GE,
-        GT,
-        HELD,
-        HOLD,
-        HYPOT,
-        INTEGRAL,
-        JUMP,
-        KNOT,
-        LE,
-        LOG,
-        LT,
-        MAX,
-        MIN,
-        MUL,
-        NE,
-        NEG,
-        NODES,
-        POW,
-        POWER,
-        SIGN,
-        SIN,
-        SINH,
-        SQRT,
-        STEP,
-        SUB,
-        TABLE,
-        TAKEN,
-        TAN,
-        TANH,
-        UNLESS,
-        VAR,
-        Bounds,
-        Instruction,
-        Jet,
-        Program,
-        Programs,
-        Span,
-    )
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import evaluate_program
+from heuncli.kernel.libm import NAN
 
-    # The arrays of `Expressions.memory`, in their order.
-    CODE_MEMORY, CONSTANT_MEMORY, VARIABLE_MEMORY, STACK_MEMORY, JET_MEMORY, HELD_MEMORY, DOUBT_MEMORY = range(7)
-    RANGE_MEMORY, MIDDLE_MEMORY, SPAN_MEMORY, TABLE_MEMORY = range(7, 11)
+# The arrays of `Expressions.memory`, in their order.
+CODE_MEMORY, CONSTANT_MEMORY, VARIABLE_MEMORY, STACK_MEMORY, JET_MEMORY, HELD_MEMORY, DOUBT_MEMORY = range(7)
+RANGE_MEMORY, MIDDLE_MEMORY, SPAN_MEMORY, TABLE_MEMORY = range(7, 11)
 
 OPERATIONS = {
     "const": CONST, "var": VAR, "add": ADD, "sub": SUB, "mul": MUL, "div": DIV, "pow": POW, "atan2": ATAN2,

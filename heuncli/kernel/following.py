@@ -17,57 +17,26 @@ masses that move. The work done is the gain of kinetic and potential energy.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, fabs, sqrt
 
-if not cython.compiled:
-    from math import atan2, fabs, sqrt
+from heuncli.kernel.columns import add_prescribed, clear_loads, clear_motion
+from heuncli.kernel.conditions import condition, condition_count
+from heuncli.kernel.course import set_time_range
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
+from heuncli.kernel.enclosure import enclose
+from heuncli.kernel.events import record_extremes
+from heuncli.kernel.jets import jet
+from heuncli.kernel.landing import begin_step_extremes, record_stage
+from heuncli.kernel.libm import INFINITY
+from heuncli.kernel.loads import load_potential
+from heuncli.kernel.points import evaluate_variables
+from heuncli.kernel.response import evaluate, project_state, solve_response
+from heuncli.kernel.selection import order_all
+from heuncli.kernel.tracks import find_track_place
+from heuncli.kernel.tree import update_kinematics
 
-    from heuncli.kernel.algebra import (
-        Quaternion,
-        Vec3,
-        add_scaled,
-        apply_small_rotation,
-        cross,
-        dot,
-        norm,
-        rotate_back,
-        scale_vector,
-        transform,
-    )
-    from heuncli.kernel.columns import add_prescribed, clear_loads, clear_motion
-    from heuncli.kernel.conditions import condition, condition_count
-    from heuncli.kernel.course import set_time_range
-    from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.events import record_extremes
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.landing import begin_step_extremes, record_stage
-    from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.loads import load_potential
-    from heuncli.kernel.points import evaluate_variables
-    from heuncli.kernel.programs import Bounds, Jet, Program
-    from heuncli.kernel.response import evaluate, project_state, solve_response
-    from heuncli.kernel.scene import (
-        MESH,
-        SHIFT,
-        TURN,
-        Body,
-        Closure,
-        Counter,
-        Freedom,
-        Scene,
-    )
-    from heuncli.kernel.selection import order_all
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import FollowedStep, Method, Run
-    from heuncli.kernel.tracks import find_track_place
-    from heuncli.kernel.tree import update_kinematics
-
-    WATCH_PARTS = 2  # parts of a step, at whose ends loads are recorded
+WATCH_PARTS = 2  # parts of a step, at whose ends loads are recorded
 
 
 def is_determined(scene: cython.pointer[Scene]) -> cython.bint:

@@ -7,25 +7,16 @@ from __future__ import annotations
 
 from typing import Any
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.dense import HERMITE_ROWS, STEP_LENGTH, STEP_START, clip_time, evaluate_polynomial
-    from heuncli.kernel.events import MAX_PEAK_PARTS, hold_branches, reset_watches
-    from heuncli.kernel.following import is_linear, prepare_step
-    from heuncli.kernel.memory import Memory
-    from heuncli.kernel.programs import FREE, HELD
-    from heuncli.kernel.response import evaluate
-    from heuncli.kernel.row_choice import choice_width
-    from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Collocation, Course, FollowedStep, Method, Newton, Orbits, Run
-    from heuncli.kernel.steps import restore_record, run_steps
-    from heuncli.kernel.workspace import Workspace
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import HERMITE_ROWS, STEP_LENGTH, STEP_START, clip_time, evaluate_polynomial
+from heuncli.kernel.events import MAX_PEAK_PARTS, hold_branches, reset_watches
+from heuncli.kernel.following import is_linear, prepare_step
+from heuncli.kernel.memory import Memory
+from heuncli.kernel.response import evaluate
+from heuncli.kernel.row_choice import choice_width
+from heuncli.kernel.steps import restore_record, run_steps
+from heuncli.kernel.workspace import Workspace
 
 
 def record_width(workspace: Workspace, n: cython.int) -> int:

@@ -6,19 +6,11 @@ numbers of a ball joint's attitude are varied one by one as they are.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.columns import write_vector
-    from heuncli.kernel.scene import BodyTangent, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Tangent
-    from heuncli.kernel.tangent import differentiate_state, evaluate_base_state
-    from heuncli.kernel.tangent_closures import row_tangent
-    from heuncli.kernel.tangent_motion import differentiate_motion
+from heuncli.kernel.columns import write_vector
+from heuncli.kernel.declarations import *
+from heuncli.kernel.tangent import differentiate_state, evaluate_base_state
+from heuncli.kernel.tangent_closures import row_tangent
+from heuncli.kernel.tangent_motion import differentiate_motion
 
 
 def find_jacobian(

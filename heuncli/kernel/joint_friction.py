@@ -18,38 +18,16 @@ first from below. For several N nothing is proved but that bound.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.tree import add_load_to_body
 
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.scene import (
-        ENDS,
-        FOUND,
-        JAMS,
-        SHIFT_FRICTION,
-        THREAD_FRICTION,
-        THRUST_OF_ROW,
-        TWO,
-        UNPROVED,
-        WHOLE,
-        Body,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import add_load_to_body
-
-    # Rows of `trial`, a number for each joint: N, what is left of N = |E1| + |E2|, its weight, the contraction's step,
-    # and the change of N by Newton's method or along a direction.
-    NORMAL_FORCE, RESIDUAL, WEIGHT, CONTRACTION_STEP, FORCE_CHANGE = range(5)
-    MAX_FRICTION_ITERATIONS = 500  # corrections: Newton's method takes a few
+# Rows of `trial`, a number for each joint: N, what is left of N = |E1| + |E2|, its weight, the contraction's step,
+# and the change of N by Newton's method or along a direction.
+NORMAL_FORCE, RESIDUAL, WEIGHT, CONTRACTION_STEP, FORCE_CHANGE = range(5)
+MAX_FRICTION_ITERATIONS = 500  # corrections: Newton's method takes a few
 
 FRICTION_ROUNDING = 8.8817841970012523e-16  # relative to the terms: four roundings
 

@@ -8,25 +8,17 @@ against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solvin
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, pow, sqrt
 
-if not cython.compiled:
-    from math import fabs, pow, sqrt
+from heuncli.kernel.attitudes import scale_chart_errors
+from heuncli.kernel.collocation import estimate_error, refine_error
+from heuncli.kernel.contact_rounding import remove_contact_rounding
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import combine_stages
 
-    from heuncli.kernel.attitudes import scale_chart_errors
-    from heuncli.kernel.collocation import estimate_error, refine_error
-    from heuncli.kernel.contact_rounding import remove_contact_rounding
-    from heuncli.kernel.dense import combine_stages
-    from heuncli.kernel.scene import Group, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
-
-    # What `run_steps` returns (steps.py), and the verdicts on a step.
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
-    STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
+# What `run_steps` returns (steps.py), and the verdicts on a step.
+REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
+STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
 
 # Hairer, Norsett and Wanner, II.4: take a little less than the length that would just be allowed, as a rejected step
 # costs a whole one, and limit the change of length, as the error estimate is valid for small changes only.

@@ -7,52 +7,44 @@ should have met it, until both agree.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.contacts import (
+    begin_margin_extremes,
+    find_contact_event,
+    start_contacts,
+    update_margin_extremes,
+)
+from heuncli.kernel.course import build_end_window, build_step_course, course_instant
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import (
+    EVENT_CHATTER,
+    HERMITE_ROWS,
+    MAX_LANDINGS,
+    NO_EVENT,
+    REPEAT_TO,
+    build_hermite,
+    clip_time,
+    ensure_interpolant,
+)
+from heuncli.kernel.events import (
+    BRANCH_IN_DOUBT,
+    CLEAR,
+    NOTHING,
+    TURNS,
+    UNSEEN,
+    check_coarsely,
+    find_first_event,
+    hold_branches,
+    record_extremes,
+    relative_jump,
+    reset_extremes,
+)
+from heuncli.kernel.points import evaluate_variables
+from heuncli.kernel.response import evaluate
 
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.contacts import (
-        begin_margin_extremes,
-        find_contact_event,
-        start_contacts,
-        update_margin_extremes,
-    )
-    from heuncli.kernel.course import build_end_window, build_step_course, course_instant
-    from heuncli.kernel.dense import (
-        EVENT_CHATTER,
-        HERMITE_ROWS,
-        MAX_LANDINGS,
-        NO_EVENT,
-        REPEAT_TO,
-        build_hermite,
-        clip_time,
-        ensure_interpolant,
-    )
-    from heuncli.kernel.events import (
-        BRANCH_IN_DOUBT,
-        CLEAR,
-        NOTHING,
-        TURNS,
-        UNSEEN,
-        check_coarsely,
-        find_first_event,
-        hold_branches,
-        record_extremes,
-        relative_jump,
-        reset_extremes,
-    )
-    from heuncli.kernel.points import evaluate_variables
-    from heuncli.kernel.response import evaluate
-    from heuncli.kernel.scene import Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Course, Method, Run
-
-    MAX_FLURRY_EVENTS = 16  # events that gather at an instant
+MAX_FLURRY_EVENTS = 16  # events that gather at an instant
 
 
 # What the steps see

@@ -5,47 +5,16 @@ Each is applied to the bodies as force and moment; its value, rate and power are
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, tanh
 
-if not cython.compiled:
-    from math import atan2, tanh
-
-    from heuncli.kernel.algebra import Vec3, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.bushings import apply_bushing_load, bushing_energy
-    from heuncli.kernel.closures import apply_condition_load
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.evaluator import evaluate_program
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
-    from heuncli.kernel.scene import (
-        ACTUATOR,
-        BUSHING_SHIFT,
-        BUSHING_TURN,
-        COUPLE,
-        FORCE,
-        ROPE,
-        SHIFT_DAMPER,
-        SHIFT_FRICTION,
-        SPRING,
-        STRAND,
-        THREAD_FRICTION,
-        THRUST,
-        TORQUE,
-        TURN_FRICTION,
-        TURN_SPRING,
-        Body,
-        Closure,
-        Counter,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import find_span_vector
-    from heuncli.kernel.tree import add_load_to_body, locate_point
-    from heuncli.kernel.values import PointMotion, RopeMotion
+from heuncli.kernel.bushings import apply_bushing_load, bushing_energy
+from heuncli.kernel.closures import apply_condition_load
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import evaluate_program
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
+from heuncli.kernel.strains import find_span_vector
+from heuncli.kernel.tree import add_load_to_body, locate_point
 
 
 def apply_loads(scene: cython.pointer[Scene]) -> cython.double:

@@ -8,18 +8,8 @@ for a unit of it, is constant: that is the gap.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_scaled, cross, dot, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.scene import Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PointKinematics
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
 
 
 def measure_mesh(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, norm
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Orbits
+from heuncli.kernel.declarations import *
 
 
 def bound_acceleration(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:

@@ -13,25 +13,17 @@ BIT 38 (1998) 34-50).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Vec3, half_solve, inverse_diagonal_roots, undo_half_solve
-    from heuncli.kernel.closures import (
-        add_unit_load,
-        build_column,
-        clear_path,
-        size_of_required_acceleration,
-        sweep_column,
-    )
-    from heuncli.kernel.plane_rows import spread_row_in_plane
-    from heuncli.kernel.scene import Body, Closure, Freedom, Scene
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.closures import (
+    add_unit_load,
+    build_column,
+    clear_path,
+    size_of_required_acceleration,
+    sweep_column,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.plane_rows import spread_row_in_plane
 
 
 def factor_closures(scene: cython.pointer[Scene]) -> cython.double:

@@ -12,18 +12,10 @@ lengths include them. Loads out of the plane are not found here: they move nothi
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import cos, sin
 
-if not cython.compiled:
-    from math import cos, sin
-
-    from heuncli.kernel.algebra import Mat3, Sym3, Vec3
-    from heuncli.kernel.paths import place_on_path
-    from heuncli.kernel.scene import SHIFT, Body, Freedom, Scene
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.paths import place_on_path
 
 
 def move_in_plane(scene: cython.pointer[Scene]) -> cython.void:

@@ -8,18 +8,9 @@ Heights along z count in the length of a rod only.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import sqrt
 
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.algebra import Vec3
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, SUM, TURN, Body, Closure, Freedom, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PlanarPointKinematics
+from heuncli.kernel.declarations import *
 
 
 def direction_in_plane(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:

@@ -17,34 +17,23 @@ bodies, because those of the scene may be in use.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import dot, norm
-    from heuncli.kernel.attitudes import GLOBAL, leave_chart
-    from heuncli.kernel.bernstein import (
-        PARABOLA_END,
-        PARABOLA_MIDDLE,
-        PARABOLA_START,
-        bound_polynomial,
-        convert_rows,
-        differentiate,
-    )
-    from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.intervals import all_numbers, magnitude
-    from heuncli.kernel.load_ranges import bound_load_variable, bounds_between, evaluate_load_end
-    from heuncli.kernel.motion_bounds import bound_acceleration
-    from heuncli.kernel.programs import Bounds, Jet, Span
-    from heuncli.kernel.scene import OF_LOAD, ROPE, SHIFT, Body, Freedom, Load, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Course, Method, Orbits, Run
-    from heuncli.kernel.tree import locate_point, set_coordinates, update_kinematics
-    from heuncli.kernel.values import PointMotion
+from heuncli.kernel.attitudes import GLOBAL, leave_chart
+from heuncli.kernel.bernstein import (
+    PARABOLA_END,
+    PARABOLA_MIDDLE,
+    PARABOLA_START,
+    bound_polynomial,
+    convert_rows,
+    differentiate,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.enclosure import enclose
+from heuncli.kernel.intervals import all_numbers, magnitude
+from heuncli.kernel.load_ranges import bound_load_variable, bounds_between, evaluate_load_end
+from heuncli.kernel.motion_bounds import bound_acceleration
+from heuncli.kernel.tree import locate_point, set_coordinates, update_kinematics
 
 # At an instant
 

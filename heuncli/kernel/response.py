@@ -9,47 +9,39 @@ Accelerations (49), velocity jumps (48), projection onto the closures and single
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Quaternion, Vec3, apply_small_rotation, dot, rotate_tensor
-    from heuncli.kernel.closures import (
-        apply_multipliers,
-        find_counter_rates,
-        measure_moving_rows,
-        measure_row,
-        required_acceleration,
-    )
-    from heuncli.kernel.joint_friction import (
-        apply_friction,
-        apply_unit_friction,
-        find_normal_forces,
-        record_contact_forces,
-        restore_applied_loads,
-        store_applied_loads,
-    )
-    from heuncli.kernel.loads import apply_loads
-    from heuncli.kernel.orthogonal import factor_closures, solve_closures
-    from heuncli.kernel.scene import APART, ArtificialInertia, Body, Closure, Freedom, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import (
-        add_zero_accelerations,
-        balance_joints,
-        factor_tree,
-        factor_with_loads,
-        push_artificial_load,
-        set_branch_loads,
-        set_full_branch_loads,
-        sweep_down,
-        sweep_up,
-        update_kinematics,
-        write_derivative,
-    )
+from heuncli.kernel.closures import (
+    apply_multipliers,
+    find_counter_rates,
+    measure_moving_rows,
+    measure_row,
+    required_acceleration,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.joint_friction import (
+    apply_friction,
+    apply_unit_friction,
+    find_normal_forces,
+    record_contact_forces,
+    restore_applied_loads,
+    store_applied_loads,
+)
+from heuncli.kernel.loads import apply_loads
+from heuncli.kernel.orthogonal import factor_closures, solve_closures
+from heuncli.kernel.tree import (
+    add_zero_accelerations,
+    balance_joints,
+    factor_tree,
+    factor_with_loads,
+    push_artificial_load,
+    set_branch_loads,
+    set_full_branch_loads,
+    sweep_down,
+    sweep_up,
+    update_kinematics,
+    write_derivative,
+)
 
 
 def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:

@@ -12,18 +12,8 @@ speed, not a pose. c moves along the rim and along the plane, and so does not mo
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.scene import BALL_ROLLS, BALL_TOUCHES, ROLLS, ROLLS_ASIDE, Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PointKinematics, VectorRate, WheelContact
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
 
 
 def measure_rolling(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

@@ -14,22 +14,11 @@ on a sheave changes with its strands.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Vec3, dot, norm, sub
-    from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import ROD, STRAND, Closure, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Orbits
-    from heuncli.kernel.values import LengthBounds
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import INFINITY
+from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
 
 
 def bound_rope(

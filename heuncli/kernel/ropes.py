@@ -10,18 +10,9 @@ A rope that only pulls stores nothing if it is shorter than l0: it is slack ther
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.conditions import measure_condition, set_load_places
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import Closure, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import RopeMotion
+from heuncli.kernel.conditions import measure_condition, set_load_places
+from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import jet
 
 
 def measure_rope(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:

@@ -5,17 +5,10 @@ What is computed at a state depends on these rows too: another set of independen
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.orthogonal import list_coupled_rows
-    from heuncli.kernel.response import project_state
-    from heuncli.kernel.scene import Closure, Scene
-    from heuncli.kernel.selection import order_all, select_independent_rows
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.orthogonal import list_coupled_rows
+from heuncli.kernel.response import project_state
+from heuncli.kernel.selection import order_all, select_independent_rows
 
 
 def choose_rows_again(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:

@@ -7,21 +7,13 @@ longer levers are shortened to that. Redundancy is decided from the same matrix 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Vec3, add, add_cross, cross, dot, inverse_form, sub
-    from heuncli.kernel.closures import add_unit_loads, clear_path, measure_rows
-    from heuncli.kernel.conditions import condition, condition_count
-    from heuncli.kernel.orthogonal import factor_closures, list_coupled_rows, response_of_sides, set_inertia_roots
-    from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Island, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import factor_tree, project_on_freedom, update_kinematics
+from heuncli.kernel.closures import add_unit_loads, clear_path, measure_rows
+from heuncli.kernel.conditions import condition, condition_count
+from heuncli.kernel.declarations import *
+from heuncli.kernel.orthogonal import factor_closures, list_coupled_rows, response_of_sides, set_inertia_roots
+from heuncli.kernel.tree import factor_tree, project_on_freedom, update_kinematics
 
 
 def select_independent_rows(

@@ -14,20 +14,10 @@ pull differs from the tension by (h/l)^2/2 at most if the strand is long compare
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, sqrt
 
-if not cython.compiled:
-    from math import atan2, sqrt
-
-    from heuncli.kernel.algebra import Vec3, add_scaled, cross, dot, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.scene import Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PointKinematics, Strand, StrandRate
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
 
 FULL_TURN = 6.283185307179586
 NEARLY_ROUND = 5.497787143782138  # 7/4 pi: a larger angle counts as a negative arc

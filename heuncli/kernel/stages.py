@@ -5,18 +5,10 @@ A method is data (integration/methods).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.dense import clip_time, combine_stages, evaluate_stage
-    from heuncli.kernel.landing import record_stage
-    from heuncli.kernel.scene import Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time, combine_stages, evaluate_stage
+from heuncli.kernel.landing import record_stage
 
 
 def evaluate_explicit_stages(

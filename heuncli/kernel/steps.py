@@ -5,78 +5,68 @@ Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.4-
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, pow, sqrt
 
-if not cython.compiled:
-    from math import fabs, pow, sqrt
-
-    from heuncli.kernel.algebra import Vec3, norm
-    from heuncli.kernel.attitudes import (
-        drop_small_parts,
-        enter_chart,
-        find_half_turn,
-        half_turn_rate,
-        leave_chart,
-        measure_turns_left,
-    )
-    from heuncli.kernel.collocation import collocate, collocate_to
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, find_reopened_contact, start_contacts
-    from heuncli.kernel.dense import (
-        CONTACT_EVENT,
-        EVENT_CHATTER,
-        NO_EVENT,
-        REPEAT_TO,
-        clip_time,
-        combine_stages,
-        ensure_interpolant,
-        interpolate,
-        record_course,
-        store_chart_slopes,
-    )
-    from heuncli.kernel.evaluator import evaluate_program
-    from heuncli.kernel.events import follow_angles, hold_branches
-    from heuncli.kernel.following import follow_drives, is_determined, prepare_step, project_sample
-    from heuncli.kernel.judging import (
-        ACCEPTED,
-        AGAIN,
-        CHATTERING,
-        CLOSURES_LOST,
-        COLLAPSED,
-        HALF_TURN,
-        LET_GO,
-        MORE,
-        NOT_A_NUMBER,
-        REACHED,
-        ROPE_SLACK,
-        STIFF,
-        STRUCK,
-        TURNED,
-        UNSOLVED,
-        assess_step,
-        growth_factor,
-        weighted_norm,
-    )
-    from heuncli.kernel.landing import begin_step_extremes, find_events_of_step, is_in_flurry, record_stage
-    from heuncli.kernel.points import evaluate_variables
-    from heuncli.kernel.programs import HELD, TAKEN
-    from heuncli.kernel.response import (
-        evaluate,
-        evaluate_projected,
-        must_choose_rows,
-        project_evaluated_state,
-        project_state,
-    )
-    from heuncli.kernel.row_choice import choose_rows_again, restore_choice, save_choice
-    from heuncli.kernel.scene import Body, Group, Scene
-    from heuncli.kernel.selection import select_independent_rows
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stages import evaluate_explicit_stages, step_to_instant
-    from heuncli.kernel.stepping import Method, Run
-    from heuncli.kernel.stiffness import estimate_stiffness, is_stability_limited
+from heuncli.kernel.attitudes import (
+    drop_small_parts,
+    enter_chart,
+    find_half_turn,
+    half_turn_rate,
+    leave_chart,
+    measure_turns_left,
+)
+from heuncli.kernel.collocation import collocate, collocate_to
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, find_reopened_contact, start_contacts
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import (
+    CONTACT_EVENT,
+    EVENT_CHATTER,
+    NO_EVENT,
+    REPEAT_TO,
+    clip_time,
+    combine_stages,
+    ensure_interpolant,
+    interpolate,
+    record_course,
+    store_chart_slopes,
+)
+from heuncli.kernel.evaluator import evaluate_program
+from heuncli.kernel.events import follow_angles, hold_branches
+from heuncli.kernel.following import follow_drives, is_determined, prepare_step, project_sample
+from heuncli.kernel.judging import (
+    ACCEPTED,
+    AGAIN,
+    CHATTERING,
+    CLOSURES_LOST,
+    COLLAPSED,
+    HALF_TURN,
+    LET_GO,
+    MORE,
+    NOT_A_NUMBER,
+    REACHED,
+    ROPE_SLACK,
+    STIFF,
+    STRUCK,
+    TURNED,
+    UNSOLVED,
+    assess_step,
+    growth_factor,
+    weighted_norm,
+)
+from heuncli.kernel.landing import begin_step_extremes, find_events_of_step, is_in_flurry, record_stage
+from heuncli.kernel.points import evaluate_variables
+from heuncli.kernel.response import (
+    evaluate,
+    evaluate_projected,
+    must_choose_rows,
+    project_evaluated_state,
+    project_state,
+)
+from heuncli.kernel.row_choice import choose_rows_again, restore_choice, save_choice
+from heuncli.kernel.selection import select_independent_rows
+from heuncli.kernel.stages import evaluate_explicit_stages, step_to_instant
+from heuncli.kernel.stiffness import estimate_stiffness, is_stability_limited
 
 CODES = {
     "reached": REACHED,

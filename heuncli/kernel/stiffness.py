@@ -14,17 +14,9 @@ Hairer, Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import sqrt
 
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.scene import Group
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
+from heuncli.kernel.declarations import *
 
 
 def estimate_stiffness(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:

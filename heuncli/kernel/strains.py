@@ -7,20 +7,11 @@ l = |x_b - x_a|,  l' = n . (v_b - v_a)
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, sqrt
 
-if not cython.compiled:
-    from math import atan2, sqrt
-
-    from heuncli.kernel.algebra import Mat3, Quaternion, Vec3, dot, norm, product, rotate_back, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.ropes import free_length, measure_rope
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import RopeMotion
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.ropes import free_length, measure_rope
 
 
 def bushing_axes(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Mat3:

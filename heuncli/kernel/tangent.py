@@ -11,50 +11,18 @@ ds . F, because its direction turns. A ball's equation is M = 0 of its own body,
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import (
-        Quaternion,
-        Vec3,
-        add,
-        add_cross,
-        add_scaled,
-        cross,
-        dot,
-        quaternion_rate,
-        rotate_back,
-        rotate_tensor,
-        sub,
-    )
-    from heuncli.kernel.closures import apply_multipliers
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.loads import body_omega
-    from heuncli.kernel.orthogonal import solve_closures
-    from heuncli.kernel.response import evaluate, find_artificial_loads
-    from heuncli.kernel.scene import (
-        SHIFT,
-        ArtificialInertia,
-        Body,
-        BodyAtState,
-        BodyTangent,
-        Closure,
-        Counter,
-        Freedom,
-        FreedomTangent,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_closures import add_closure_tangents
-    from heuncli.kernel.tangent_friction import add_friction_tangent, find_joint_load_tangents
-    from heuncli.kernel.tangent_loads import add_load_tangents
-    from heuncli.kernel.tangent_motion import differentiate_motion, omega_tangent, vector_tangent
-    from heuncli.kernel.tangent_strains import set_variable_slopes
-    from heuncli.kernel.tangent_tracks import track_speed_tangent
-    from heuncli.kernel.tree import balance_joints, project_on_freedom, push_artificial_load, sweep_down
+from heuncli.kernel.closures import apply_multipliers
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import body_omega
+from heuncli.kernel.orthogonal import solve_closures
+from heuncli.kernel.response import evaluate, find_artificial_loads
+from heuncli.kernel.tangent_closures import add_closure_tangents
+from heuncli.kernel.tangent_friction import add_friction_tangent, find_joint_load_tangents
+from heuncli.kernel.tangent_loads import add_load_tangents
+from heuncli.kernel.tangent_motion import differentiate_motion, omega_tangent, vector_tangent
+from heuncli.kernel.tangent_strains import set_variable_slopes
+from heuncli.kernel.tangent_tracks import track_speed_tangent
+from heuncli.kernel.tree import balance_joints, project_on_freedom, push_artificial_load, sweep_down
 
 
 def evaluate_base_state(

@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, add, dot, rotate, rotate_back, sub
-    from heuncli.kernel.bushings import bushing_moment_tangent, multiply_components
-    from heuncli.kernel.loads import evaluate_load_vector
-    from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import bushing_axes
-    from heuncli.kernel.tangent_motion import vector_tangent
-    from heuncli.kernel.tangent_strains import strain_tangent
-    from heuncli.kernel.values import BushingTangent
+from heuncli.kernel.bushings import bushing_moment_tangent, multiply_components
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import evaluate_load_vector
+from heuncli.kernel.strains import bushing_axes
+from heuncli.kernel.tangent_motion import vector_tangent
+from heuncli.kernel.tangent_strains import strain_tangent
 
 
 def bushing_tangent(

@@ -6,26 +6,16 @@ Each kind's rate and acceleration are written from the motion of the two bodies'
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.cams import cam_tangent
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.loads import body_omega
-    from heuncli.kernel.scene import ALONG, CAM, DOT, GUIDE, MESH, ROD, STRAND, TOUCHES, TRACK, TURN, Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_meshing import mesh_tangent
-    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
-    from heuncli.kernel.tangent_points import alpha_tangent, body_alpha, point_acceleration, point_motion_tangent
-    from heuncli.kernel.tangent_rolling import rolling_tangent
-    from heuncli.kernel.tangent_sheaves import strand_tangent
-    from heuncli.kernel.tangent_tracks import track_row_tangent
-    from heuncli.kernel.values import MotionTangent, RowTangent
+from heuncli.kernel.cams import cam_tangent
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import body_omega
+from heuncli.kernel.tangent_meshing import mesh_tangent
+from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
+from heuncli.kernel.tangent_points import alpha_tangent, body_alpha, point_acceleration, point_motion_tangent
+from heuncli.kernel.tangent_rolling import rolling_tangent
+from heuncli.kernel.tangent_sheaves import strand_tangent
+from heuncli.kernel.tangent_tracks import track_row_tangent
 
 
 def condition_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:

@@ -9,43 +9,22 @@ then acts as friction as N_k does, and has the same kind of response.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scale_vector, sub
-    from heuncli.kernel.closures import apply_multipliers
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.joint_friction import (
-        FORCE_CHANGE,
-        find_normal_force_tangent,
-        joint_force,
-        joint_moment,
-        store_end_forces,
-        store_force_parts,
-        thread_thrust,
-    )
-    from heuncli.kernel.loads import sliding_velocity
-    from heuncli.kernel.scene import (
-        ENDS,
-        SHIFT_FRICTION,
-        THREAD_FRICTION,
-        THRUST_OF_ROW,
-        WHOLE,
-        BodyAtState,
-        BodyTangent,
-        Closure,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_closures import row_tangent
-    from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
-    from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
-    from heuncli.kernel.tree import balance_joints, locate_point
-    from heuncli.kernel.values import LoadTangent
+from heuncli.kernel.closures import apply_multipliers
+from heuncli.kernel.declarations import *
+from heuncli.kernel.joint_friction import (
+    FORCE_CHANGE,
+    find_normal_force_tangent,
+    joint_force,
+    joint_moment,
+    store_end_forces,
+    store_force_parts,
+    thread_thrust,
+)
+from heuncli.kernel.loads import sliding_velocity
+from heuncli.kernel.tangent_closures import row_tangent
+from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
+from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
+from heuncli.kernel.tree import balance_joints, locate_point
 
 
 def find_joint_load_tangents(scene: cython.pointer[Scene]) -> cython.void:

@@ -6,50 +6,26 @@ itself is in the scene as found at the state.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import tanh
 
-if not cython.compiled:
-    from math import tanh
-
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.jets import slope
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.loads import (
-        acts_about_axis,
-        body_omega,
-        is_bushing,
-        is_friction,
-        relative_motion,
-        slides_in_joint,
-        sliding_velocity,
-    )
-    from heuncli.kernel.scene import (
-        ACTUATOR,
-        BUSHING_SHIFT,
-        COUPLE,
-        FORCE,
-        ROPE,
-        SPRING,
-        THREAD_FRICTION,
-        TURN_SPRING,
-        Body,
-        BodyTangent,
-        Closure,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_bushings import bushing_tangent
-    from heuncli.kernel.tangent_conditions import condition_tangent
-    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
-    from heuncli.kernel.tangent_ropes import rope_power_tangent, rope_tangent
-    from heuncli.kernel.tangent_strains import line_tangent
-    from heuncli.kernel.tree import locate_point
-    from heuncli.kernel.values import BushingTangent, LineTangent, LoadTangent, PointMotion, RowTangent
+from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import slope
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.loads import (
+    acts_about_axis,
+    body_omega,
+    is_bushing,
+    is_friction,
+    relative_motion,
+    slides_in_joint,
+    sliding_velocity,
+)
+from heuncli.kernel.tangent_bushings import bushing_tangent
+from heuncli.kernel.tangent_conditions import condition_tangent
+from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
+from heuncli.kernel.tangent_ropes import rope_power_tangent, rope_tangent
+from heuncli.kernel.tangent_strains import line_tangent
+from heuncli.kernel.tree import locate_point
 
 
 def add_load_tangents(scene: cython.pointer[Scene]) -> cython.double:

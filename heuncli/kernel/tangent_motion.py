@@ -9,27 +9,7 @@ equations.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scale_vector, sub, transform
-    from heuncli.kernel.scene import (
-        SHIFT,
-        TURN_IN_BODY,
-        TURN_IN_PARENT,
-        Body,
-        BodyAtState,
-        BodyTangent,
-        Freedom,
-        FreedomTangent,
-        Scene,
-        Variable,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PointMotion
+from heuncli.kernel.declarations import *
 
 
 def differentiate_motion(scene: cython.pointer[Scene], y: cython.p_double, direction: cython.p_double) -> cython.void:

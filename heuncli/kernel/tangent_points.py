@@ -2,16 +2,7 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, centripetal, cross, sub
-    from heuncli.kernel.scene import Body, BodyAtState, BodyTangent, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import MotionTangent
+from heuncli.kernel.declarations import *
 
 
 def point_acceleration(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Vec3:

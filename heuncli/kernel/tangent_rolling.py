@@ -7,28 +7,12 @@ A vector comes with its rate, with its change along the direction, and with the 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion
-    from heuncli.kernel.loads import body_omega
-    from heuncli.kernel.rolling import centre_rate, cross_rate, direction_rate, sum_rate
-    from heuncli.kernel.scene import BALL_ROLLS, BALL_TOUCHES, ROLLS, ROLLS_ASIDE, Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
-    from heuncli.kernel.tangent_points import point_acceleration, point_motion_tangent
-    from heuncli.kernel.values import (
-        MotionTangent,
-        PointMotion,
-        RowTangent,
-        VectorRate,
-        VectorRateTangent,
-        WheelTangent,
-    )
+from heuncli.kernel.carried_points import point_motion
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import body_omega
+from heuncli.kernel.rolling import centre_rate, cross_rate, direction_rate, sum_rate
+from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
+from heuncli.kernel.tangent_points import point_acceleration, point_motion_tangent
 
 
 def rolling_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:

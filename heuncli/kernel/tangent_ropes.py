@@ -2,20 +2,10 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import dot, sub
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.ropes import free_length, rope_stiffness, rope_stretch
-    from heuncli.kernel.scene import Closure, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_conditions import condition_tangent
-    from heuncli.kernel.tangent_sheaves import body_rotation, point_displacement
-    from heuncli.kernel.values import RopeMotion
+from heuncli.kernel.declarations import *
+from heuncli.kernel.ropes import free_length, rope_stiffness, rope_stretch
+from heuncli.kernel.tangent_conditions import condition_tangent
+from heuncli.kernel.tangent_sheaves import body_rotation, point_displacement
 
 
 def rope_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:

@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion
-    from heuncli.kernel.loads import body_omega
-    from heuncli.kernel.scene import Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.sheaves import find_strand, find_strand_rate
-    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent
-    from heuncli.kernel.tangent_points import alpha_tangent, body_alpha, point_acceleration, point_motion_tangent
-    from heuncli.kernel.values import MotionTangent, RowTangent, Strand, StrandRate
+from heuncli.kernel.carried_points import point_motion
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import body_omega
+from heuncli.kernel.sheaves import find_strand, find_strand_rate
+from heuncli.kernel.tangent_motion import omega_tangent, point_tangent
+from heuncli.kernel.tangent_points import alpha_tangent, body_alpha, point_acceleration, point_motion_tangent
 
 
 def strand_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:

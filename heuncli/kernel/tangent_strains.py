@@ -6,26 +6,17 @@ dd = T' (dD - t x D),   dphi = J^-1 T' (t_b - t_a)                  t: rotation 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_scaled, dot, norm, rotate, rotate_back, scale_vector, sub
-    from heuncli.kernel.bushings import rotation_vector_rate
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, OF_LOAD, ROPE, Load, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import (
-        bushing_axes,
-        bushing_strain,
-        find_span_vector,
-        separation_velocity,
-        vector_component,
-    )
-    from heuncli.kernel.tangent_motion import point_tangent, rotation_tangent, vector_tangent
-    from heuncli.kernel.tangent_ropes import rope_tangent
-    from heuncli.kernel.values import LineTangent, PointMotion, RopeMotion
+from heuncli.kernel.bushings import rotation_vector_rate
+from heuncli.kernel.declarations import *
+from heuncli.kernel.strains import (
+    bushing_axes,
+    bushing_strain,
+    find_span_vector,
+    separation_velocity,
+    vector_component,
+)
+from heuncli.kernel.tangent_motion import point_tangent, rotation_tangent, vector_tangent
+from heuncli.kernel.tangent_ropes import rope_tangent
 
 
 def set_variable_slopes(scene: cython.pointer[Scene]) -> cython.void:

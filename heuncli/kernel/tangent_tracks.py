@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.loads import body_omega
-    from heuncli.kernel.scene import TRACK, Closure, Freedom, FreedomTangent, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, rotation_tangent, vector_tangent
-    from heuncli.kernel.tangent_points import point_acceleration, point_motion_tangent
-    from heuncli.kernel.tracks import find_track_frame, find_world_track_place
-    from heuncli.kernel.values import MotionTangent, PathPoint, PlaceTangent, RowTangent, TrackFrame
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import body_omega
+from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, rotation_tangent, vector_tangent
+from heuncli.kernel.tangent_points import point_acceleration, point_motion_tangent
+from heuncli.kernel.tracks import find_track_frame, find_world_track_place
 
 
 def track_row_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:

@@ -13,24 +13,14 @@ state, so that the point stays on its branch of a path that crosses itself. Outs
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.paths import evaluate_path, offset_path
 
-    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, rotate_back, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.paths import evaluate_path, offset_path
-    from heuncli.kernel.scene import TRACK, Closure, Freedom, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PathPoint, PointKinematics, TrackFrame
-
-    MAX_PLACE_ITERATIONS = 24  # Newton's steps to a place
+MAX_PLACE_ITERATIONS = 24  # Newton's steps to a place
 
 
 def measure_track(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

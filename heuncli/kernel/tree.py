@@ -15,77 +15,20 @@ velocity terms, prescribed accelerations and gravity count: without them the res
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import (
-        Mat3,
-        Quaternion,
-        Vec3,
-        add,
-        add_cross,
-        add_matrix,
-        add_scaled,
-        add_symmetric,
-        add_symmetric_part,
-        add_transformed,
-        both_levers,
-        cross,
-        dot,
-        factor,
-        lever,
-        lever_rows,
-        product,
-        quaternion_rate,
-        rotate,
-        rotate_back,
-        rotate_tensor,
-        rotation,
-        rotation_matrix,
-        scale_vector,
-        scaled_unit_matrix,
-        skew,
-        solve,
-        solve_columns,
-        sub,
-        sub_dyad,
-        sub_product,
-        sub_square,
-        trace,
-        transform,
-        unit_matrix,
-    )
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.paths import place_on_path
-    from heuncli.kernel.plane import (
-        add_zero_accelerations_in_plane,
-        balance_in_plane,
-        factor_in_plane,
-        move_in_plane,
-        set_branch_loads_in_plane,
-        set_full_branch_loads_in_plane,
-        sweep_down_in_plane,
-        sweep_up_in_plane,
-    )
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import (
-        OF_LOAD,
-        SHIFT,
-        TURN_IN_BODY,
-        TURN_IN_PARENT,
-        ArtificialInertia,
-        Body,
-        Freedom,
-        Scene,
-        Variable,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import evaluate_load_variable
-    from heuncli.kernel.values import PointMotion
+from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import jet
+from heuncli.kernel.paths import place_on_path
+from heuncli.kernel.plane import (
+    add_zero_accelerations_in_plane,
+    balance_in_plane,
+    factor_in_plane,
+    move_in_plane,
+    set_branch_loads_in_plane,
+    set_full_branch_loads_in_plane,
+    sweep_down_in_plane,
+    sweep_up_in_plane,
+)
+from heuncli.kernel.strains import evaluate_load_variable
 
 
 def set_coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:

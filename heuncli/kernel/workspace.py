@@ -16,34 +16,24 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.allocation import allocate_work, copy_tables, set_numbers
-    from heuncli.kernel.answers import (
-        find_joint_loads,
-        recover_states,
-        set_contact_modes,
-        write_jacobian,
-        write_measured_state,
-    )
-    from heuncli.kernel.closures import measure_rows
-    from heuncli.kernel.columns import measure_row_responses, solve_column, solve_impulse
-    from heuncli.kernel.expressions import Expressions
-    from heuncli.kernel.jacobian import find_jacobian, find_motions
-    from heuncli.kernel.memory import Memory
-    from heuncli.kernel.programs import FREE, HELD, TAKEN
-    from heuncli.kernel.response import configure, evaluate, must_choose_rows, project_state
-    from heuncli.kernel.row_choice import choose_rows_again, set_row_threshold
-    from heuncli.kernel.scene import Scene
-    from heuncli.kernel.selection import select_independent_rows
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Tangent
-    from heuncli.kernel.tree import factor_tree, update_kinematics
-    from heuncli.kernel.values import Instants
+from heuncli.kernel.allocation import allocate_work, copy_tables, set_numbers
+from heuncli.kernel.answers import (
+    find_joint_loads,
+    recover_states,
+    set_contact_modes,
+    write_jacobian,
+    write_measured_state,
+)
+from heuncli.kernel.closures import measure_rows
+from heuncli.kernel.columns import measure_row_responses, solve_column, solve_impulse
+from heuncli.kernel.declarations import *
+from heuncli.kernel.expressions import Expressions
+from heuncli.kernel.jacobian import find_jacobian, find_motions
+from heuncli.kernel.memory import Memory
+from heuncli.kernel.response import configure, evaluate, must_choose_rows, project_state
+from heuncli.kernel.row_choice import choose_rows_again, set_row_threshold
+from heuncli.kernel.selection import select_independent_rows
+from heuncli.kernel.tree import factor_tree, update_kinematics
 
 
 class Workspace:
