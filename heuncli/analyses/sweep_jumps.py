@@ -75,7 +75,7 @@ class JumpFinder:
         if isinstance(x, str):
             return
         for k, window in enumerate(self._windows):
-            one = row.answer.measures[k] if row.answer.measures else None
+            one = row.result.measures[k] if row.result.measures else None
             value = math.nan if one is None or one.value is None else one.value
             window.append(SweptSample(row.number, x, value, (one and one.error) or 0.0))
         self._judge(from_end=3)

@@ -320,7 +320,7 @@ parameters: {{u0: 1}}
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies: {{b: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{p: [0, 0, 0]}}}}}}
 joints: {{g: {{type: slide, from: ground.O, to: b.p, axis: [1, 0, 0], initial: {{travel: 0, speed: 1}}}}}}
-forces: {{push: {{type: force, on: b.p, vector: [2, 0, 0]}}, across: {{type: {kind}}}}}
+forces: {{push: {{type: force, on: b.p, vector: [2, 0, 0]}}, across: {kind}}}
 analysis: {{times: [0, 0.05, 0.15, 0.2, 0.35, 0.4]}}
 """,
         reduce=reduce,

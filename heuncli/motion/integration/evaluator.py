@@ -185,7 +185,7 @@ class Evaluator:
         for k, contact in enumerate(self.layout.contacts):
             row = rows[:, contact.row]
             is_opening[:, k] = -contact.sense * row["acceleration"] > allowed_residual * row["terms"]
-        return is_opening & (np.asarray(contact_states) == CLOSED_BY_OTHERS)
+        return np.asarray(is_opening & (np.asarray(contact_states) == CLOSED_BY_OTHERS))
 
     def _recover(self, inputs: dict[str, Array], outputs: dict[str, Array], hold_rows: bool, causes: bool) -> None:
         """Call the kernel in batches of instants; the output arrays, the states among them, are written in place.

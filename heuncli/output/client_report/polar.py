@@ -32,8 +32,8 @@ def _is_firing(item: Item) -> bool:
     return isinstance(item, Spot) and item.shape == "diamond"
 
 
-def _is_largest(item: Item) -> bool:
-    return isinstance(item, Spot) and item.is_filled and item.shape == "circle"
+def _is_largest(item: Spot) -> bool:
+    return item.is_filled and item.shape == "circle"
 
 
 def _shorten_panel(panel: Panel) -> Panel:
@@ -69,7 +69,8 @@ def make_polar_parts(data: ReportData) -> list[Part]:
             continue
         case = f", load case {greatest.run.case_label}" if greatest.run.name else ""
         firing = ", filled: peaks of actuators" if any(map(_is_firing, figure.panels[0].items)) else ""
-        largest = next((item.text for item in figure.panels[0].items if _is_largest(item)), "")
+        spots = [item for item in figure.panels[0].items if isinstance(item, Spot)]
+        largest = next((spot.text for spot in spots if _is_largest(spot)), "")
         words = describe_object("joints", name, data.labels)
         caption = f"{words}: force{case}{f', greatest {largest}' if largest else ''}; marks: crank angle{firing}"
         figure = figure._replace(

@@ -61,7 +61,9 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
         if not is_claimed(run.study):
             yield Sentence(f"{name} has no diagram: all output times are past the horizon.")
             continue
-        figure = make_diagrams([FigureSource("", run.study)], [name], data.units, known=_collect_extremes(run, name))
+        figure = make_diagrams(
+            [FigureSource("", run.study)], [name], data.units, known_extremes=_collect_extremes(run, name)
+        )
         figure = figure._replace(title="", words=())
         case = f", load case {run.case_label}" if run.name else ""
         words = describe_object("sections", name, data.labels)

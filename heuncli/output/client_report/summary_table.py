@@ -56,9 +56,11 @@ def _read_extremes(run: ReportedRun) -> SearchedPage:
             continue
         known.append(path)
         first = float(run.results.time[0])
-        low, high = ([math.nan if isinstance(end.value, str) else end.value, first if end.time is None else end.time]
-                     for end in (ends.low, ends.high))  # fmt: skip
-        rows.append([*low, *high])
+        ends_found = [
+            (math.nan if isinstance(end.value, str) else end.value, first if end.time is None else end.time)
+            for end in (ends.low, ends.high)
+        ]
+        rows.append([*ends_found[0], *ends_found[1]])
         places.append((_parse_place(ends.low.place), _parse_place(ends.high.place)))
     low, low_at, high, high_at = np.array(rows).reshape(-1, 4).T
     column = np.zeros(len(known), dtype=np.intp)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.study.quantities.digits import Style, format_with_error, trim_zeros
+from heuncli.study.quantities.digits import Style, format_with_error, trim_zeros, write_numbers
 
 if TYPE_CHECKING:
     from heuncli.output.drawing.figure import Figure
@@ -206,9 +206,11 @@ def make_panels(figure: Figure) -> list[Drawing]:
 
 def format_cell(cell: Cell) -> str:
     """Format a cell as text, without escaping it."""
+    if isinstance(cell, NumberCell):  # most cells
+        return cell.cached_text or cell.text
     if isinstance(cell, str):
         return cell
-    if isinstance(cell, (TextCell, NumberCell)):
+    if isinstance(cell, TextCell):
         return cell.text
     return "" if cell is None else str(cell) if isinstance(cell, int) else f"{cell:.6g}"
 
@@ -225,7 +227,8 @@ def make_text_columns(heads: Iterable[str]) -> tuple[OutputColumn, ...]:
 
 def make_number_cells(values: Sequence[float], style: Style, error: float = 0.0) -> list[NumberCell]:
     """Make the cells of numbers of one family, without the zeros that they would all end in."""
-    return trim_cells([(value, error, style) for value in values])
+    texts = write_numbers(values, style)
+    return [NumberCell(value, error, None, text) for value, text in zip(values, texts, strict=True)]
 
 
 def trim_cells(numbers: Sequence[tuple[float, float, Style]]) -> list[NumberCell]:

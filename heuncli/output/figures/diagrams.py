@@ -64,18 +64,18 @@ def make_diagrams(
     units: Units,
     times: Sequence[float] | None = None,
     tension_side: bool = False,
-    known: BarExtremes | None = None,
+    known_extremes: BarExtremes | None = None,
 ) -> Figure:
     """Make the section diagrams of some series of cuts, of one run or of several over each other.
 
     times: instants [s] within all runs and before their horizons, a curve each; by default the range over the whole run
-    known: extremes of the only series of cuts over the only run, if they are searched already
+    known_extremes: of the only series of cuts over the only run, if they are searched already
     """
     panels, notes, legend = list[Panel](), list[str](), list[tuple[str, int]]()
     words = [sentence for source in sources for sentence in _describe_source(source, times)]
     headings, has_bands = dict[str, None](), False
     for name in names:
-        bars = list(_make_bars(sources, name, times, known))
+        bars = list(_make_bars(sources, name, times, known_extremes))
         for source in sources:
             headings[_make_heading(source, name)] = None
         for bar in bars:
@@ -93,7 +93,7 @@ def make_diagrams(
 
 
 def _make_bars(
-    sources: Sequence[FigureSource], name: str, given_times: Sequence[float] | None, known: BarExtremes | None
+    sources: Sequence[FigureSource], name: str, given_times: Sequence[float] | None, known_extremes: BarExtremes | None
 ) -> Iterator[BarCurves]:
     """Yield the curves of a section, each with its pen."""
     number = 0
@@ -103,7 +103,7 @@ def _make_bars(
             require_claimed(source.study)
         times = bar.instants
         if given_times is None and len(times) > 1:
-            ranges = bar.make_ranges(known)
+            ranges = bar.make_ranges(known_extremes)
             yield BarCurves(
                 source.name, number, bar, {q: load_range.main_line for q, load_range in ranges.items()}, ranges
             )

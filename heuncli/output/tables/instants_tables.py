@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, format_cell
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, make_cells
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import (
@@ -42,7 +42,8 @@ def make_instants_tables(
         columns = [OutputColumn(label, unit=units[label], vector=vectors[label]) for label in labels]
         lead, rows = layout(block, groups, labels, cells, times)
         tables += [OutputTable("" if tables else block.heading, (*lead, *columns), tuple(rows))] if labels else []
-    shown = {format_cell(cell) for table in tables for row in table.rows if not isinstance(row, str) for cell in row}
+    shown_rows = [row for table in tables for row in table.rows if not isinstance(row, str)]
+    shown = {cell.cached_text if isinstance(cell, NumberCell) else cell for row in shown_rows for cell in row}
     notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in shown]
     if not tables:
         return [OutputTable(block.heading, notes=("all values 0",))]
@@ -99,6 +100,9 @@ def make_group_cells(
     words = [{OPEN: UNKNOWN if t in certain.singular_times else block.missing[0]} for t in times.tolist()]
     cells: dict[str, list[Cell]] = {}
     for row, numbers_of_row in zip(group.rows, make_cells(group, numbers, certain), strict=True):
+        if all(within_horizon) and not np.isnan(row.values).any():
+            cells[row.label] = [*numbers_of_row]
+            continue
         cells_of_row: list[Cell] = [
             cell if is_known else format_unclaimed(value, row.unit, certain, cell.text)
             for value, cell, is_known in zip(row.values.tolist(), numbers_of_row, within_horizon, strict=True)
@@ -114,7 +118,7 @@ def _find_nonzero_labels(groups: Sequence[RowGroup], cells: Cells) -> list[str]:
         vector_of_label[label]
         for cells_by_label in cells.values()
         for label, cells_of_label in cells_by_label.items()
-        if set(map(format_cell, cells_of_label)) != {"0"}
+        if any(format_cell(cell) != "0" for cell in cells_of_label)
     }
     return [label for label in _order_labels(groups) if vector_of_label[label] in shown]
 

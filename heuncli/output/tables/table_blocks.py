@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.document import NumberCell, trim_cells
+from heuncli.output.documents.document import NumberCell
 from heuncli.output.tables.table_plans import MASS_EFFECT, TablePlan
 from heuncli.results.results import Array, Results
 from heuncli.results.results_schema import XYZ
@@ -23,6 +23,7 @@ from heuncli.study.quantities.digits import (
     StatedErrors,
     Style,
     largest_magnitude,
+    write_numbers,
 )
 from heuncli.study.quantities.labels import Labels
 
@@ -108,13 +109,12 @@ def make_cells(group: RowGroup, numbers: Array, certain: StatedErrors) -> list[l
     families = [_find_family(row) for row in group.rows]
     for family in dict.fromkeys(families):
         members = [i for i, other in enumerate(families) if other == family]
-        style = styles[members[0]]
-        numbers_of_family = shown[:, members].tolist()
-        flat = trim_cells(
-            [(value, errors[i], style) for row in numbers_of_family for i, value in zip(members, row, strict=True)]
-        )
+        values = shown[:, members].ravel().tolist()
+        texts = write_numbers(values, styles[members[0]])
         for column, member in enumerate(members):
-            cells[member] = flat[column :: len(members)]
+            own = slice(column, None, len(members))
+            numbers_of_row = zip(values[own], texts[own], strict=True)
+            cells[member] = [NumberCell(value, errors[member], None, text) for value, text in numbers_of_row]
     return cells
 
 

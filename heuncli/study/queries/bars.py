@@ -197,13 +197,13 @@ class WholeBar:
             lines[name] = BarLine(time, s, loads[name], *extremes_of_line)
         return lines
 
-    def make_ranges(self, known: BarExtremes | None = None) -> dict[str, BarRange]:
+    def make_ranges(self, known_extremes: BarExtremes | None = None) -> dict[str, BarRange]:
         """Make the ranges of all quantities along the bar over the run, up to its horizon.
 
-        known: the extremes, if they are searched already
+        known_extremes: those, if they are searched already
         """
         times = choose_curve_instants(self.study)
-        searched_extremes = self._search_extremes() if known is None else known
+        searched_extremes = self._search_extremes() if known_extremes is None else known_extremes
         all_extremes = [extreme for both in searched_extremes.values() for extreme in both]
         lines = {
             time: self.make_lines(time)
