@@ -137,7 +137,7 @@ def ball_rotation(body: cython.pointer[Body], z: cython.p_double, e: cython.p_do
     """Return the small rotation 2 e q^-1 for an error of a quaternion; the error of an angular velocity as it is."""
     k: cython.Py_ssize_t = body.rate_at if rates else body.attitude_at
     if rates:
-        return Vec3(e[k], e[k + 1], e[k + 2])
+        return read_vector(e, k)
     return Vec3(
         2.0 * (z[k] * e[k + 1] - z[k + 1] * e[k] + z[k + 2] * e[k + 3] - z[k + 3] * e[k + 2]),
         2.0 * (z[k] * e[k + 2] - z[k + 2] * e[k] + z[k + 3] * e[k + 1] - z[k + 1] * e[k + 3]),
@@ -160,7 +160,7 @@ def add_response(
             e[k + 2] += body.alpha.z
         elif body.ball:
             k = body.attitude_at
-            turn: Quaternion = quaternion_rate(Quaternion(z[k], z[k + 1], z[k + 2], z[k + 3]), body.alpha)
+            turn: Quaternion = quaternion_rate(read_quaternion(z, k), body.alpha)
             e[k] += turn.w
             e[k + 1] += turn.x
             e[k + 2] += turn.y

@@ -43,7 +43,7 @@ def state_component(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> cytho
 def is_still(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> cython.bint:
     """Return whether a variable is a rate that a closed contact keeps at 0."""
     variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-    return not variable.is_point and variable.is_rate and scene.freedoms[variable.freedom].still
+    return not variable.is_point and variable.is_rate and scene.freedoms[variable.freedom].is_held
 
 
 def set_zero_course(course: cython.pointer[Course], i: cython.Py_ssize_t) -> cython.void:

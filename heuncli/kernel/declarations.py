@@ -7,9 +7,9 @@ is in one module there (headers.py).
 from __future__ import annotations
 
 from heuncli.kernel.algebra import *
-from heuncli.kernel.directions import *
 from heuncli.kernel.programs import *
 from heuncli.kernel.scene import *
 from heuncli.kernel.shadow import cython as cython
 from heuncli.kernel.stepping import *
 from heuncli.kernel.values import *
+from heuncli.kernel.vectors import *

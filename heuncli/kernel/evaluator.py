@@ -87,7 +87,7 @@ def evaluate_program(programs: cython.pointer[Programs], program: Program) -> cy
         else:
             f: cython.double
             if op == HOLD:
-                f = evaluate_on_branch(programs, position, programs.held[k], stack[height - 1], x)
+                f = evaluate_on_branch(programs, position, programs.branches[k], stack[height - 1], x)
                 op = programs.code[position].op
                 k = programs.code[position].argument
                 position += 2 if op == TABLE or op == KNOT else 1
@@ -272,7 +272,7 @@ def record_branch(
         branch = find_unwrapped_piece(programs.tables[number], read_table(programs, position + 1, number), b)
     else:
         branch = apply_piecewise(op, b, 0)
-    programs.held[k] = branch
+    programs.branches[k] = branch
 
 
 def evaluate_on_branch(

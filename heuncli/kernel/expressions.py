@@ -117,7 +117,7 @@ class Expressions:
             self.programs.variables = [0.0] * max(variables, 1)
             self.programs.stack = [0.0] * depth
             self.programs.jets = [Jet(0.0, 0.0, 0.0)] * depth
-            self.programs.held = [0.0] * slots
+            self.programs.branches = [0.0] * slots
             self.programs.doubt = [0] * slots
             nothing = Bounds(NAN, NAN)
             self.programs.ranges = [Span(nothing, nothing, nothing)] * max(variables, 1)
@@ -145,7 +145,7 @@ class Expressions:
             self.programs.variables = cython.cast(cython.p_double, address_of(arrays[VARIABLE_MEMORY]))
             self.programs.stack = cython.cast(cython.p_double, address_of(arrays[STACK_MEMORY]))
             self.programs.jets = cython.cast(cython.pointer[Jet], address_of(arrays[JET_MEMORY]))
-            self.programs.held = cython.cast(cython.p_double, address_of(arrays[HELD_MEMORY]))
+            self.programs.branches = cython.cast(cython.p_double, address_of(arrays[HELD_MEMORY]))
             self.programs.doubt = cython.cast(cython.p_int, address_of(arrays[DOUBT_MEMORY]))
             self.programs.ranges = cython.cast(cython.pointer[Span], address_of(arrays[RANGE_MEMORY]))
             self.programs.middles = cython.cast(cython.pointer[Span], address_of(arrays[MIDDLE_MEMORY]))
@@ -169,7 +169,7 @@ class Expressions:
 
     def branches(self) -> list[float]:
         """Return the held branches in the order of the programs' HOLD instructions."""
-        return [self.programs.held[k] for k in range(self.held_count)]
+        return [self.programs.branches[k] for k in range(self.held_count)]
 
     def hold_branches(self, branches: Sequence[float]) -> None:
         """Set the branches to hold, one for each HOLD instruction."""
@@ -177,7 +177,7 @@ class Expressions:
         if len(branches) != self.held_count:
             raise ValueError(f"{self.held_count} branches are held, not {len(branches)}")
         for k in range(self.held_count):
-            self.programs.held[k] = branches[k]
+            self.programs.branches[k] = branches[k]
 
     def take_doubts(self) -> list[int]:
         """Return and clear the numbers of the branches that enclosures (enclosure.py) found in doubt since the last

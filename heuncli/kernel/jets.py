@@ -166,7 +166,7 @@ def jet_of_held(
     above.
     """
     op: cython.int = programs.code[position].op
-    f: Jet = jet_on_branch(programs, position, programs.held[k], programs.jets[height - 1], b)
+    f: Jet = jet_on_branch(programs, position, programs.branches[k], programs.jets[height - 1], b)
     if op >= LT and programs.code[position].argument == 1:
         programs.jets[height - 1] = f
         return b

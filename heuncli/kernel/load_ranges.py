@@ -47,7 +47,7 @@ def evaluate_load_end(
 
 def bound_load_variable(
     scene: cython.pointer[Scene],
-    points: cython.pointer[Orbits],
+    points: cython.pointer[PointCourse],
     i: cython.Py_ssize_t,
     T: cython.double,
     value: Bounds,
@@ -84,7 +84,7 @@ def bound_load_variable(
 
 def bound_load_motion(
     scene: cython.pointer[Scene],
-    points: cython.pointer[Orbits],
+    points: cython.pointer[PointCourse],
     load: cython.pointer[Load],
     i: cython.Py_ssize_t,
     T: cython.double,

@@ -22,7 +22,7 @@ from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_
 
 
 def bound_rope(
-    scene: cython.pointer[Scene], points: cython.pointer[Orbits], load: cython.pointer[Load], T: cython.double
+    scene: cython.pointer[Scene], points: cython.pointer[PointCourse], load: cython.pointer[Load], T: cython.double
 ) -> LengthBounds:
     """Bound all parts of a rope together, from their positions at the end of the interval."""
     i: cython.Py_ssize_t
@@ -40,7 +40,7 @@ def bound_rope(
     return LengthBounds(rate, second, bend, far, scene.limits.rounding)
 
 
-def bound_strand(points: cython.pointer[Orbits], part: cython.pointer[Closure], T: cython.double) -> Jet:
+def bound_strand(points: cython.pointer[PointCourse], part: cython.pointer[Closure], T: cython.double) -> Jet:
     """Bound one strand: its distance from the origin, and its rates; between two points the bodies' rotation has no
     effect.
     """

@@ -6,9 +6,8 @@ d(J' lambda)           at the present multipliers: applied to the bodies as load
 
 from __future__ import annotations
 
-from heuncli.kernel.conditions import condition, condition_count
+from heuncli.kernel.conditions import condition, condition_count, condition_tangent
 from heuncli.kernel.declarations import *
-from heuncli.kernel.tangent_conditions import condition_tangent
 from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
 
 

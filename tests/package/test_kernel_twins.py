@@ -91,9 +91,9 @@ def test_values(name: str) -> None:
 def test_a_struct_begins_as_zeros() -> None:
     """As C has it: numbers are 0, structs within a struct as well."""
     body = scene.Body.blank()
-    assert (body.parent, body.mass, body.r.y, body.A.zz, body.turning.xx) == (0, 0.0, 0.0, 0.0, 0.0)
+    assert (body.parent, body.mass, body.r.y, body.A.zz, body.A_factors.xx) == (0, 0.0, 0.0, 0.0, 0.0)
     made = scene.Scene.blank()
-    assert (made.limits.dodges, made.gravity.x, made.bodies) == (0, 0.0, None)
+    assert (made.limits.singular_retries, made.gravity.x, made.bodies) == (0, 0.0, None)
 
 
 def test_whole_numbers() -> None:
@@ -233,6 +233,6 @@ def test_every_module_is_included_line_for_line(tmp_path: Path) -> None:
 
 
 def test_answers_fill_their_records() -> None:
-    """Sizes as kernel/answers.py writes them."""
+    """Sizes as kernel/solutions.py writes them."""
     sizes = {"BODY": 30, "FREEDOM": 4, "LOAD": 20, "CLOSURE": 14, "PART": 16, "STATE": 4}
     assert {name: getattr(records, f"{name}_SOLUTION").itemsize // 8 for name in sizes} == sizes

@@ -22,7 +22,7 @@ from heuncli.multibody.tree.tables import ZERO, Program, Vector
 def index_rows(
     rows: Sequence[kernel.Closure], paths: Sequence[list[int]], bodies: Sequence[kernel.Body]
 ) -> tuple[list[kernel.Closure], array[int], int]:
-    """Return the closure rows with the positions of their paths, answers and couplings; the indices that these point
+    """Return the closure rows with the positions of their paths, velocities and couplings; the indices that these point
     into; and the total length of all columns.
 
     paths: tree indices, tips first, of each row
@@ -41,14 +41,14 @@ def index_rows(
     for row, path, coupled, filled in zip(rows, paths, *find_fill_in(paths), strict=True):
         key = (*path, -1, *filled)
         if key not in shared:
-            answers = [n for i in path for n in list_answers(bodies[i])]
-            more = [n for i in filled for n in list_answers(bodies[i])]
+            velocities = [n for i in path for n in list_velocities(bodies[i])]
+            more = [n for i in filled for n in list_velocities(bodies[i])]
             shared[key] = {
                 "path": append_data(path),
                 "path_count": len(path),
-                "answers": append_data(answers + more),
-                "answer_count": len(answers),
-                "filled_count": len(answers) + len(more),
+                "velocities": append_data(velocities + more),
+                "velocity_count": len(velocities),
+                "filled_count": len(velocities) + len(more),
             }
         indexed.append(
             row.replace(
@@ -59,9 +59,9 @@ def index_rows(
     return indexed, indices, column
 
 
-def list_answers(body: kernel.Body) -> range:
-    """Return the indices of a body's freedoms among the answers."""
-    return range(body.answer_at, body.answer_at + 3 * body.ball + body.end_freedom - body.first_freedom)
+def list_velocities(body: kernel.Body) -> range:
+    """Return the indices of a body's generalised velocities."""
+    return range(body.velocity_at, body.velocity_at + 3 * body.ball + body.end_freedom - body.first_freedom)
 
 
 def find_fill_in(paths: Sequence[list[int]]) -> tuple[list[list[int]], list[list[int]]]:

@@ -89,7 +89,7 @@ class LayoutFrame:
     work_at: index of the work in the state (-1: it is not computed)
     islands: the groups of closure rows whose loops share bodies
     contacts: the rows that open and close
-    measure (velocity_count,): scale of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0
+    velocity_scale (velocity_count,): of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0
     outside
     flat: whether the kernel moves it in the plane (kernel/plane.py), without loads across it
     """
@@ -112,7 +112,7 @@ class LayoutFrame:
     work_at: int
     islands: tuple[Island, ...]
     contacts: tuple[Contact, ...]
-    measure: Array
+    velocity_scale: Array
     flat: bool
 
     def relative(self, body: int, point: Array) -> Array:
@@ -201,14 +201,14 @@ class Layout(LayoutFrame):
 
 
 def rate_indices(layout: Layout) -> Array:
-    """Return the state index of the rate of each freedom, by answers, three for each ball; -1: driven."""
+    """Return the state index of the rate of each freedom, three for each ball; -1: driven."""
     indices = np.full(layout.velocity_count, -1)
     for body in layout.bodies:
         if body["ball"]:
-            indices[body["answer_at"] : body["answer_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)
+            indices[body["velocity_at"] : body["velocity_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)
     for freedom in layout.tables["freedoms"]:
         if not freedom["driven"]:
-            indices[freedom["answer_at"]] = freedom["u_at"]
+            indices[freedom["velocity_at"]] = freedom["u_at"]
     return indices
 
 

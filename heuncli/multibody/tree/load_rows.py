@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
@@ -23,7 +22,7 @@ from heuncli.multibody.mechanism.loads import (
 from heuncli.multibody.mechanism.model import Joint, Mechanism, NamedPoint
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout, LayoutFrame, empty_load_tables, make_layout
-from heuncli.multibody.tree.tables import NO_PROGRAM, ZERO, Program, Table, flat_dtype, make_table
+from heuncli.multibody.tree.tables import NO_PROGRAM, ZERO, FieldValue, Program, Table, flat_dtype, make_table
 from heuncli.scene.expressions.programs import LOADS, Expression, Pack, Variable
 from heuncli.scene.shapes.rotations import perpendicular_pair
 
@@ -130,10 +129,10 @@ class _LoadRowBuilder:
             else:
                 self._add_joint_load(load, values)
 
-    def _find_ends(self, pair: PairLoad | BushingLoad | Joint) -> dict[str, Any]:
+    def _find_ends(self, pair: PairLoad | BushingLoad | Joint) -> dict[str, FieldValue]:
         """Return the two bodies of a load or a joint, and its points on them."""
-        ends = {"a": self.frame.in_tree(pair.a), "b": self.frame.in_tree(pair.b)}
-        return ends | {"p": self.frame.relative(pair.a, pair.p), "q": self.frame.relative(pair.b, pair.q)}
+        a, b = self.frame.in_tree(pair.a), self.frame.in_tree(pair.b)
+        return {"a": a, "b": b, "p": self.frame.relative(pair.a, pair.p), "q": self.frame.relative(pair.b, pair.q)}
 
     def _add_point_load(self, load: PointLoad, values: Components) -> None:
         self.made.append(
@@ -208,8 +207,8 @@ class _LoadRowBuilder:
                 axis=load.axis,
                 speed=load.speed,
                 factor=load.factor,
-                presses=kernel.THRUST_OF_ROW,
-                held_by=GROUND,
+                normal_force_kind=kernel.THRUST_OF_ROW,
+                joint_body=GROUND,
                 row=self.frame.rows.index(len(self.mechanism.joints) + load.coupling),
                 row_count=1,
             )
@@ -248,7 +247,7 @@ class _LoadRowBuilder:
         closure_rows = closure_rows[: JOINTS[self.mechanism.joints[load.joint].kind].row_count]
         presses, first = PRESSES[load.presses or "whole"], closure_rows[0] if closure_rows else 0
         return row.replace(
-            presses=presses, held_by=tree_index, row=first, row_count=len(closure_rows), reach=load.reach
+            normal_force_kind=presses, joint_body=tree_index, row=first, row_count=len(closure_rows), reach=load.reach
         )
 
     def _complete_turn_spring(self, load: JointLoad, row: kernel.Load) -> kernel.Load:
@@ -264,8 +263,8 @@ class _LoadRowBuilder:
             counter=list(self.frame.counters).index(load.joint) if load.joint in self.frame.counters else -1,
             # a universal's coordinate is counted from the start; without any the angle stays what it is there
             offset=0.0 if freedom >= 0 and self.frame.freedoms[freedom].quantity == "angle" else start.angle,
-            across=across,
-            mark=start.R_ref.T @ across,
+            mark_a=across,
+            mark_b=start.R_ref.T @ across,
         )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -39,6 +38,7 @@ from heuncli.multibody.tree.starts import (
 from heuncli.multibody.tree.tables import (
     NO_PROGRAM,
     ZERO,
+    FieldValue,
     Program,
     Vector,
     limits_table,
@@ -157,7 +157,7 @@ class _LayoutBuilder:
         self.y: list[float] = []
         self.weights: list[float] = []
         self.groups: list[kernel.Group] = []
-        self.answer_count = 0
+        self.velocity_count = 0
 
     def build(self, work: bool) -> LayoutFrame:
         """Build the whole frame."""
@@ -197,8 +197,8 @@ class _LayoutBuilder:
                     rate_at=group.rates,
                     first_freedom=first,
                     end_freedom=len(self.freedoms),
-                    answer_at=self.answer_count,
-                    framed=int(bool((R_ref != IDENTITY).any())),
+                    velocity_at=self.velocity_count,
+                    has_frame=int(bool((R_ref != IDENTITY).any())),
                     mass=body.mass,
                     first_moment=body.mass * c,
                     inertia=to_sym3(J),
@@ -206,7 +206,7 @@ class _LayoutBuilder:
                     frame=R_ref.ravel(),
                 )
             )
-            self.answer_count += 3 * ball + len(freedoms)
+            self.velocity_count += 3 * ball + len(freedoms)
 
     def _add_state(self, i: int, link: TreeLink, ball: bool, freedoms: list[Scalar]) -> kernel.Group:
         """Add a body's part of the state and its freedoms; return its position in the state.
@@ -234,7 +234,7 @@ class _LayoutBuilder:
                 q_at=places[0],
                 u_at=places[1],
                 driven=int(program is not None),
-                answer_at=self.answer_count + 3 * ball + k,
+                velocity_at=self.velocity_count + 3 * ball + k,
                 body=i,
                 program=program or NO_PROGRAM,
                 direction=direction,
@@ -462,7 +462,7 @@ class _LayoutBuilder:
         if restitution is not None:
             self.contacts.append(Contact(name, True, owner, row, 1, restitution))
         opens = len(self.contacts) if restitution is not None else 0
-        self.one_sided.append(kernel.Contact(row=row, sense=1, opens=opens, freedom=-1))
+        self.one_sided.append(kernel.Contact(row=row, sense=1, mode_index=opens, freedom=-1))
 
     def _add_latches(self) -> None:
         """Add the rows of all latches."""
@@ -479,7 +479,7 @@ class _LayoutBuilder:
         coordinate = (stop.joint, stop.quantity)
         limited = next((i for i, f in enumerate(self.freedoms) if (f.joint, f.quantity) == coordinate), -1)
         self.one_sided.append(
-            kernel.Contact(row=row, sense=sense, opens=len(self.contacts), freedom=limited, held_at=held_at)
+            kernel.Contact(row=row, sense=sense, mode_index=len(self.contacts), freedom=limited, latch_index=held_at)
         )
         if stop.quantity == "length":
             self._add_row(stop.joint, kernel.ROD, length=limit)
@@ -493,7 +493,7 @@ class _LayoutBuilder:
         else:
             self._add_row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=limited, weight=self.size)
 
-    def _add_row(self, joint: int, kind: int, weight: float = 1.0, **fields: Any) -> None:
+    def _add_row(self, joint: int, kind: int, weight: float = 1.0, **fields: FieldValue) -> None:
         """Add a closure row of a joint; weight: of its gap [m per unit]; fields: the others that its kind needs."""
         joint_data = self.mechanism.joints[joint]
         a, b = self.in_tree(joint_data.a), self.in_tree(joint_data.b)
@@ -536,7 +536,7 @@ class _LayoutBuilder:
             "counters": make_table(kernel.Counter, self._make_counter_rows()),
             "contacts": make_table(kernel.Contact, self.one_sided),
             "groups": make_table(kernel.Group, self.groups),
-            "lents": make_table(kernel.ArtificialInertia, []),
+            "artificial_inertias": make_table(kernel.ArtificialInertia, []),
             "limits": limits_table(tolerances.KERNEL),
         }
         layout = Layout(
@@ -554,13 +554,13 @@ class _LayoutBuilder:
             weights=np.array(self.weights),
             tables=tables,
             indices=indices,
-            velocity_count=self.answer_count,
+            velocity_count=self.velocity_count,
             column_count=column_count,
             pack=Pack(),
             work_at=work_at,
             islands=(),
             contacts=tuple(self.contacts),
-            measure=np.zeros(0),
+            velocity_scale=np.zeros(0),
             flat=self._is_flat() and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return make_frame(add_islands(layout))
@@ -576,7 +576,7 @@ class _LayoutBuilder:
             kernel.Counter(
                 a=self.in_tree(joints[k].a),
                 b=self.in_tree(joints[k].b),
-                at=at,
+                state_at=at,
                 axis=joints[k].axis,
                 track=1 + owners.index(k) if joints[k].path is not None else 0,
             )

@@ -1,6 +1,6 @@
 """The kernel's structs as NumPy types: tables whose rows are its memory, and the parts of its flat solutions.
 
-The types follow from the fields of kernel/scene.py; the order of a solution's parts is that in which kernel/answers.py
+The types follow from the fields of kernel/scene.py. A solution's parts stand in the order in which kernel/solutions.py
 writes them.
 """
 
@@ -26,6 +26,7 @@ Program = tuple[int, int]  # of a value in time: where it starts among the pack'
 NO_PROGRAM: Program = (0, 0)
 ZERO = (0.0, 0.0, 0.0)
 Vector = Array | Sequence[float]
+FieldValue = int | float | Program | Vector
 
 
 @cache

@@ -95,7 +95,10 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
         for row in artificial_inertia_rows(scene, body, axes)
     ]
     return replace(
-        scene, layout=replace(layout, tables=layout.tables | {"lents": make_table(kernel.ArtificialInertia, rows)})
+        scene,
+        layout=replace(
+            layout, tables=layout.tables | {"artificial_inertias": make_table(kernel.ArtificialInertia, rows)}
+        ),
     )
 
 
