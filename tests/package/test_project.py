@@ -28,7 +28,9 @@ def test_the_modules_compiled_are_those_written_for_cython() -> None:
         text = (FOLDER / f"{name}.py").read_text(encoding="utf-8")
         taken = set(re.findall(r"^ *from heuncli\.kernel\.(\w+) import", text, re.M)) - {"libm", "declarations"}
         assert taken <= set(MODULES), name
-    declared = set(re.findall(r"^from heuncli\.kernel\.(\w+) import \*$", (FOLDER / "declarations.py").read_text(), re.M))
+    declared = set(
+        re.findall(r"^from heuncli\.kernel\.(\w+) import \*$", (FOLDER / "declarations.py").read_text(), re.M)
+    )
     assert declared == set(DECLARED)
 
 

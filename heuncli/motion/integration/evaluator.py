@@ -138,19 +138,11 @@ class Evaluator:
         contact_states = self.start_holding if holding is None else holding
         closed[:] = layout.closed_contacts(contact_states)
         inputs = {"times": instants, "branches": held_branches, "holding": closed}
-        outputs = {
-            "states": projected_states,
-            "columns": columns,
-            **{name: as_numbers(table) for name, table in tables.items()},
-        }
+        numbers = {name: as_numbers(table) for name, table in tables.items()}
+        outputs = {"states": projected_states, "columns": columns, **numbers}
         self._recover(inputs, outputs, hold_rows, causes)
         rows, whole = tables["rows"], tables["whole"]
-        residual = whole["residual"][:, 0]
-        if layout.rows:
-            # after an impulse that ends all motion, the rates are rounding, and terms in their squares
-            # count as zero
-            still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
-            residual = np.where(still, 0.0, residual)
+        residual = self._drop_rounding(whole["residual"][:, 0], rows)
         allowed_residual = self.allowed_residual(whole["gap"][:, 0])
         is_opening = self._find_opening(contact_states, rows, residual, allowed_residual)
         if is_opening.any():
@@ -176,6 +168,14 @@ class Evaluator:
             if causes
             else None,
         )
+
+    def _drop_rounding(self, residual: Array, rows: Table) -> Array:
+        """Count residuals (n_t,) as zero where the rows' terms are squares of rates that are rounding, as after an
+        impulse that ends all motion.
+        """
+        if not self.layout.rows:
+            return residual
+        return np.where(rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL, 0.0, residual)
 
     def _find_opening(self, contact_states: Array, rows: Table, residual: Array, allowed_residual: Array) -> Mask:
         """Mark contacts (n_t, contacts), closed by others, that a drive opens by less than the rounding of gaps: where
