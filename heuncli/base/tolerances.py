@@ -383,12 +383,12 @@ KERNEL: dict[str, float] = {
     # square of NEARLY_SINGULAR: where the loops hold a freedom without inertia by a lever of s, s^2 of the others' is
     # what it moves, and accelerations are known to rounding / s^2
     "own_share": 1e-12,
-    "much_lent": 1e-3,  # three digits lost
+    "much_artificial": 1e-3,  # three digits lost
     # -- friction
     # 1 minus the loop gain of friction by normal forces: dividing by it keeps eight digits of sixteen
     "friction_left": 1e-8,
     # -- rank
-    "across": 0.01,  # a row's answer across its arms counts to a tenth of the arm, in any pose
+    "row_across": 0.01,  # a row's response across its arms counts to a tenth of the arm, in any pose
     "independent": RANK,  # what the verdicts judge by, too
     "passing": 3e-6,  # square root of `reopened`: through a singular pose a row with s left of it opens by s**2
     # relative to the rest that the start's rows have: no machine is kept from the rank of its own start
@@ -403,7 +403,7 @@ KERNEL: dict[str, float] = {
     "closed": 1e-15,
     "nearly_closed": 1e-14,
     "reopened": 1e-11,
-    "lost": 1e-8,
+    "closures_lost": 1e-8,
     # -- rates that the closures change at the end of a step, of the largest
     "jump": 1e-2,  # coarse runs err by 1e-3, a blow changes rates by their own size
     "jump_of_error": 100.0,  # an accepted step errs by the tolerance, the rows' rates by some of it, over their pivot
@@ -417,8 +417,8 @@ KERNEL: dict[str, float] = {
     # relative to a given step: the ends of 10 million steps are known to 1e-8 of one, typed durations to 1e-9
     "given_end": 1e-6,
     "least_step": 1e-14,  # relative to the time: fewer than 50 roundings of t; closer times are one instant
-    "dodge": 0.87,
-    "dodges": 10,  # lengths tried; .87**10 spans a factor of 4, more than the width of what a singular pose spoils
+    "retry_ratio": 0.87,
+    "singular_retries": 10,  # lengths tried; .87**10 is 1/4, more than the width of what a singular pose spoils
     "pivot_rounding": 1e-16,  # a rounding of the closures, amplified by 1 / pivot
     "pivot_noise": 3e-13,  # what ten lengths could not avoid: the gap that settling leaves, amplified likewise
     # -- events
@@ -440,7 +440,7 @@ KERNEL: dict[str, float] = {
     # -- branches that are followed
     # rows of J turn threefold with what moves, so the least pivot keeps five eighths, Newton's method contracts by 3/5
     "branch_step": 0.125,
-    "branch_beside": 0.7,  # other steps, few more; what differs then is rounding, or the branch
+    "branch_next_start": 0.7,  # other steps, few more; what differs then is rounding, or the branch
     # over a step of m rad of a rotation a quintic errs by m^6 / 46080: 33 steps per oscillation; a limit approached
     # more closely cannot be distinguished from one passed, which the closures show
     "branch_between": 1e-9,

@@ -5,34 +5,9 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3
-    from heuncli.kernel.events import find_angles
-    from heuncli.kernel.memory import Memory
-    from heuncli.kernel.scene import (
-        ArtificialInertia,
-        Body,
-        BodyAtState,
-        BodyTangent,
-        Closure,
-        Contact,
-        Counter,
-        Freedom,
-        FreedomTangent,
-        Island,
-        Limits,
-        Load,
-        PathPiece,
-        Scene,
-        Variable,
-        Watch,
-    )
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.events import find_angles
+from heuncli.kernel.memory import Memory
 
 
 def set_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: dict[str, Any]) -> None:
@@ -41,14 +16,14 @@ def set_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: d
     scene.gravity = Vec3(x, y, z)
     scene.size = numbers["size"]
     scene.rank_of_gap = numbers["rank_of_gap"]
-    scene.driven = numbers["driven"]
+    scene.has_drives = numbers["driven"]
     scene.work_at = numbers["work_at"]
-    scene.answer_count = numbers["answer_count"]
+    scene.velocity_count = numbers["velocity_count"]
     scene.pivot_chosen = 1.0
     scene.pivot = 1.0
     scene.pivot_of_step = 1.0
     scene.own_share = 1.0
-    scene.lent_part = 1.0
+    scene.artificial_part = 1.0
     scene.body_count = len(tables["bodies"])
     scene.freedom_count = len(tables["freedoms"])
     scene.load_count = len(tables["loads"])
@@ -57,11 +32,11 @@ def set_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: d
     scene.counter_count = len(tables["counters"])
     scene.variable_count = len(tables["variables"])
     scene.point_count = tables["variables"]["is_point"].astype(bool).sum().item()
-    scene.lent_count = len(tables["lents"])
+    scene.artificial_count = len(tables["artificial_inertias"])
     scene.island_count = len(tables["islands"])
     scene.watch_count = len(tables["watches"])
     scene.contact_count = len(tables["contacts"])
-    scene.flat = numbers["flat"] and scene.lent_count == 0
+    scene.flat = numbers["flat"] and scene.artificial_count == 0
 
 
 def copy_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, Any]) -> None:
@@ -85,8 +60,9 @@ def copy_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.variables = cython.cast(
             cython.pointer[Variable], memory.copy_structs(tables["variables"], cython.sizeof(Variable))
         )
-        scene.lents = cython.cast(
-            cython.pointer[ArtificialInertia], memory.copy_structs(tables["lents"], cython.sizeof(ArtificialInertia))
+        scene.artificial_inertias = cython.cast(
+            cython.pointer[ArtificialInertia],
+            memory.copy_structs(tables["artificial_inertias"], cython.sizeof(ArtificialInertia)),
         )
         scene.islands = cython.cast(
             cython.pointer[Island], memory.copy_structs(tables["islands"], cython.sizeof(Island))
@@ -99,73 +75,68 @@ def copy_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
             cython.pointer[Limits], memory.copy_structs(tables["limits"], cython.sizeof(Limits))
         )
         scene.limits = limits[0]
-        scene.bodies_beside, scene.freedoms_beside = scene.bodies, scene.freedoms
+        scene.spare_bodies, scene.spare_freedoms = scene.bodies, scene.freedoms
         if scene.point_count:
-            scene.bodies_beside = cython.cast(
+            scene.spare_bodies = cython.cast(
                 cython.pointer[Body], memory.copy_structs(tables["bodies"], cython.sizeof(Body))
             )
             freedoms: cython.p_void = memory.copy_structs(tables["freedoms"], cython.sizeof(Freedom))
-            scene.freedoms_beside = cython.cast(cython.pointer[Freedom], freedoms)
+            scene.spare_freedoms = cython.cast(cython.pointer[Freedom], freedoms)
     else:
-        scene.bodies_beside = [Body(row) for row in tables["bodies"].tolist()]
-        scene.freedoms_beside = [Freedom(row) for row in tables["freedoms"].tolist()]
-        scene.bodies = [Body(row) for row in tables["bodies"].tolist()]
-        scene.freedoms = [Freedom(row) for row in tables["freedoms"].tolist()]
-        scene.loads = [Load(row) for row in tables["loads"].tolist()]
-        scene.closures = [Closure(row) for row in tables["closures"].tolist()]
-        scene.parts = [Closure(row) for row in tables["parts"].tolist()]
-        scene.counters = [Counter(row) for row in tables["counters"].tolist()]
-        scene.pieces = [PathPiece(row) for row in tables["pieces"].tolist()]
-        scene.variables = [Variable(row) for row in tables["variables"].tolist()]
-        scene.lents = [ArtificialInertia(row) for row in tables["lents"].tolist()]
-        scene.islands = [Island(row) for row in tables["islands"].tolist()]
-        scene.watches = [Watch(row) for row in tables["watches"].tolist()]
-        scene.contacts = [Contact(row) for row in tables["contacts"].tolist()]
-        scene.limits = Limits(tables["limits"].tolist()[0])
+        records = {
+            "bodies": Body, "freedoms": Freedom, "loads": Load, "closures": Closure, "parts": Closure,
+            "counters": Counter, "pieces": PathPiece, "variables": Variable, "artificial_inertias": ArtificialInertia,
+            "islands": Island, "watches": Watch, "contacts": Contact,
+        }  # fmt: skip
+        for name, record in records.items():
+            setattr(scene, name, [record.from_numbers(row) for row in tables[name].tolist()])
+        scene.spare_bodies = [Body.from_numbers(row) for row in tables["bodies"].tolist()]
+        scene.spare_freedoms = [Freedom.from_numbers(row) for row in tables["freedoms"].tolist()]
+        scene.limits = Limits.from_numbers(tables["limits"].tolist()[0])
 
 
 def allocate_work(scene: cython.pointer[Scene], memory: Memory, indices: array[int], numbers: dict[str, Any]) -> None:
     """Copy the indices and the measures of the freedoms, and allocate the work arrays."""
-    response_count: cython.Py_ssize_t = scene.answer_count
+    response_count: cython.Py_ssize_t = scene.velocity_count
     rows: cython.Py_ssize_t = scene.closure_count
     scene.indices = memory.ints(indices)
     scene.selected = memory.ints(bytes(4 * rows))
     scene.envelope = memory.ints(bytes(4 * rows))
     scene.support = memory.ints(bytes(4 * numbers["column_count"]))
     scene.coupled = memory.ints(bytes(4 * len(indices)))
-    scene.taken = memory.ints(bytes(4 * response_count))
-    scene.measure = memory.doubles(numbers["measure"])
+    scene.is_pivot = memory.ints(bytes(4 * response_count))
+    scene.velocity_scale = memory.doubles(numbers["velocity_scale"])
     scene.e = memory.zeros(response_count)
-    scene.root = memory.zeros(response_count)
-    scene.spread = memory.zeros(response_count)
+    scene.inertia_root = memory.zeros(response_count)
+    scene.velocity_vector = memory.zeros(response_count)
     scene.columns = memory.zeros(numbers["column_count"])
     scene.R = memory.zeros(rows * rows)
     scene.J = memory.zeros(numbers["island_room"])
-    scene.left = memory.zeros(rows)
-    scene.filled = memory.ints(bytes(4 * response_count))
-    scene.reach = memory.ints(bytes(4 * rows))
-    scene.standing = memory.ints(bytes(4 * rows))
-    scene.y = memory.zeros(rows)
+    scene.remainders = memory.zeros(rows)
+    scene.pivot_row_velocities = memory.ints(bytes(4 * response_count))
+    scene.row_bits = memory.ints(bytes(4 * rows))
+    scene.rows_left = memory.ints(bytes(4 * rows))
+    scene.row_vector = memory.zeros(rows)
     scene.is_angle = memory.ints(bytes(4 * scene.held_count))
     find_angles(scene)
     scene.least = memory.zeros(scene.variable_count)
     scene.most = memory.zeros(scene.variable_count)
-    scene.own = memory.zeros(scene.lent_count * scene.lent_count)
+    scene.own_inertia = memory.zeros(scene.artificial_count * scene.artificial_count)
     allocate_friction(scene, memory)
     allocate_tangents(scene, memory)
 
 
 def allocate_friction(scene: cython.pointer[Scene], memory: Memory) -> None:
     """List the loads of joint friction, and allocate the arrays to solve for their normal forces."""
-    friction_loads = [k for k in range(scene.load_count) if scene.loads[k].presses]
+    friction_loads = [k for k in range(scene.load_count) if scene.loads[k].normal_force_kind]
     n: cython.Py_ssize_t = len(friction_loads)
-    scene.rub_count = n
-    scene.rubs = memory.ints(friction_loads)
-    scene.carried = memory.zeros(6 * n * (n + 2))
-    scene.kept = memory.zeros(6 * scene.body_count if n else 0)
-    scene.bound = memory.zeros(n * n)
-    scene.newton = memory.zeros(n * n)
-    scene.trial = memory.zeros(5 * n)
+    scene.friction_count = n
+    scene.friction_loads = memory.ints(friction_loads)
+    scene.contact_forces = memory.zeros(6 * n * (n + 2))
+    scene.stored_loads = memory.zeros(6 * scene.body_count if n else 0)
+    scene.friction_bound = memory.zeros(n * n)
+    scene.friction_slope = memory.zeros(n * n)
+    scene.friction_trial = memory.zeros(5 * n)
 
 
 def allocate_tangents(scene: cython.pointer[Scene], memory: Memory) -> None:
@@ -174,13 +145,13 @@ def allocate_tangents(scene: cython.pointer[Scene], memory: Memory) -> None:
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         n += 7 * scene.bodies[i].ball
-    scene.along = memory.zeros(n)
+    scene.direction = memory.zeros(n)
     scene.slopes = memory.zeros(scene.variable_count)
     scene.multipliers = memory.zeros(scene.closure_count)
     bodies: cython.Py_ssize_t = scene.body_count
     freedoms: cython.Py_ssize_t = scene.freedom_count
     if cython.compiled:
-        scene.at_state = cython.cast(
+        scene.state_values = cython.cast(
             cython.pointer[BodyAtState], memory.zeros(bodies * cython.sizeof(BodyAtState) // 8)
         )
         scene.tangents = cython.cast(
@@ -190,6 +161,6 @@ def allocate_tangents(scene: cython.pointer[Scene], memory: Memory) -> None:
             cython.pointer[FreedomTangent], memory.zeros(freedoms * cython.sizeof(FreedomTangent) // 8)
         )
     else:
-        scene.at_state = [BodyAtState.blank() for _ in range(bodies)]
+        scene.state_values = [BodyAtState.blank() for _ in range(bodies)]
         scene.tangents = [BodyTangent.blank() for _ in range(bodies)]
         scene.freedom_tangents = [FreedomTangent.blank() for _ in range(freedoms)]

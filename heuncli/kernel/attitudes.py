@@ -14,20 +14,12 @@ state (the fourth number of an attitude is then 0). Throughout this module y is 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, fabs, sqrt
 
-if not cython.compiled:
-    from math import atan2, fabs, sqrt
+from heuncli.kernel.declarations import *
 
-    from heuncli.kernel.algebra import Quaternion, Vec3, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.scene import Body, Scene
-    from heuncli.kernel.shadow import cython
-
-    # How a method holds attitudes.
-    QUATERNION, GLOBAL, RECENTRED = range(3)
+# How a method holds attitudes.
+QUATERNION, GLOBAL, RECENTRED = range(3)
 
 
 def chart_centre(chart: cython.int, y: cython.p_double, offset: cython.Py_ssize_t) -> Quaternion:
@@ -35,7 +27,7 @@ def chart_centre(chart: cython.int, y: cython.p_double, offset: cython.Py_ssize_
     continuous.
     """
     if chart == RECENTRED:
-        return Quaternion(y[offset], y[offset + 1], y[offset + 2], y[offset + 3])
+        return read_quaternion(y, offset)
     return Quaternion(-1.0 if y[offset] < 0.0 else 1.0, 0.0, 0.0, 0.0)
 
 
@@ -71,22 +63,10 @@ def kappa_acceleration(kappa: Vec3, rate: Vec3, sigmadot: Vec3) -> Vec3:
     return add_scaled(kappa_rate(kappa, sigmadot), 2.0 * dot(kappa, rate) / (1.0 + dot(kappa, kappa)), rate)
 
 
-def read_vector(state: cython.p_double, offset: cython.Py_ssize_t) -> Vec3:
-    """Read three numbers of a state as a vector."""
-    return Vec3(state[offset], state[offset + 1], state[offset + 2])
-
-
-def store_vector(state: cython.p_double, offset: cython.Py_ssize_t, a: Vec3) -> cython.void:
-    """Write a vector into three numbers of a state."""
-    state[offset] = a.x
-    state[offset + 1] = a.y
-    state[offset + 2] = a.z
-
-
 def read_kappa(chart: cython.int, y: cython.p_double, state: cython.p_double, offset: cython.Py_ssize_t) -> Vec3:
     """Return the Rodrigues parameters of a body's attitude in a state."""
     return kappa_of(
-        Quaternion(state[offset], state[offset + 1], state[offset + 2], state[offset + 3]),
+        read_quaternion(state, offset),
         chart_centre(chart, y, offset),
     )
 
@@ -106,10 +86,10 @@ def enter_chart(
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if body.ball:
             kappa: Vec3 = read_kappa(chart, y, state, body.attitude_at)
-            store_vector(result, body.attitude_at, kappa)
+            write_vector(result, body.attitude_at, kappa)
             result[body.attitude_at + 3] = 0.0
             if chart == GLOBAL:
-                store_vector(result, body.rate_at, kappa_rate(kappa, read_vector(state, body.rate_at)))
+                write_vector(result, body.rate_at, kappa_rate(kappa, read_vector(state, body.rate_at)))
 
 
 def leave_chart(scene: cython.pointer[Scene], chart: cython.int, y: cython.p_double, x: cython.p_double) -> cython.void:
@@ -121,12 +101,9 @@ def leave_chart(scene: cython.pointer[Scene], chart: cython.int, y: cython.p_dou
             offset: cython.Py_ssize_t = body.attitude_at
             kappa: Vec3 = read_vector(x, offset)
             q: Quaternion = rotate_quaternion(kappa, chart_centre(chart, y, offset))
-            x[offset] = q.w
-            x[offset + 1] = q.x
-            x[offset + 2] = q.y
-            x[offset + 3] = q.z
+            write_quaternion(x, offset, q)
             if chart == GLOBAL:
-                store_vector(x, body.rate_at, angular_velocity(kappa, read_vector(x, body.rate_at)))
+                write_vector(x, body.rate_at, angular_velocity(kappa, read_vector(x, body.rate_at)))
 
 
 def drop_small_parts(scene: cython.pointer[Scene], chart: cython.int, carry: cython.p_double) -> cython.void:
@@ -136,10 +113,10 @@ def drop_small_parts(scene: cython.pointer[Scene], chart: cython.int, carry: cyt
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if body.ball:
-            store_vector(carry, body.attitude_at, zero)
+            write_vector(carry, body.attitude_at, zero)
             carry[body.attitude_at + 3] = 0.0
             if chart == GLOBAL:
-                store_vector(carry, body.rate_at, zero)
+                write_vector(carry, body.rate_at, zero)
 
 
 def chart_slopes(
@@ -157,10 +134,10 @@ def chart_slopes(
         if body.ball:
             kappa: Vec3 = read_kappa(chart, y, state, body.attitude_at)
             rate: Vec3 = kappa_rate(kappa, read_vector(state, body.rate_at))
-            store_vector(result, body.attitude_at, rate)
+            write_vector(result, body.attitude_at, rate)
             result[body.attitude_at + 3] = 0.0
             if chart == GLOBAL:
-                store_vector(result, body.rate_at, kappa_acceleration(kappa, rate, read_vector(dy, body.rate_at)))
+                write_vector(result, body.rate_at, kappa_acceleration(kappa, rate, read_vector(dy, body.rate_at)))
 
 
 def scale_chart_errors(
@@ -181,10 +158,10 @@ def scale_chart_errors(
         if body.ball:
             kappa: Vec3 = read_vector(x, body.attitude_at)
             square = 1.0 + dot(kappa, kappa)
-            store_vector(
+            write_vector(
                 error, body.attitude_at, scale_vector(1.0 / sqrt(square), read_vector(error, body.attitude_at))
             )
-            store_vector(error, body.rate_at, scale_vector(2.0 / square, read_vector(error, body.rate_at)))
+            write_vector(error, body.rate_at, scale_vector(2.0 / square, read_vector(error, body.rate_at)))
 
 
 # How far it is to a half turn

@@ -5,17 +5,10 @@ Farouki, Rajan, On the numerical condition of polynomials in Bernstein form (198
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
 
-if not cython.compiled:
-    from heuncli.kernel.programs import Bounds
-    from heuncli.kernel.shadow import cython
-
-    # The coefficients of a parabola: the values at its ends, and the place where the tangents there meet.
-    PARABOLA_START, PARABOLA_MIDDLE, PARABOLA_END = range(3)
+# The coefficients of a parabola: the values at its ends, and the place where the tangents there meet.
+PARABOLA_START, PARABOLA_MIDDLE, PARABOLA_END = range(3)
 
 
 def multiply_by_x(b: cython.p_double, n: cython.int) -> cython.void:

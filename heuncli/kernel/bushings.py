@@ -2,92 +2,25 @@
 
     d, phi                          shift of b's point, rotation vector of b relative to a, in the axes T (strains.py)
     f = g(d) - K d - D d'           force on b at its point
-    m = J^-T (g(phi) - C phi) - D omega,  phi' = J^-1 omega,  J^-1 = 1 - [phi]/2 + c [phi]^2
-    c = (1 - theta/2 cot(theta/2)) / theta^2,  theta = |phi|
+    m = J^-T (g(phi) - C phi) - D omega,  phi' = J^-1 omega          J: strains.py
 
 Body a takes the opposite of f and m at b's point. g is a preload minus the tables, each a function of the component
 along its own axis. So everything but the damping has a potential at any angle: 1/2 d'Kd and 1/2 phi' C phi minus the
 integrals of g. The rate of d is the velocity of b's point as seen from a, the rate of phi follows from omega =
-T'(omega_b - omega_a), and m'omega = g'phi'. J is the left Jacobian of rotations: Sola, Deray, Atchuthan, A micro Lie
-theory (2018), (145)-(146). At a half turn phi and -phi are the same attitude, and the moment jumps between two values:
-there it has no value.
+T'(omega_b - omega_a), and m'omega = g'phi'. At a half turn phi and -phi are the same attitude, and the moment jumps
+between two values: there it has no value.
+
+Below: its change along a direction of the state, line by line.
 """
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.algebra import (
-        Mat3,
-        Vec3,
-        add,
-        add_scaled,
-        cross,
-        dot,
-        norm,
-        rotate,
-        rotate_back,
-        scale_vector,
-        sub,
-    )
-    from heuncli.kernel.evaluator import area_under, read_table
-    from heuncli.kernel.libm import NAN, tan
-    from heuncli.kernel.programs import TABLE, Program, Programs
-    from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import bushing_axes, bushing_strain
-    from heuncli.kernel.tree import add_load_to_body
-
-
-# The map between turns and rotation vectors
-
-
-def square_coefficient(phi: Vec3) -> cython.double:
-    """Return c of the module's formulas."""
-    square: cython.double = dot(phi, phi)
-    if square < 4e-4:
-        return 1.0 / 12.0 + square * (1.0 / 720.0 + square / 30240.0)
-    half: cython.double = 0.5 * sqrt(square)
-    return (1.0 - half / tan(half)) / square
-
-
-def square_coefficient_slope(phi: Vec3) -> cython.double:
-    """Return e with dc = e phi . dphi."""
-    square: cython.double = dot(phi, phi)
-    if square < 4e-2:
-        return 1.0 / 360.0 + square * (1.0 / 7560.0 + square * (1.0 / 201600.0 + square / 5987520.0))
-    theta: cython.double = sqrt(square)
-    s: cython.double = 1.0 / tan(0.5 * theta)  # 1/sin^2 = 1 + cot^2
-    return ((0.25 * (1.0 + s * s) * theta + 0.5 * s) * theta - 2.0) / (square * square)
-
-
-def rotation_vector_rate(phi: Vec3, omega: Vec3) -> Vec3:
-    """Return J^-1 omega, using that J^-1 of phi is J^-T of -phi."""
-    return bushing_moment(scale_vector(-1.0, phi), omega)
-
-
-def bushing_moment(phi: Vec3, gamma: Vec3) -> Vec3:
-    """Return J^-T gamma."""
-    first: Vec3 = cross(phi, gamma)
-    return add_scaled(add_scaled(gamma, 0.5, first), square_coefficient(phi), cross(phi, first))
-
-
-def bushing_moment_tangent(phi: Vec3, gamma: Vec3, dphi: Vec3, dgamma: Vec3) -> Vec3:
-    """Return the change of J^-T gamma."""
-    first: Vec3 = cross(phi, gamma)
-    change: Vec3 = cross(dphi, gamma)
-    found: Vec3 = add_scaled(bushing_moment(phi, dgamma), 0.5, change)
-    found = add_scaled(found, square_coefficient(phi), add(cross(dphi, first), cross(phi, change)))
-    return add_scaled(found, square_coefficient_slope(phi) * dot(phi, dphi), cross(phi, first))
-
-
-# What it does
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import area_under, read_table
+from heuncli.kernel.kinematics import add_load_to_body
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.strains import bushing_axes, bushing_moment, bushing_moment_tangent, bushing_strain, strain_tangent
+from heuncli.kernel.tangent_motion import vector_tangent
 
 
 def multiply_components(k: Vec3, x: Vec3) -> Vec3:
@@ -108,7 +41,7 @@ def apply_bushing_load(
     T: Mat3 = bushing_axes(scene, load)
     load.strain = bushing_strain(scene, load)
     load.span = norm(load.strain)
-    load.from_at = load.at
+    load.place_on_a = load.place
     rate: Vec3 = rotate_back(T, velocity)
     if load.a == load.b:
         rate = Vec3(0.0, 0.0, 0.0)
@@ -127,8 +60,8 @@ def apply_bushing_load(
     load.value = norm(total)
     load.power = dot(total, rate)
     if load.a != load.b:
-        add_load_to_body(scene, load.b, load.at, load.force, load.moment)
-        add_load_to_body(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+        add_load_to_body(scene, load.b, load.place, load.force, load.moment)
+        add_load_to_body(scene, load.a, load.place, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
     return -dot(drag, rate)
 
 
@@ -152,3 +85,37 @@ def table_area(programs: cython.pointer[Programs], program: Program, x: cython.d
         position += 1
     k: cython.int = programs.code[position].argument
     return area_under(programs.tables[k], read_table(programs, position + 1, k), x)
+
+
+# Along a direction of the state
+
+
+def bushing_tangent(
+    scene: cython.pointer[Scene],
+    load: cython.pointer[Load],
+    vector: Vec3,
+    preload_change: Vec3,
+    velocity: Vec3,
+    velocity_change: Vec3,
+) -> BushingTangent:
+    """Return the change of the force or moment on b, world axes, and of the power of its damping.
+
+    vector: its given components, and preload_change: their change
+    velocity: of b as seen from a, world axes, and its change
+    """
+    T: Mat3 = bushing_axes(scene, load)
+    rate: Vec3 = rotate_back(T, velocity)
+    d_rate: Vec3 = rotate_back(T, sub(velocity_change, vector_tangent(scene, load.a, velocity)))
+    drag: Vec3 = multiply_components(load.resistances, d_rate)
+    loss: cython.double = -2.0 * dot(multiply_components(load.resistances, rate), d_rate)
+    x: Vec3 = load.strain
+    dx: Vec3 = strain_tangent(scene, load, x)
+    change: Vec3 = sub(preload_change, multiply_components(load.stiffnesses, dx))
+    load_on_b: Vec3
+    if load.kind == BUSHING_SHIFT:
+        load_on_b = load.force
+    else:
+        change = bushing_moment_tangent(x, sub(vector, multiply_components(load.stiffnesses, x)), dx, change)
+        load_on_b = load.moment
+    turned: Vec3 = vector_tangent(scene, load.a, load_on_b)
+    return BushingTangent(add(rotate(T, sub(change, drag)), turned), loss)

@@ -15,21 +15,11 @@ cannot be moved by a force normal to it, the load is NaN.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.paths import evaluate_path
-    from heuncli.kernel.scene import Closure, FreedomTangent, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
-    from heuncli.kernel.values import CamContact, CamStance, PathPoint, PointKinematics, RowTangent
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.paths import evaluate_path
+from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
 
 
 def cam_lift(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> PathPoint:
@@ -81,8 +71,8 @@ def measure_cam(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
     contact: CamContact = find_cam_contact(row, cam)
     u: cython.double = scene.freedoms[row.freedom].u
     u_b: cython.double = scene.freedoms[row.freedom_b].u
-    w: Vec3 = add_cross(cam.w, cam.g, contact.beside) if row.swings else cam.w
-    row.Q = add(world_place(scene, row.b, row.q), contact.beside)
+    w: Vec3 = add_cross(cam.w, cam.g, contact.offset) if row.swings else cam.w
+    row.Q = add(world_place(scene, row.b, row.q), contact.offset)
     row.f = scale_vector(divide_or_nan(1.0, dot(contact.n, w)), contact.n)
     row.m = Vec3(0.0, 0.0, 0.0)
     row.gap = scene.freedoms[row.freedom_b].q - lift.r.x - row.length
@@ -128,14 +118,14 @@ def cam_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> R
     w: Vec3 = cam.w
     dw: Vec3 = d.w
     if row.swings:
-        w = add_cross(w, cam.g, contact.beside)
-        dw = add_cross(add_cross(dw, d.g, contact.beside), cam.g, change_of_contact.beside)
+        w = add_cross(w, cam.g, contact.offset)
+        dw = add_cross(add_cross(dw, d.g, contact.offset), cam.g, change_of_contact.offset)
     work: cython.double = dot(contact.n, w)
     change: cython.double = dot(change_of_contact.n, w) + dot(contact.n, dw)
     f: Vec3 = scale_vector(
         divide_or_nan(1.0, work), add_scaled(change_of_contact.n, -divide_or_nan(change, work), contact.n)
     )
-    Q: Vec3 = add(point_tangent(scene, row.b, row.q).x, change_of_contact.beside)
+    Q: Vec3 = add(point_tangent(scene, row.b, row.q).x, change_of_contact.offset)
     return RowTangent(Q, f, Vec3(0.0, 0.0, 0.0), rate, -bent)
 
 
@@ -162,7 +152,7 @@ def cam_contact_tangent(row: cython.pointer[Closure], cam: CamStance, contact: C
     change = sub(change, add_cross(cross(d.e, cam.C), cam.e, d.C))
     n: Vec3 = add_cross(cross(d.e, velocity), cam.e, change)
     if row.radius == 0.0:
-        return CamContact(contact.beside, n)
+        return CamContact(contact.offset, n)
     size: cython.double = norm(contact.n)
     along: cython.double = divide_or_nan(dot(contact.n, n), size * size)
     return CamContact(scale_vector(-divide_or_nan(row.radius, size), add_scaled(n, -along, contact.n)), n)

@@ -9,34 +9,15 @@ ground.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
-
-    from heuncli.kernel.algebra import (
-        Vec3,
-        add,
-        add_cross,
-        add_scaled,
-        dot,
-        norm,
-        rotate_back,
-        scale_vector,
-        sub,
-    )
-    from heuncli.kernel.conditions import condition, condition_count, measure_condition, set_load_places
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.plane_rows import zero_acceleration_in_plane
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import SUM, TURN, Body, Closure, Counter, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tracks import track_speed
-    from heuncli.kernel.tree import add_load_to_body, eliminate_load
+from heuncli.kernel.conditions import condition, condition_count, measure_condition, set_load_places
+from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import jet
+from heuncli.kernel.kinematics import add_load_to_body
+from heuncli.kernel.plane_rows import zero_acceleration_in_plane
+from heuncli.kernel.tracks import track_speed
+from heuncli.kernel.tree import eliminate_load
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
@@ -252,9 +233,7 @@ def sweep_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         if body.ball:
-            scene.columns[offset] = -body.M_branch.x
-            scene.columns[offset + 1] = -body.M_branch.y
-            scene.columns[offset + 2] = -body.M_branch.z
+            write_vector(scene.columns, offset, scale_vector(-1.0, body.M_branch))
             offset += 3
             body.f_branch = sub(body.f_branch, rotate_back(body.G, body.M_branch))
             body.M_branch = Vec3(0.0, 0.0, 0.0)
@@ -294,11 +273,11 @@ def find_counter_rates(scene: cython.pointer[Scene], dy: cython.p_double) -> cyt
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
         if counter.track:
-            dy[counter.at] = track_speed(scene, cython.address(scene.closures[counter.track - 1]))
+            dy[counter.state_at] = track_speed(scene, cython.address(scene.closures[counter.track - 1]))
             continue
         n: Vec3 = counter.axis if scene.flat else world_direction(scene, counter.a, counter.axis)
-        dy[counter.at] = 0.0
+        dy[counter.state_at] = 0.0
         if counter.b >= 0:
-            dy[counter.at] += dot(n, scene.bodies[counter.b].omega)
+            dy[counter.state_at] += dot(n, scene.bodies[counter.b].omega)
         if counter.a >= 0:
-            dy[counter.at] -= dot(n, scene.bodies[counter.a].omega)
+            dy[counter.state_at] -= dot(n, scene.bodies[counter.a].omega)

@@ -14,24 +14,16 @@ sum_i e_i Z_i), g the real number of L: the filter keeps stiff parts of it bound
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, pow
 
-if not cython.compiled:
-    from math import fabs, pow
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time
+from heuncli.kernel.jacobian import find_jacobian
+from heuncli.kernel.landing import begin_step_extremes, record_stage
+from heuncli.kernel.linear import factor_complex, factor_real, solve_complex, solve_real
+from heuncli.kernel.response import evaluate, project_state
 
-    from heuncli.kernel.dense import clip_time
-    from heuncli.kernel.jacobian import find_jacobian
-    from heuncli.kernel.landing import begin_step_extremes, record_stage
-    from heuncli.kernel.linear import factor_complex, factor_real, solve_complex, solve_real
-    from heuncli.kernel.response import evaluate, project_state
-    from heuncli.kernel.scene import Group, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Collocation, Factors, Method, Newton, Run
-
-    MAX_NEWTON_ITERATIONS = 25
+MAX_NEWTON_ITERATIONS = 25
 
 
 # A step
@@ -47,16 +39,16 @@ def collocate(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     formula: cython.pointer[Collocation] = cython.address(method.collocation)
     newton: cython.pointer[Newton] = cython.address(run.newton)
     run.has_interpolant = 0
-    newton.elsewhere = 0
+    newton.is_evaluated_elsewhere = 0
     run.evaluations += run.n + 1
-    newton.solved = factor_step(scene, formula, run) and solve_stages(scene, method, run)
+    newton.has_stages = factor_step(scene, formula, run) and solve_stages(scene, method, run)
     for i in range(run.n):
         change = sum_stages(formula, run, i)
         run.z[i] = run.y[i] + change
         run.z_carry[i] = change - (run.z[i] - run.y[i])
     trouble: cython.int = evaluate(scene, clip_time(run, run.stop), run.z, run.K[method.stages])
     run.evaluations += 1
-    if run.seeing:
+    if run.sees_stages:
         record_stage(scene, run, clip_time(run, run.stop))
     return trouble
 
@@ -77,12 +69,12 @@ def collocate_to(
     K: cython.pp_double = run.K
     formula: cython.pointer[Collocation] = cython.address(method.collocation)
     for i in range(run.n):
-        run.beside[0][i] = K[0][i]
+        run.side_stages[0][i] = K[0][i]
     run.h = t - run.t
-    run.K = run.beside
+    run.K = run.side_stages
     run.evaluations += run.n + 1
     if not (factor_step(scene, formula, run) and solve_stages(scene, method, run)):
-        run.newton.solved = 0
+        run.newton.has_stages = 0
     for i in range(run.n):
         result[i] = run.y[i] + sum_stages(formula, run, i)
     run.h = h
@@ -188,7 +180,7 @@ def begin_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> cy
     for k in range(formula.stages):
         row_sum = 0.0
         for j in range(formula.stages):
-            row_sum += formula.into[formula.stages * k + j]
+            row_sum += formula.T_inverse[formula.stages * k + j]
         for i in range(run.n):
             newton.W[k][i] = 0.0
             newton.step[k][i] = run.h * row_sum * run.K[0][i]
@@ -232,16 +224,16 @@ def evaluate_stages(
     k: cython.int
     t: cython.double
     newton: cython.pointer[Newton] = cython.address(run.newton)
-    if run.seeing:
+    if run.sees_stages:
         begin_step_extremes(scene, run)
     for k in range(1, method.stages):
         for i in range(run.n):
             run.stage[i] = run.y[i] + newton.Z[k - 1][i]
         t = clip_time(run, run.t + method.node[k] * run.h)
-        if run.near:
+        if run.projects_stages:
             project_state(scene, t, run.stage)
         evaluate(scene, t, run.stage, run.K[k])
-        if run.seeing:
+        if run.sees_stages:
             record_stage(scene, run, t)
     run.evaluations += method.stages - 1
 
@@ -261,7 +253,7 @@ def correct_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> 
         for i in range(run.n):
             u = 0.0
             for j in range(formula.stages):
-                u += formula.into[formula.stages * k + j] * run.K[j + 1][i]
+                u += formula.T_inverse[formula.stages * k + j] * run.K[j + 1][i]
             newton.step[k][i] = run.h * u
     if first:
         for i in range(run.n):
@@ -304,7 +296,7 @@ def add_correction(formula: cython.pointer[Collocation], run: cython.pointer[Run
         for i in range(run.n):
             u = 0.0
             for j in range(formula.stages):
-                u += formula.back[formula.stages * k + j] * newton.W[j][i]
+                u += formula.T[formula.stages * k + j] * newton.W[j][i]
             newton.Z[k][i] = u
 
 
@@ -357,7 +349,7 @@ def refine_error(scene: cython.pointer[Scene], method: cython.pointer[Method], r
     newton: cython.pointer[Newton] = cython.address(run.newton)
     for i in range(run.n):
         run.stage[i] = run.y[i] + newton.error[i]
-    evaluate(scene, clip_time(run, run.t), run.stage, newton.tangent.beside)
+    evaluate(scene, clip_time(run, run.t), run.stage, newton.tangent.change)
     run.evaluations += 1
-    newton.elsewhere = 1
-    estimate_error(method, run, newton.tangent.beside)
+    newton.is_evaluated_elsewhere = 1
+    estimate_error(method, run, newton.tangent.change)

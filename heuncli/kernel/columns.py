@@ -10,30 +10,14 @@ and velocity terms, with the same factors.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import sqrt
 
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.algebra import Vec3, add_scaled, scale_vector
-    from heuncli.kernel.closures import measure_rows, row_residual, size_of_row_acceleration
-    from heuncli.kernel.loads import apply_rope_pull
-    from heuncli.kernel.orthogonal import response_of_row, size_of_multipliers
-    from heuncli.kernel.response import configure, solve_applied
-    from heuncli.kernel.scene import CARRIES, ROPE, SHIFT, Body, Closure, Freedom, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import add_load_to_body, update_kinematics
-
-
-def write_vector(buffer: cython.p_double, offset: cython.Py_ssize_t, a: Vec3) -> cython.Py_ssize_t:
-    """Write a vector and return the offset behind it."""
-    buffer[offset] = a.x
-    buffer[offset + 1] = a.y
-    buffer[offset + 2] = a.z
-    return offset + 3
+from heuncli.kernel.closures import measure_rows, row_residual, size_of_row_acceleration
+from heuncli.kernel.declarations import *
+from heuncli.kernel.kinematics import add_load_to_body, update_kinematics
+from heuncli.kernel.loads import apply_rope_pull
+from heuncli.kernel.orthogonal import response_of_row, size_of_multipliers
+from heuncli.kernel.response import configure, solve_applied
 
 
 def write_column(
@@ -52,12 +36,10 @@ def write_column(
         offset = write_vector(buffer, offset, body.f_joint)
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        buffer[offset] = freedom.udot if with_drives or not freedom.driven else 0.0
-        buffer[offset + 1] = freedom.drive if freedom.driven else 0.0
-        offset += 2
+        offset = write_number(buffer, offset, freedom.udot if with_drives or not freedom.driven else 0.0)
+        offset = write_number(buffer, offset, freedom.drive if freedom.driven else 0.0)
     for i in range(scene.closure_count):
-        buffer[offset] = scene.closures[i].multiplier
-        offset += 1
+        offset = write_number(buffer, offset, scene.closures[i].multiplier)
     return offset
 
 
@@ -83,8 +65,8 @@ def apply_column(scene: cython.pointer[Scene], load: cython.p_double) -> cython.
     """Apply a column of loads to the bodies."""
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
-        scene.bodies[i].M_applied = Vec3(load[6 * i], load[6 * i + 1], load[6 * i + 2])
-        scene.bodies[i].f_applied = Vec3(load[6 * i + 3], load[6 * i + 4], load[6 * i + 5])
+        scene.bodies[i].M_applied = read_vector(load, 6 * i)
+        scene.bodies[i].f_applied = read_vector(load, 6 * i + 3)
 
 
 # Causes
@@ -134,8 +116,8 @@ def reapply_load(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cy
         return
     if load.a == load.b:
         return
-    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
-    add_load_to_body(scene, load.a, load.from_at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+    add_load_to_body(scene, load.b, load.place, load.force, load.moment)
+    add_load_to_body(scene, load.a, load.place_on_a, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
 
 
 def remove_prescribed(scene: cython.pointer[Scene]) -> cython.void:
@@ -221,7 +203,7 @@ def measure_row_responses(scene: cython.pointer[Scene]) -> cython.void:
     r: cython.Py_ssize_t
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        row.answer = sqrt(response_of_row(scene, row))
+        row.response_size = sqrt(response_of_row(scene, row))
 
 
 def largest_relative_residual(scene: cython.pointer[Scene], load_response: cython.double) -> cython.double:
@@ -234,7 +216,7 @@ def largest_relative_residual(scene: cython.pointer[Scene], load_response: cytho
     residual: cython.double
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        size: cython.double = size_of_row_acceleration(scene, row) + row.answer * load_response
+        size: cython.double = size_of_row_acceleration(scene, row) + row.response_size * load_response
         residual = row_residual(scene, row) if row.mode == CARRIES else 0.0
         if not residual <= largest * size:
             largest = residual / size

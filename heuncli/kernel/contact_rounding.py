@@ -13,21 +13,12 @@ do work on the rates it produces. What is left is the rounding of the terms of J
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
-
-    from heuncli.kernel.algebra import Quaternion, Vec3, add_cross, add_scaled, quaternion_rate
-    from heuncli.kernel.closures import row_acceleration, row_motion, size_of_row_acceleration
-    from heuncli.kernel.dense import clip_time
-    from heuncli.kernel.response import add_motion, refactor_at, solve_demands_only
-    from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
+from heuncli.kernel.closures import row_acceleration, row_motion, size_of_row_acceleration
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time
+from heuncli.kernel.response import add_motion, refactor_at, solve_demands_only
 
 # Bound of the sum of the stages' weights: for high order they are some tens, of either sign.
 MAX_STAGE_SUM = 32.0
@@ -146,7 +137,7 @@ def ball_rotation(body: cython.pointer[Body], z: cython.p_double, e: cython.p_do
     """Return the small rotation 2 e q^-1 for an error of a quaternion; the error of an angular velocity as it is."""
     k: cython.Py_ssize_t = body.rate_at if rates else body.attitude_at
     if rates:
-        return Vec3(e[k], e[k + 1], e[k + 2])
+        return read_vector(e, k)
     return Vec3(
         2.0 * (z[k] * e[k + 1] - z[k + 1] * e[k] + z[k + 2] * e[k + 3] - z[k + 3] * e[k + 2]),
         2.0 * (z[k] * e[k + 2] - z[k + 2] * e[k] + z[k + 3] * e[k + 1] - z[k + 1] * e[k + 3]),
@@ -169,7 +160,7 @@ def add_response(
             e[k + 2] += body.alpha.z
         elif body.ball:
             k = body.attitude_at
-            turn: Quaternion = quaternion_rate(Quaternion(z[k], z[k + 1], z[k + 2], z[k + 3]), body.alpha)
+            turn: Quaternion = quaternion_rate(read_quaternion(z, k), body.alpha)
             e[k] += turn.w
             e[k + 1] += turn.x
             e[k + 2] += turn.y

@@ -9,34 +9,17 @@ The step is repeated up to there until both agree. What happens then is decided 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.closures import measure_row
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
+from heuncli.kernel.kinematics import update_kinematics
+from heuncli.kernel.response import evaluate, project_state
 
-    from heuncli.kernel.algebra import norm
-    from heuncli.kernel.closures import measure_row
-    from heuncli.kernel.dense import (
-        CONTACT_EVENT,
-        MAX_LANDINGS,
-        NO_EVENT,
-        REPEAT_TO,
-        clip_time,
-        ensure_interpolant,
-        interpolate,
-    )
-    from heuncli.kernel.response import evaluate, project_state
-    from heuncli.kernel.scene import APART, CARRIES, LEANS, Closure, Contact, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
-    from heuncli.kernel.tree import update_kinematics
-
-    # Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
-    # checked before only rounding can be in doubt.
-    HALVINGS, POINTS, MAX_MARGIN_PARTS = 46, 8, 400
+# Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
+# checked before only rounding can be in doubt.
+HALVINGS, POINTS, MAX_MARGIN_PARTS = 46, 8, 400
 
 
 # Margins
@@ -100,7 +83,7 @@ def find_pushing_rope(scene: cython.pointer[Scene], run: cython.pointer[Run]) ->
     most: cython.double = 0.0
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
-        if contact.opens == 0 and contact.start > most:
+        if contact.mode_index == 0 and contact.start > most:
             most = contact.start
             run.contact = contact.row + 1
     return most > 0.0
@@ -115,7 +98,7 @@ def classify_contact_event(scene: cython.pointer[Scene], run: cython.pointer[Run
         if scene.contacts[i].row + 1 == run.contact:
             if scene.closures[scene.contacts[i].row].mode == APART:
                 return 1
-            return 2 if scene.contacts[i].opens else 3
+            return 2 if scene.contacts[i].mode_index else 3
     return 0
 
 
@@ -340,13 +323,13 @@ def record_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]
     if rate > contact.fastest:
         contact.fastest = rate
     if i > 1:
-        bend = fabs(x - 2.0 * contact.before + contact.first)
+        bend = fabs(x - 2.0 * contact.previous + contact.first)
         if bend > contact.bent:
             contact.bent = bend
-        bend = fabs(rate - 2.0 * contact.rate_before + contact.rate_first)
+        bend = fabs(rate - 2.0 * contact.rate_previous + contact.rate_first)
         if bend > contact.rate_bent:
             contact.rate_bent = bend
-    contact.first = contact.before
-    contact.before = x
-    contact.rate_first = contact.rate_before
-    contact.rate_before = rate
+    contact.first = contact.previous
+    contact.previous = x
+    contact.rate_first = contact.rate_previous
+    contact.rate_previous = rate

@@ -9,35 +9,25 @@ Rajan, On the numerical condition of polynomials in Bernstein form (1987).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.bernstein import (
-        PARABOLA_END,
-        PARABOLA_MIDDLE,
-        PARABOLA_START,
-        bound_polynomial,
-        convert_rows,
-        differentiate,
-    )
-    from heuncli.kernel.dense import clip_time
-    from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.intervals import all_numbers
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.points import (
-        bound_point_variables,
-        build_state_course,
-        build_state_window,
-        set_point_variables_at,
-    )
-    from heuncli.kernel.programs import Bounds, Jet, Programs, Span
-    from heuncli.kernel.scene import Freedom, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Course, Method, Run
-
+from heuncli.kernel.bernstein import (
+    PARABOLA_END,
+    PARABOLA_MIDDLE,
+    PARABOLA_START,
+    bound_polynomial,
+    convert_rows,
+    differentiate,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time
+from heuncli.kernel.enclosure import enclose
+from heuncli.kernel.intervals import all_numbers
+from heuncli.kernel.jets import jet
+from heuncli.kernel.points import (
+    bound_point_variables,
+    build_state_course,
+    build_state_window,
+    set_point_variables_at,
+)
 
 # Laying a course
 
@@ -53,7 +43,7 @@ def state_component(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> cytho
 def is_still(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> cython.bint:
     """Return whether a variable is a rate that a closed contact keeps at 0."""
     variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-    return not variable.is_point and variable.is_rate and scene.freedoms[variable.freedom].still
+    return not variable.is_point and variable.is_rate and scene.freedoms[variable.freedom].is_held
 
 
 def set_zero_course(course: cython.pointer[Course], i: cython.Py_ssize_t) -> cython.void:

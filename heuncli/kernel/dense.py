@@ -5,26 +5,13 @@ A method is data (integration/methods): rows of (stage, coefficient).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.attitudes import chart_slopes, half_turn_rate, leave_chart
+from heuncli.kernel.declarations import *
+from heuncli.kernel.response import evaluate, project_state
 
-if not cython.compiled:
-    from heuncli.kernel.attitudes import chart_slopes, half_turn_rate, leave_chart
-    from heuncli.kernel.response import evaluate, project_state
-    from heuncli.kernel.scene import Freedom, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
-
-    # What a step tried comes to.
-    NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
-    # Rows of the interpolating polynomial: the cubic, and what accelerations at both ends add to it.
-    CHANGE, START_SLOPE, END_SLOPE, START_BEND, END_BEND = range(5)
-    HERMITE_ROWS = 3  # those of the cubic, which every method has
-    # A record of the track: whether the step's polynomial is recorded, its start, its length.
-    HAS_COURSE, STEP_START, STEP_LENGTH = range(3)
-    MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
+# Rows of the interpolating polynomial: the cubic, and what accelerations at both ends add to it.
+CHANGE, START_SLOPE, END_SLOPE, START_BEND, END_BEND = range(5)
+HERMITE_ROWS = 3  # those of the cubic, which every method has
 
 
 def combine_stages(
@@ -136,9 +123,9 @@ def evaluate_stage(
     if method.attitude:
         store_chart_slopes(scene, method, run, run.stage, s)
         if not run.following:
-            rate = half_turn_rate(scene, run.stage, run.chart.ways)
-            if rate > run.chart.nearing:
-                run.chart.nearing = rate
+            rate = half_turn_rate(scene, run.stage, run.chart.angles_left)
+            if rate > run.chart.approach_rate:
+                run.chart.approach_rate = rate
     return trouble
 
 
@@ -235,7 +222,7 @@ def build_collocation_interpolant(method: cython.pointer[Method], run: cython.po
     build_hermite(method, run)
     for s in range(method.dense_rows):
         row: cython.int = method.stages + 1 + method.extra + method.estimates + s
-        combine_stages(method, row, run.newton.known, run.n, run.dense[HERMITE_ROWS + s])
+        combine_stages(method, row, run.newton.polynomial_rows, run.n, run.dense[HERMITE_ROWS + s])
 
 
 def ensure_interpolant(
@@ -315,9 +302,9 @@ def record_course(method: cython.pointer[Method], run: cython.pointer[Run]) -> c
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    span: cython.p_double = run.track.spans[run.track.done]
+    span: cython.p_double = run.track.spans[run.track.step_count]
     count: cython.Py_ssize_t = HERMITE_ROWS + method.dense_rows
-    first: cython.Py_ssize_t = (count + 1) * run.track.done
+    first: cython.Py_ssize_t = (count + 1) * run.track.step_count
     span[HAS_COURSE] = run.has_interpolant and not (method.by_step or method.attitude or run.determined)
     span[STEP_START] = run.t
     span[STEP_LENGTH] = run.h

@@ -38,69 +38,10 @@ Derivatives of programs: jets.py; bounds of their values: enclosure.py.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
 
-
-if not cython.compiled:
-    from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
-
-    from heuncli.kernel.libm import NAN, cos, cosh, exp, floor, pow, sin, sinh, tan
-    from heuncli.kernel.programs import (
-        ABS,
-        ACOS,
-        ADD,
-        ASIN,
-        ATAN,
-        ATAN2,
-        CONST,
-        COS,
-        COSH,
-        DIV,
-        EQ,
-        EXP,
-        EXTENDED,
-        FREE,
-        GE,
-        GT,
-        HELD,
-        HOLD,
-        HYPOT,
-        INTEGRAL,
-        JUMP,
-        KNOT,
-        LE,
-        LOG,
-        LT,
-        MAX,
-        MIN,
-        MUL,
-        NEG,
-        NODES,
-        PERIODIC,
-        POW,
-        POWER,
-        SIGN,
-        SIN,
-        SINH,
-        SQRT,
-        STEP,
-        SUB,
-        TABLE,
-        TAKEN,
-        TAN,
-        TANH,
-        UNLESS,
-        VAR,
-        Instruction,
-        Program,
-        Programs,
-        Table,
-    )
-    from heuncli.kernel.shadow import cython
-
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import NAN, cos, cosh, exp, floor, pow, sin, sinh, tan
 
 # Values
 
@@ -146,7 +87,7 @@ def evaluate_program(programs: cython.pointer[Programs], program: Program) -> cy
         else:
             f: cython.double
             if op == HOLD:
-                f = evaluate_on_branch(programs, position, programs.held[k], stack[height - 1], x)
+                f = evaluate_on_branch(programs, position, programs.branches[k], stack[height - 1], x)
                 op = programs.code[position].op
                 k = programs.code[position].argument
                 position += 2 if op == TABLE or op == KNOT else 1
@@ -331,7 +272,7 @@ def record_branch(
         branch = find_unwrapped_piece(programs.tables[number], read_table(programs, position + 1, number), b)
     else:
         branch = apply_piecewise(op, b, 0)
-    programs.held[k] = branch
+    programs.branches[k] = branch
 
 
 def evaluate_on_branch(

@@ -2,75 +2,17 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
 from array import array
 from collections.abc import Sequence
 from typing import Any
 
-if not cython.compiled:
-    from heuncli.kernel.evaluator import evaluate_program
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.programs import (
-        ABS,
-        ACOS,
-        ADD,
-        ASIN,
-        ATAN,
-        ATAN2,
-        CONST,
-        COS,
-        COSH,
-        DIV,
-        EQ,
-        EXP,
-        FREE,
-        GE,
-        GT,
-        HELD,
-        HOLD,
-        HYPOT,
-        INTEGRAL,
-        JUMP,
-        KNOT,
-        LE,
-        LOG,
-        LT,
-        MAX,
-        MIN,
-        MUL,
-        NE,
-        NEG,
-        NODES,
-        POW,
-        POWER,
-        SIGN,
-        SIN,
-        SINH,
-        SQRT,
-        STEP,
-        SUB,
-        TABLE,
-        TAKEN,
-        TAN,
-        TANH,
-        UNLESS,
-        VAR,
-        Bounds,
-        Instruction,
-        Jet,
-        Program,
-        Programs,
-        Span,
-    )
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import evaluate_program
+from heuncli.kernel.libm import NAN
 
-    # The arrays of `Expressions.memory`, in their order.
-    CODE_MEMORY, CONSTANT_MEMORY, VARIABLE_MEMORY, STACK_MEMORY, JET_MEMORY, HELD_MEMORY, DOUBT_MEMORY = range(7)
-    RANGE_MEMORY, MIDDLE_MEMORY, SPAN_MEMORY, TABLE_MEMORY = range(7, 11)
+# The arrays of `Expressions.memory`, in their order.
+CODE_MEMORY, CONSTANT_MEMORY, VARIABLE_MEMORY, STACK_MEMORY, JET_MEMORY, HELD_MEMORY, DOUBT_MEMORY = range(7)
+RANGE_MEMORY, MIDDLE_MEMORY, SPAN_MEMORY, TABLE_MEMORY = range(7, 11)
 
 OPERATIONS = {
     "const": CONST, "var": VAR, "add": ADD, "sub": SUB, "mul": MUL, "div": DIV, "pow": POW, "atan2": ATAN2,
@@ -175,7 +117,7 @@ class Expressions:
             self.programs.variables = [0.0] * max(variables, 1)
             self.programs.stack = [0.0] * depth
             self.programs.jets = [Jet(0.0, 0.0, 0.0)] * depth
-            self.programs.held = [0.0] * slots
+            self.programs.branches = [0.0] * slots
             self.programs.doubt = [0] * slots
             nothing = Bounds(NAN, NAN)
             self.programs.ranges = [Span(nothing, nothing, nothing)] * max(variables, 1)
@@ -203,7 +145,7 @@ class Expressions:
             self.programs.variables = cython.cast(cython.p_double, address_of(arrays[VARIABLE_MEMORY]))
             self.programs.stack = cython.cast(cython.p_double, address_of(arrays[STACK_MEMORY]))
             self.programs.jets = cython.cast(cython.pointer[Jet], address_of(arrays[JET_MEMORY]))
-            self.programs.held = cython.cast(cython.p_double, address_of(arrays[HELD_MEMORY]))
+            self.programs.branches = cython.cast(cython.p_double, address_of(arrays[HELD_MEMORY]))
             self.programs.doubt = cython.cast(cython.p_int, address_of(arrays[DOUBT_MEMORY]))
             self.programs.ranges = cython.cast(cython.pointer[Span], address_of(arrays[RANGE_MEMORY]))
             self.programs.middles = cython.cast(cython.pointer[Span], address_of(arrays[MIDDLE_MEMORY]))
@@ -227,7 +169,7 @@ class Expressions:
 
     def branches(self) -> list[float]:
         """Return the held branches in the order of the programs' HOLD instructions."""
-        return [self.programs.held[k] for k in range(self.held_count)]
+        return [self.programs.branches[k] for k in range(self.held_count)]
 
     def hold_branches(self, branches: Sequence[float]) -> None:
         """Set the branches to hold, one for each HOLD instruction."""
@@ -235,7 +177,7 @@ class Expressions:
         if len(branches) != self.held_count:
             raise ValueError(f"{self.held_count} branches are held, not {len(branches)}")
         for k in range(self.held_count):
-            self.programs.held[k] = branches[k]
+            self.programs.branches[k] = branches[k]
 
     def take_doubts(self) -> list[int]:
         """Return and clear the numbers of the branches that enclosures (enclosure.py) found in doubt since the last

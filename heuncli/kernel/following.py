@@ -17,57 +17,26 @@ masses that move. The work done is the gain of kinetic and potential energy.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, fabs, sqrt
 
-if not cython.compiled:
-    from math import atan2, fabs, sqrt
+from heuncli.kernel.columns import add_prescribed, clear_loads, clear_motion
+from heuncli.kernel.conditions import condition, condition_count
+from heuncli.kernel.course import set_time_range
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
+from heuncli.kernel.enclosure import enclose
+from heuncli.kernel.jets import jet
+from heuncli.kernel.kinematics import update_kinematics
+from heuncli.kernel.landing import begin_step_extremes, record_stage
+from heuncli.kernel.libm import INFINITY
+from heuncli.kernel.loads import load_potential
+from heuncli.kernel.points import evaluate_variables
+from heuncli.kernel.response import evaluate, project_state, solve_response
+from heuncli.kernel.selection import order_all
+from heuncli.kernel.tracks import find_track_place
+from heuncli.kernel.watches import record_extremes
 
-    from heuncli.kernel.algebra import (
-        Quaternion,
-        Vec3,
-        add_scaled,
-        apply_small_rotation,
-        cross,
-        dot,
-        norm,
-        rotate_back,
-        scale_vector,
-        transform,
-    )
-    from heuncli.kernel.columns import add_prescribed, clear_loads, clear_motion
-    from heuncli.kernel.conditions import condition, condition_count
-    from heuncli.kernel.course import set_time_range
-    from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.events import record_extremes
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.landing import begin_step_extremes, record_stage
-    from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.loads import load_potential
-    from heuncli.kernel.points import evaluate_variables
-    from heuncli.kernel.programs import Bounds, Jet, Program
-    from heuncli.kernel.response import evaluate, project_state, solve_response
-    from heuncli.kernel.scene import (
-        MESH,
-        SHIFT,
-        TURN,
-        Body,
-        Closure,
-        Counter,
-        Freedom,
-        Scene,
-    )
-    from heuncli.kernel.selection import order_all
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import FollowedStep, Method, Run
-    from heuncli.kernel.tracks import find_track_place
-    from heuncli.kernel.tree import update_kinematics
-
-    WATCH_PARTS = 2  # parts of a step, at whose ends loads are recorded
+WATCH_PARTS = 2  # parts of a step, at whose ends loads are recorded
 
 
 def is_determined(scene: cython.pointer[Scene]) -> cython.bint:
@@ -89,7 +58,7 @@ def is_determined(scene: cython.pointer[Scene]) -> cython.bint:
 def prepare_step(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
     """Store what the next step needs of the state reached, which was evaluated last."""
     i: cython.Py_ssize_t
-    branch: cython.pointer[FollowedStep] = cython.address(run.branch)
+    branch: cython.pointer[FollowedStep] = cython.address(run.followed_step)
     if scene.closure_count == 0:
         update_kinematics(scene, clip_time(run, run.t), run.y)
     branch.energy = mechanical_energy(scene)
@@ -100,9 +69,7 @@ def prepare_step(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyth
         marker: Vec3 = body_components(
             scene, counter.b, world_direction(scene, counter.a, find_perpendicular(counter.axis))
         )
-        branch.marks[3 * i] = marker.x
-        branch.marks[3 * i + 1] = marker.y
-        branch.marks[3 * i + 2] = marker.z
+        write_vector(branch.marks, 3 * i, marker)
     if scene.closure_count and not run.following:
         branch.pivot = order_all(scene, 0.0)
         measure_reach(scene, branch)
@@ -171,7 +138,7 @@ def bound_drive_motion(scene: cython.pointer[Scene], run: cython.pointer[Run]) -
     program: Program
     bounds: Bounds
     motion: cython.double = 0.0
-    branch: cython.pointer[FollowedStep] = cython.address(run.branch)
+    branch: cython.pointer[FollowedStep] = cython.address(run.followed_step)
     if scene.closure_count == 0:
         return 0.0
     set_time_range(scene.programs, run.t, clip_time(run, run.stop))
@@ -209,7 +176,7 @@ def drive_bends(
     such a quintic between the ends, and deviates by deviation h^2 / 24 per unit: of the sixth derivative an
     acceleration has 3 h^4 / 8, a value h^6 / 64, both divided by 720. That is checked where m does not limit the step.
     """
-    travel: cython.double = run.branch.travel[drive]
+    travel: cython.double = run.followed_step.travel[drive]
     first: Jet = jet(scene.programs, program, run.t)
     middle: Jet = jet(scene.programs, program, clip_time(run, run.t + 0.5 * run.h))
     last: Jet = jet(scene.programs, program, clip_time(run, run.stop))
@@ -221,7 +188,7 @@ def drive_bends(
     part: cython.double = scene.limits.branch_bend
     if not fabs(deviation) <= part * (size + part * rate / run.h):
         return True
-    if not travel > run.branch.reach[drive]:
+    if not travel > run.followed_step.reach[drive]:
         return False
     rounding: cython.double = scene.limits.rounding * run.h * (rate + run.h * size)
     return not fabs(deviation) * run.h * run.h / 24.0 <= scene.limits.branch_between / travel + rounding
@@ -232,7 +199,7 @@ def drive_bends(
 
 def allowed_motion(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
     """Return how far coordinates may move in a step; a run that begins late takes other steps."""
-    return scene.limits.branch_step * run.branch.pivot * (scene.limits.branch_beside if run.late else 1.0)
+    return scene.limits.branch_step * run.followed_step.pivot * (scene.limits.branch_next_start if run.late else 1.0)
 
 
 def follow_drives(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
@@ -249,8 +216,8 @@ def follow_drives(scene: cython.pointer[Scene], method: cython.pointer[Method], 
         if drives_bend(scene, run):
             propose_shorter(run, 0.5)
             return -1
-        run.branch.moved = moved
-    if run.seeing:
+        run.followed_step.moved = moved
+    if run.sees_stages:
         begin_step_extremes(scene, run)
     predict_state(scene, run)
     gap = project_state(scene, t, run.z)
@@ -260,7 +227,7 @@ def follow_drives(scene: cython.pointer[Scene], method: cython.pointer[Method], 
     if not run.following and not fabs(mechanical_energy(scene)) < INFINITY:
         propose_shorter(run, 0.0)
         return -1
-    if run.seeing:
+    if run.sees_stages:
         record_stage(scene, run, t)
         record_within_step(scene, method, run)
     if not run.following and scene.closure_count and may_have_left_branch(scene, run, gap):
@@ -294,13 +261,10 @@ def predict_state(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
         if scene.bodies[i].ball:
             at = scene.bodies[i].attitude_at
             u = scene.bodies[i].rate_at
-            omega: Vec3 = Vec3(y[u], y[u + 1], y[u + 2])
-            turn: Vec3 = scale_vector(h, add_scaled(omega, 0.5 * h, Vec3(dy[u], dy[u + 1], dy[u + 2])))
-            q: Quaternion = apply_small_rotation(Quaternion(y[at], y[at + 1], y[at + 2], y[at + 3]), turn)
-            run.z[at] = q.w
-            run.z[at + 1] = q.x
-            run.z[at + 2] = q.y
-            run.z[at + 3] = q.z
+            omega: Vec3 = read_vector(y, u)
+            turn: Vec3 = scale_vector(h, add_scaled(omega, 0.5 * h, read_vector(dy, u)))
+            q: Quaternion = apply_small_rotation(read_quaternion(y, at), turn)
+            write_quaternion(run.z, at, q)
 
 
 def may_have_left_branch(scene: cython.pointer[Scene], run: cython.pointer[Run], gap: cython.double) -> cython.bint:
@@ -309,14 +273,14 @@ def may_have_left_branch(scene: cython.pointer[Scene], run: cython.pointer[Run],
     k: cython.Py_ssize_t
     x: cython.double
     square: cython.double
-    most: cython.double = 2.0 * run.branch.moved + scene.limits.lost
+    most: cython.double = 2.0 * run.followed_step.moved + scene.limits.closures_lost
     if not gap <= scene.limits.reopened * scene.size:
         return True
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        if not freedom.driven and run.branch.bends[i]:
+        if not freedom.driven and run.followed_step.bends[i]:
             x = fabs(run.z[freedom.q_at] - run.y[freedom.q_at])
-            if not x <= most * (run.branch.length if freedom.kind == SHIFT else 1.0):
+            if not x <= most * (run.followed_step.length if freedom.kind == SHIFT else 1.0):
                 return True
     for i in range(scene.body_count):
         if scene.bodies[i].ball:
@@ -325,7 +289,7 @@ def may_have_left_branch(scene: cython.pointer[Scene], run: cython.pointer[Run],
                 square += (run.z[k] - run.y[k]) * (run.z[k] - run.y[k])
             if not 2.0 * sqrt(square) <= most:
                 return True
-    return not order_all(scene, 0.0) >= 0.5 * run.branch.pivot
+    return not order_all(scene, 0.0) >= 0.5 * run.followed_step.pivot
 
 
 def continue_counters(scene: cython.pointer[Scene], run: cython.pointer[Run], x: cython.p_double) -> cython.void:
@@ -336,22 +300,22 @@ def continue_counters(scene: cython.pointer[Scene], run: cython.pointer[Run], x:
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
         if counter.track:
-            x[counter.at] = find_track_place(scene, cython.address(scene.closures[counter.track - 1]))
+            x[counter.state_at] = find_track_place(scene, cython.address(scene.closures[counter.track - 1]))
             continue
         n: Vec3 = counter.axis
-        w: Vec3 = Vec3(run.branch.marks[3 * i], run.branch.marks[3 * i + 1], run.branch.marks[3 * i + 2])
+        w: Vec3 = read_vector(run.followed_step.marks, 3 * i)
         start_direction: Vec3 = find_perpendicular(n)
         end_direction: Vec3 = body_components(scene, counter.a, world_direction(scene, counter.b, w))
-        angle = run.y[counter.at] + atan2(
+        angle = run.y[counter.state_at] + atan2(
             dot(n, cross(start_direction, end_direction)), dot(start_direction, end_direction)
         )
-        while x[counter.at] - angle > half:
+        while x[counter.state_at] - angle > half:
             angle += 2.0 * half
-        while angle - x[counter.at] > half:
+        while angle - x[counter.state_at] > half:
             angle -= 2.0 * half
-        x[counter.at] = angle
+        x[counter.state_at] = angle
     if scene.work_at >= 0:
-        x[scene.work_at] = run.y[scene.work_at] + (mechanical_energy(scene) - run.branch.energy)
+        x[scene.work_at] = run.y[scene.work_at] + (mechanical_energy(scene) - run.followed_step.energy)
 
 
 def find_perpendicular(n: Vec3) -> Vec3:

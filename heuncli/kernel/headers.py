@@ -3,10 +3,10 @@
 
 What a module says in Python, and what that becomes in C:
 
-    from math import sqrt                   in the block for plain Python: the function of C's library; so from libm.py.
-                                            Imports from the kernel need nothing: all is in the one module
-    GUIDE, DOT = range(2)                   in that block: an enumeration
-    SAFETY = 0.9                            at the top: a C constant
+    from math import sqrt                   the function of C's library; so from libm.py. Imports from the kernel need
+                                            nothing: all is in the one module
+    GUIDE, DOT = range(2)                   an enumeration
+    SAFETY = 0.9                            a C constant
     class Body(Struct)                      a struct (structs.py), field by field
     def push_load(...)                      a C function, if it returns a C type or takes a pointer or a struct; if no
                                             Python object is in it, without exceptions and without the interpreter's
@@ -35,10 +35,7 @@ def generate_declarations(modules: dict[str, ast.Module]) -> str:
     structs = find_struct_names(modules)
     types = [node for name in MODULES for node in modules[name].body if isinstance(node, ast.ClassDef)]
     parts = [
-        *(
-            declare_enumeration(module.body if name in DECLARED else find_plain_block(module))
-            for name, module in modules.items()
-        ),
+        *(declare_enumeration(module) for module in modules.values()),
         [declare_struct(node, structs) for name in DECLARED for node in modules[name].body if is_struct(node, structs)],
         [f"cdef class {node.name}\n" for node in types],
         [declare_extension_type(node, structs) for node in types],
@@ -51,33 +48,38 @@ def find_struct_names(modules: dict[str, ast.Module]) -> frozenset[str]:
     return frozenset(node.name for name in DECLARED for node in modules[name].body if isinstance(node, ast.ClassDef))
 
 
-def find_plain_block(module: ast.Module) -> list[ast.stmt]:
-    """Return the statements below `if not cython.compiled:`."""
-    blocks = [node for node in module.body if isinstance(node, ast.If)]
-    return next(node.body for node in blocks if ast.unparse(node.test) == "not cython.compiled")
-
-
 # Imports and constants
 
 
-def find_library_names(block: list[ast.stmt]) -> list[str]:
+def find_library_names(module: ast.Module) -> list[str]:
     """Return the names that a module imports from C's library."""
     return [
         alias.name
-        for node in block
+        for node in module.body
         if isinstance(node, ast.ImportFrom) and node.module in ("math", f"{PACKAGE}.libm")
         for alias in node.names
     ]
 
 
-def declare_enumeration(block: list[ast.stmt]) -> list[str]:
-    """Declare the whole numbers of a block by their names."""
+def is_integer_constant(node: ast.stmt) -> TypeGuard[ast.Assign]:
+    """Return whether a statement names one or more whole numbers."""
+    if not isinstance(node, ast.Assign):
+        return False
+    value = node.value
+    if isinstance(value, ast.Call):
+        return ast.unparse(value.func) == "range"
+    parts = value.elts if isinstance(value, ast.Tuple) else [value]
+    return all(isinstance(part, ast.Constant) and type(part.value) is int for part in parts)
+
+
+def declare_enumeration(module: ast.Module) -> list[str]:
+    """Declare the whole numbers of a module by their names."""
     lines = []
-    for node in block:
-        if isinstance(node, ast.Assign):
+    for node in module.body:
+        if is_integer_constant(node):
             target, value = node.targets[0], node.value
             names = [ast.unparse(part) for part in (target.elts if isinstance(target, ast.Tuple) else [target])]
-            if isinstance(value, ast.Call) and ast.unparse(value.func) == "range":
+            if isinstance(value, ast.Call):
                 numbers = list(range(*(ast.literal_eval(argument) for argument in value.args)))
             else:
                 numbers = [ast.literal_eval(part) for part in (value.elts if isinstance(value, ast.Tuple) else [value])]
@@ -149,7 +151,7 @@ def declare_struct(node: ast.ClassDef, structs: frozenset[str]) -> str:
     """Declare a struct; a tuple of structs of one kind is an array."""
     lines = [f"cdef struct {node.name}:\n"]
     for field in node.body:
-        if isinstance(field, ast.AnnAssign):
+        if isinstance(field, ast.AnnAssign) and ast.unparse(field.annotation) != "Computed":
             kind, name = field.annotation, ast.unparse(field.target)
             if isinstance(kind, ast.Subscript) and isinstance(kind.slice, ast.Tuple):
                 name += f"[{len(kind.slice.elts)}]"

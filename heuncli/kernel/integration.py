@@ -7,25 +7,18 @@ from __future__ import annotations
 
 from typing import Any
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.dense import HERMITE_ROWS, STEP_LENGTH, STEP_START, clip_time, evaluate_polynomial
-    from heuncli.kernel.events import MAX_PEAK_PARTS, hold_branches, reset_watches
-    from heuncli.kernel.following import is_linear, prepare_step
-    from heuncli.kernel.memory import Memory
-    from heuncli.kernel.programs import FREE, HELD
-    from heuncli.kernel.response import evaluate
-    from heuncli.kernel.row_choice import choice_width
-    from heuncli.kernel.scene import SHIFT, Body, Freedom, Group, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Collocation, Course, FollowedStep, Method, Newton, Orbits, Run
-    from heuncli.kernel.steps import restore_record, run_steps
-    from heuncli.kernel.workspace import Workspace
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import HERMITE_ROWS, clip_time, evaluate_polynomial
+from heuncli.kernel.events import hold_branches
+from heuncli.kernel.following import is_linear, prepare_step
+from heuncli.kernel.memory import Memory
+from heuncli.kernel.response import evaluate
+from heuncli.kernel.row_choice import choice_width
+from heuncli.kernel.step_ends import restore_record
+from heuncli.kernel.steps import run_steps
+from heuncli.kernel.watches import MAX_PEAK_PARTS, reset_watches
+from heuncli.kernel.workspace import Workspace
 
 
 def record_width(workspace: Workspace, n: cython.int) -> int:
@@ -114,9 +107,9 @@ class Integration:
         run.control.rate = start["rate"]
         run.following = start["following"]
         run.late = start["late"]
-        run.stiffness.after = start["stiff_after"]
-        run.stiffness.easy_after = start["easy_after"]
-        run.stiffness.look_after = start["look_after"]
+        run.stiffness.short_limit = start["stiff_after"]
+        run.stiffness.easy_limit = start["easy_after"]
+        run.stiffness.total_limit = start["look_after"]
         run.stiffness.stable = start["stable"]
         run.weights = self.memory.doubles(start["weights"])
         run.y = self.memory.doubles(start["state"])
@@ -128,7 +121,7 @@ class Integration:
         run.stage = self.memory.zeros(n)
         run.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
         if self.method.by_step:
-            run.beside = self.memory.matrix(self.method.stages, n)
+            run.side_stages = self.memory.matrix(self.method.stages, n)
         run.dense = self.memory.matrix(HERMITE_ROWS + self.method.dense_rows, n)
         self.allocate_chart(n)
         reset_watches(cython.address(self.workspace.scene))
@@ -137,14 +130,14 @@ class Integration:
             groups: cython.p_void = self.memory.copy_structs(start["groups"], cython.sizeof(Group))
             run.groups = cython.cast(cython.pointer[Group], groups)
         else:
-            run.groups = [Group(row) for row in start["groups"].tolist()]
+            run.groups = [Group.from_numbers(row) for row in start["groups"].tolist()]
 
     def allocate_chart(self, n: cython.int) -> None:
         """Allocate the numbers that steps are taken in, if they are not the state's own."""
         run: cython.pointer[Run] = cython.address(self.run)
         run.chart.y, run.chart.z, run.chart.K = run.y, run.z, run.K
         if self.method.attitude:
-            run.chart.ways = self.memory.zeros(self.workspace.scene.body_count)
+            run.chart.angles_left = self.memory.zeros(self.workspace.scene.body_count)
             run.chart.y = self.memory.zeros(n)
             run.chart.z = self.memory.zeros(n)
             run.chart.K = self.memory.matrix(self.method.stages + 1 + self.method.extra, n)
@@ -159,18 +152,18 @@ class Integration:
         course.second = self.memory.matrix(scene.variable_count, rows)
         course.work = self.memory.zeros(rows)
         if scene.point_count:
-            self.allocate_orbits(rows)
+            self.allocate_point_course(rows)
         course.begins = self.memory.zeros(MAX_PEAK_PARTS)
         course.ends = self.memory.zeros(MAX_PEAK_PARTS)  # more than halvings
         course.promise = self.memory.zeros(MAX_PEAK_PARTS)
-        course.before = self.memory.zeros(scene.held_count)
+        course.saved_branches = self.memory.zeros(scene.held_count)
         course.turned = self.memory.zeros(scene.held_count)
         course.resting = self.memory.zeros(scene.held_count)
 
-    def allocate_orbits(self, rows: cython.Py_ssize_t) -> None:
+    def allocate_point_course(self, rows: cython.Py_ssize_t) -> None:
         """Allocate the courses of the points that expressions use; rows: of a component of the state."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
-        points: cython.pointer[Orbits] = cython.address(self.run.course.points)
+        points: cython.pointer[PointCourse] = cython.address(self.run.course.points)
         variables: cython.Py_ssize_t = scene.variable_count
         bodies: cython.Py_ssize_t = scene.body_count
         points.n = self.run.n
@@ -178,15 +171,15 @@ class Integration:
         points.origin = self.run.y
         points.states = self.memory.matrix(points.n, rows)
         points.slopes = self.memory.zeros(rows)
-        points.at = self.memory.zeros(points.n)
-        points.kept = self.memory.zeros(variables)
+        points.state = self.memory.zeros(points.n)
+        points.saved_variables = self.memory.zeros(variables)
         points.first_place = self.memory.zeros(variables)
         points.first_rate = self.memory.zeros(variables)
         points.last_place = self.memory.zeros(variables)
         points.last_rate = self.memory.zeros(variables)
-        points.spin = self.memory.zeros(bodies)
-        points.twist = self.memory.zeros(bodies)
-        points.pull = self.memory.zeros(bodies)
+        points.angular_velocity = self.memory.zeros(bodies)
+        points.angular_acceleration = self.memory.zeros(bodies)
+        points.acceleration = self.memory.zeros(bodies)
         points.reach = self.memory.zeros(bodies)
         points.speed = self.memory.zeros(bodies)
 
@@ -200,19 +193,19 @@ class Integration:
         n: cython.Py_ssize_t
         largest_measure: cython.double = 0.0
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
-        branch: cython.pointer[FollowedStep] = cython.address(self.run.branch)
+        branch: cython.pointer[FollowedStep] = cython.address(self.run.followed_step)
         branch.travel = self.memory.doubles([-1.0] * (scene.freedom_count + scene.closure_count))
         branch.reach = self.memory.zeros(scene.freedom_count + scene.closure_count)
         branch.bends = self.memory.ints(bytes(4 * (scene.freedom_count + scene.body_count)))
         branch.marks = self.memory.zeros(3 * scene.counter_count)
         for i in range(scene.body_count):
             body: cython.pointer[Body] = cython.address(scene.bodies[i])
-            if body.ball and scene.measure[body.answer_at] > largest_measure:
-                largest_measure = scene.measure[body.answer_at]
+            if body.ball and scene.velocity_scale[body.velocity_at] > largest_measure:
+                largest_measure = scene.velocity_scale[body.velocity_at]
             for k in range(body.first_freedom, body.end_freedom):
                 freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-                if freedom.kind != SHIFT and scene.measure[freedom.answer_at] > largest_measure:
-                    largest_measure = scene.measure[freedom.answer_at]
+                if freedom.kind != SHIFT and scene.velocity_scale[freedom.velocity_at] > largest_measure:
+                    largest_measure = scene.velocity_scale[freedom.velocity_at]
         branch.length = 1.0 / largest_measure if largest_measure > 0.0 else scene.size
         for i in range(scene.closure_count):
             if scene.closures[i].program.count:
@@ -238,14 +231,14 @@ class Integration:
         formula.pair_count = len(method["parts"]) // 2
         formula.real = method["real"]
         formula.parts = self.memory.doubles(method["parts"])
-        formula.into = self.memory.doubles(method["into"])
-        formula.back = self.memory.doubles(method["back"])
+        formula.T_inverse = self.memory.doubles(method["into"])
+        formula.T = self.memory.doubles(method["back"])
         formula.end = self.memory.doubles(method["end"])
         formula.error = self.memory.doubles(method["error"])
         newton.tangent.n = n
         newton.tangent.J = self.memory.zeros(n * n)
-        newton.tangent.at = self.memory.zeros(n)
-        newton.tangent.beside = self.memory.zeros(n)
+        newton.tangent.derivative = self.memory.zeros(n)
+        newton.tangent.change = self.memory.zeros(n)
         newton.real.A = self.memory.zeros(n * n)
         newton.real.pivots = self.memory.ints(bytes(4 * n))
         for k in range(formula.pair_count):
@@ -253,11 +246,11 @@ class Integration:
             newton.pairs[k].B = self.memory.zeros(n * n)
             newton.pairs[k].pivots = self.memory.ints(bytes(4 * n))
         newton.Z = self.memory.matrix(formula.stages, n)
-        newton.known = self.memory.matrix(formula.stages + 1 + HERMITE_ROWS, n)
+        newton.polynomial_rows = self.memory.matrix(formula.stages + 1 + HERMITE_ROWS, n)
         for k in range(formula.stages):
-            newton.known[k + 1] = newton.Z[k]
+            newton.polynomial_rows[k + 1] = newton.Z[k]
         for k in range(HERMITE_ROWS):
-            newton.known[formula.stages + 1 + k] = self.run.dense[k]
+            newton.polynomial_rows[formula.stages + 1 + k] = self.run.dense[k]
         newton.W = self.memory.matrix(formula.stages, n)
         newton.step = self.memory.matrix(formula.stages, n)
         newton.error = self.memory.zeros(n)
@@ -266,7 +259,7 @@ class Integration:
         """Set the requested instants, and where states at them and at the ends of the steps are written."""
         run: cython.pointer[Run] = cython.address(self.run)
         run.samples.count = len(output["times"])
-        run.track.most = len(output["ends"])
+        run.track.capacity = len(output["ends"])
         run.samples.times = self.memory.doubles(output["times"])
         run.samples.states = self.memory.view_rows(output["samples"], run.samples.count, run.n)
         run.track.ends = self.memory.view_row(output["ends"])
@@ -274,20 +267,22 @@ class Integration:
         run.track.pivots = self.memory.view_row(output["pivots"])
         run.track.turned = self.memory.view_row(output["turned"])
         held_count: cython.int = self.workspace.scene.held_count
-        run.track.branches = self.memory.view_rows(output["branches"], run.track.most if held_count else 0, held_count)
-        run.track.passed = self.memory.view_rows(
-            output["passed"], 0 if run.following else run.track.most, self.record_width
+        run.track.branches = self.memory.view_rows(
+            output["branches"], run.track.capacity if held_count else 0, held_count
         )
-        run.track.coursed = len(output["spans"]) > 0
+        run.track.passed = self.memory.view_rows(
+            output["passed"], 0 if run.following else run.track.capacity, self.record_width
+        )
+        run.track.has_courses = len(output["spans"]) > 0
         rows: cython.Py_ssize_t = self.course_rows
-        run.track.spans = self.memory.view_rows(output["spans"], run.track.most if run.track.coursed else 0, 3)
+        run.track.spans = self.memory.view_rows(output["spans"], run.track.capacity if run.track.has_courses else 0, 3)
         run.track.courses = self.memory.view_rows(
-            output["courses"], rows * run.track.most if run.track.coursed else 0, run.n
+            output["courses"], rows * run.track.capacity if run.track.has_courses else 0, run.n
         )
 
     def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
         """Begin a piece from t to its end, of which `before_end` is the last instant."""
-        self.run.t, self.run.before_end, self.run.end, self.run.fresh = t, before_end, end, 1
+        self.run.t, self.run.before_end, self.run.end, self.run.begins_piece = t, before_end, end, 1
 
     def jump(self, state: Any) -> None:
         """Continue from another state than the one reached; it replaces the sample at the instant reached too."""
@@ -310,7 +305,7 @@ class Integration:
         """Continue at t within a piece, bit by bit as the run whose record was restored."""
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
-        run.t, run.before_end, run.end, run.fresh = t, before_end, end, 0
+        run.t, run.before_end, run.end, run.begins_piece = t, before_end, end, 0
         if scene.held_count:
             hold_branches(scene, run.track.branches[0])
         scene.programs.holding = HELD
@@ -341,32 +336,32 @@ class Integration:
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         run: cython.pointer[Run] = cython.address(self.run)
         method: cython.pointer[Method] = cython.address(self.method)
-        run.track.most = max_steps
-        run.watching = watching
-        run.halting = halting
+        run.track.capacity = max_steps
+        run.watches_contacts = watching
+        run.stops_at_turns = halting
         scene.programs.holding = HELD
         with cython.nogil:
             code = run_steps(scene, method, run)
         scene.programs.holding = FREE
         if not cython.compiled and not run.following:
             for name in ("ends", "settled", "pivots", "turned"):
-                self.output[name][: run.track.done] = getattr(run.track, name)[: run.track.done]
+                self.output[name][: run.track.step_count] = getattr(run.track, name)[: run.track.step_count]
             width = self.record_width
-            for k in range(run.track.done):
+            for k in range(run.track.step_count):
                 self.output["passed"][k * width : (k + 1) * width] = run.track.passed[k]
             held_count = self.workspace.scene.held_count
-            for k in range(run.track.done if held_count else 0):
+            for k in range(run.track.step_count if held_count else 0):
                 self.output["branches"][k * held_count : (k + 1) * held_count] = run.track.branches[k]
-        if not cython.compiled and run.track.coursed:
-            for k in range(run.track.done):
+        if not cython.compiled and run.track.has_courses:
+            for k in range(run.track.step_count):
                 self.output["spans"][3 * k : 3 * k + 3] = run.track.spans[k]
-            for k in range(self.course_rows * run.track.done):
+            for k in range(self.course_rows * run.track.step_count):
                 self.output["courses"][k * run.n : (k + 1) * run.n] = run.track.courses[k]
         return code
 
     def stop_recording(self) -> None:
         """Record no more polynomials."""
-        self.run.track.coursed = 0
+        self.run.track.has_courses = 0
 
     def fetch(self) -> None:
         """Copy the samples into `output` (compiled, they are written there directly)."""
@@ -397,7 +392,7 @@ class Integration:
     @property
     def last_step_count(self) -> int:
         """Return the number of steps of the last call."""
-        return self.run.track.done
+        return self.run.track.step_count
 
     @property
     def steps(self) -> int:

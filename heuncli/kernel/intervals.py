@@ -10,19 +10,11 @@ empty interval, as the square root of [-2, -1], has NaN limits.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
 
-if not cython.compiled:
-    from math import acos, asin, atan, atan2, fabs, log, sqrt, tanh
-
-    from heuncli.kernel.evaluator import hypotenuse
-    from heuncli.kernel.libm import INFINITY, NAN, cos, cosh, exp, floor, pow, sin, sinh, tan
-    from heuncli.kernel.programs import Bounds
-    from heuncli.kernel.shadow import cython
-
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import hypotenuse
+from heuncli.kernel.libm import INFINITY, NAN, cos, cosh, exp, floor, pow, sin, sinh, tan
 
 # Directed rounding
 

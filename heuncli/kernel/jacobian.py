@@ -6,19 +6,10 @@ numbers of a ball joint's attitude are varied one by one as they are.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.columns import write_vector
-    from heuncli.kernel.scene import BodyTangent, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Tangent
-    from heuncli.kernel.tangent import differentiate_state, evaluate_base_state
-    from heuncli.kernel.tangent_closures import row_tangent
-    from heuncli.kernel.tangent_motion import differentiate_motion
+from heuncli.kernel.declarations import *
+from heuncli.kernel.tangent import differentiate_state, evaluate_base_state
+from heuncli.kernel.tangent_closures import row_tangent
+from heuncli.kernel.tangent_motion import differentiate_motion
 
 
 def find_jacobian(
@@ -28,16 +19,16 @@ def find_jacobian(
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     n: cython.Py_ssize_t = tangent.n
-    evaluate_base_state(scene, t, y, tangent.at)
+    evaluate_base_state(scene, t, y, tangent.derivative)
     for j in range(n):
-        scene.along[j] = 0.0
-        tangent.beside[j] = 0.0
+        scene.direction[j] = 0.0
+        tangent.change[j] = 0.0
     for j in range(n):
-        scene.along[j] = 1.0
-        differentiate_state(scene, y, scene.along, tangent.beside)
-        scene.along[j] = 0.0
+        scene.direction[j] = 1.0
+        differentiate_state(scene, y, scene.direction, tangent.change)
+        scene.direction[j] = 0.0
         for i in range(n):
-            tangent.J[n * i + j] = tangent.beside[i]
+            tangent.J[n * i + j] = tangent.change[i]
 
 
 def find_motions(
@@ -51,11 +42,11 @@ def find_motions(
     j: cython.Py_ssize_t
     offset: cython.Py_ssize_t = 0
     for j in range(n):
-        scene.along[j] = 0.0
+        scene.direction[j] = 0.0
     for j in range(n):
-        scene.along[j] = 1.0
-        differentiate_motion(scene, y, scene.along)
-        scene.along[j] = 0.0
+        scene.direction[j] = 1.0
+        differentiate_motion(scene, y, scene.direction)
+        scene.direction[j] = 0.0
         for i in range(scene.body_count):
             d: cython.pointer[BodyTangent] = cython.address(scene.tangents[i])
             offset = write_vector(buffer, write_vector(buffer, offset, d.turn), d.r)

@@ -12,81 +12,30 @@ x*sqrt(abs(x)) has the derivative 0 at 0. A program's own rate is finite or NaN.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
 from array import array
 from collections.abc import Sequence
+from math import atan2, log, sqrt
 
-if not cython.compiled:
-    from math import atan2, log, sqrt
-
-    from heuncli.kernel.evaluator import (
-        apply_exponential,
-        apply_piecewise,
-        apply_trigonometric,
-        compare,
-        evaluate_integral,
-        evaluate_on_branch,
-        find_integrand,
-        find_piece,
-        find_unwrapped_piece,
-        hypotenuse,
-        map_into_table,
-        read_table,
-        real_power,
-        takes_two,
-        whole_power,
-    )
-    from heuncli.kernel.expressions import Expressions, address_of
-    from heuncli.kernel.libm import INFINITY, NAN, cos, cosh, floor, sin, sinh
-    from heuncli.kernel.programs import (
-        ABS,
-        ADD,
-        ASIN,
-        ATAN,
-        ATAN2,
-        CONST,
-        COS,
-        COSH,
-        DIV,
-        EXP,
-        EXTENDED,
-        FREE,
-        HELD,
-        HOLD,
-        HYPOT,
-        INTEGRAL,
-        JUMP,
-        KNOT,
-        LOG,
-        LT,
-        MAX,
-        MIN,
-        MUL,
-        NEG,
-        PERIODIC,
-        POW,
-        POWER,
-        SIN,
-        SINH,
-        SQRT,
-        STEP,
-        SUB,
-        TABLE,
-        TAN,
-        TANH,
-        UNLESS,
-        VAR,
-        Jet,
-        Program,
-        Programs,
-        Table,
-    )
-    from heuncli.kernel.shadow import cython
-
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import (
+    apply_exponential,
+    apply_piecewise,
+    apply_trigonometric,
+    compare,
+    evaluate_integral,
+    evaluate_on_branch,
+    find_integrand,
+    find_piece,
+    find_unwrapped_piece,
+    hypotenuse,
+    map_into_table,
+    read_table,
+    real_power,
+    takes_two,
+    whole_power,
+)
+from heuncli.kernel.expressions import Expressions, address_of
+from heuncli.kernel.libm import INFINITY, NAN, cos, cosh, floor, sin, sinh
 
 # Programs
 
@@ -217,7 +166,7 @@ def jet_of_held(
     above.
     """
     op: cython.int = programs.code[position].op
-    f: Jet = jet_on_branch(programs, position, programs.held[k], programs.jets[height - 1], b)
+    f: Jet = jet_on_branch(programs, position, programs.branches[k], programs.jets[height - 1], b)
     if op >= LT and programs.code[position].argument == 1:
         programs.jets[height - 1] = f
         return b

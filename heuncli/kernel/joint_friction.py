@@ -18,43 +18,21 @@ first from below. For several N nothing is proved but that bound.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.declarations import *
+from heuncli.kernel.kinematics import add_load_to_body
+from heuncli.kernel.libm import NAN
 
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.scene import (
-        ENDS,
-        FOUND,
-        JAMS,
-        SHIFT_FRICTION,
-        THREAD_FRICTION,
-        THRUST_OF_ROW,
-        TWO,
-        UNPROVED,
-        WHOLE,
-        Body,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import add_load_to_body
-
-    # Rows of `trial`, a number for each joint: N, what is left of N = |E1| + |E2|, its weight, the contraction's step,
-    # and the change of N by Newton's method or along a direction.
-    NORMAL_FORCE, RESIDUAL, WEIGHT, CONTRACTION_STEP, FORCE_CHANGE = range(5)
-    MAX_FRICTION_ITERATIONS = 500  # corrections: Newton's method takes a few
+# Rows of `friction_trial`, a number for each joint: N, what is left of N = |E1| + |E2|, its weight, the contraction's
+# step, and the change of N by Newton's method or along a direction.
+NORMAL_FORCE, RESIDUAL, WEIGHT, CONTRACTION_STEP, FORCE_CHANGE = range(5)
+MAX_FRICTION_ITERATIONS = 500  # corrections: Newton's method takes a few
 
 FRICTION_ROUNDING = 8.8817841970012523e-16  # relative to the terms: four roundings
 
 
-# What presses
+# Normal forces
 
 
 def store_applied_loads(scene: cython.pointer[Scene]) -> cython.void:
@@ -62,12 +40,7 @@ def store_applied_loads(scene: cython.pointer[Scene]) -> cython.void:
     i: cython.Py_ssize_t
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        scene.kept[6 * i] = body.M_applied.x
-        scene.kept[6 * i + 1] = body.M_applied.y
-        scene.kept[6 * i + 2] = body.M_applied.z
-        scene.kept[6 * i + 3] = body.f_applied.x
-        scene.kept[6 * i + 4] = body.f_applied.y
-        scene.kept[6 * i + 5] = body.f_applied.z
+        write_vector(scene.stored_loads, write_vector(scene.stored_loads, 6 * i, body.M_applied), body.f_applied)
 
 
 def restore_applied_loads(scene: cython.pointer[Scene]) -> cython.void:
@@ -76,8 +49,8 @@ def restore_applied_loads(scene: cython.pointer[Scene]) -> cython.void:
     x: cython.Py_ssize_t
     for i in range(scene.body_count):
         x = 6 * i
-        scene.bodies[i].M_applied = Vec3(scene.kept[x], scene.kept[x + 1], scene.kept[x + 2])
-        scene.bodies[i].f_applied = Vec3(scene.kept[x + 3], scene.kept[x + 4], scene.kept[x + 5])
+        scene.bodies[i].M_applied = read_vector(scene.stored_loads, x)
+        scene.bodies[i].f_applied = read_vector(scene.stored_loads, x + 3)
 
 
 def apply_unit_friction(scene: cython.pointer[Scene], k: cython.Py_ssize_t) -> cython.void:
@@ -87,7 +60,7 @@ def apply_unit_friction(scene: cython.pointer[Scene], k: cython.Py_ssize_t) -> c
     for i in range(scene.body_count):
         scene.bodies[i].M_applied = zero
         scene.bodies[i].f_applied = zero
-    apply_friction(scene, cython.address(scene.loads[scene.rubs[k]]), 1.0)
+    apply_friction(scene, cython.address(scene.loads[scene.friction_loads[k]]), 1.0)
 
 
 def apply_friction(scene: cython.pointer[Scene], load: cython.pointer[Load], N: cython.double) -> cython.void:
@@ -100,16 +73,16 @@ def apply_friction(scene: cython.pointer[Scene], load: cython.pointer[Load], N: 
     else:
         load.force = scale_vector(load.factor, friction) if load.kind == THREAD_FRICTION else zero
         load.moment = friction
-    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
-    add_load_to_body(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+    add_load_to_body(scene, load.b, load.place, load.force, load.moment)
+    add_load_to_body(scene, load.a, load.place, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
 
 
 def joint_force(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """Return the force of the load's joint in the solution, on either of its bodies."""
     i: cython.Py_ssize_t
     total: Vec3 = Vec3(0.0, 0.0, 0.0)
-    if load.held_by >= 0:
-        return scene.bodies[load.held_by].f_joint
+    if load.joint_body >= 0:
+        return scene.bodies[load.joint_body].f_joint
     for i in range(load.row, load.row + load.row_count):
         total = add_scaled(total, scene.closures[i].multiplier, scene.closures[i].f)
     return total
@@ -121,9 +94,9 @@ def joint_moment(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Ve
     """
     i: cython.Py_ssize_t
     total: Vec3 = Vec3(0.0, 0.0, 0.0)
-    if load.held_by >= 0:
-        body: cython.pointer[Body] = cython.address(scene.bodies[load.held_by])
-        return add_cross(body.M_joint, sub(body.r, load.at), body.f_joint)
+    if load.joint_body >= 0:
+        body: cython.pointer[Body] = cython.address(scene.bodies[load.joint_body])
+        return add_cross(body.M_joint, sub(body.r, load.place), body.f_joint)
     for i in range(load.row, load.row + load.row_count):
         total = add_scaled(total, scene.closures[i].multiplier, scene.closures[i].m)
     return total
@@ -138,18 +111,18 @@ def record_contact_forces(scene: cython.pointer[Scene], column: cython.Py_ssize_
     """Store E of all joints in the solution, in a column: 0 for all other loads, k + 1 for the k-th friction."""
     j: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-    for j in range(scene.rub_count):
-        load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[j]])
-        if load.presses == THRUST_OF_ROW:
+    for j in range(scene.friction_count):
+        load: cython.pointer[Load] = cython.address(scene.loads[scene.friction_loads[j]])
+        if load.normal_force_kind == THRUST_OF_ROW:
             store_force_parts(scene, column, j, thread_thrust(scene, load), zero)
             continue
         F: Vec3 = joint_force(scene, load)
-        if load.presses == WHOLE:
+        if load.normal_force_kind == WHOLE:
             store_force_parts(scene, column, j, F, zero)
             continue
         n: Vec3 = world_direction(scene, load.a, load.axis)
         F = add_scaled(F, -dot(n, F), n)
-        if load.presses == ENDS:
+        if load.normal_force_kind == ENDS:
             store_end_forces(scene, column, j, F, cross(n, joint_moment(scene, load)))
         else:
             store_force_parts(scene, column, j, F, zero)
@@ -159,7 +132,7 @@ def store_end_forces(
     scene: cython.pointer[Scene], column: cython.Py_ssize_t, j: cython.Py_ssize_t, F: Vec3, couple: Vec3
 ) -> cython.void:
     """Store the forces at two ends from a force across the axis n and a moment M, given as n x M."""
-    tilt: Vec3 = scale_vector(1.0 / scene.loads[scene.rubs[j]].reach, couple)
+    tilt: Vec3 = scale_vector(1.0 / scene.loads[scene.friction_loads[j]].reach, couple)
     half: Vec3 = scale_vector(0.5, F)
     store_force_parts(scene, column, j, sub(half, tilt), add(half, tilt))
 
@@ -168,19 +141,14 @@ def store_force_parts(
     scene: cython.pointer[Scene], column: cython.Py_ssize_t, j: cython.Py_ssize_t, E1: Vec3, E2: Vec3
 ) -> cython.void:
     """Store E1 and E2 of a joint in a column."""
-    offset: cython.Py_ssize_t = 6 * (column * scene.rub_count + j)
-    scene.carried[offset] = E1.x
-    scene.carried[offset + 1] = E1.y
-    scene.carried[offset + 2] = E1.z
-    scene.carried[offset + 3] = E2.x
-    scene.carried[offset + 4] = E2.y
-    scene.carried[offset + 5] = E2.z
+    offset: cython.Py_ssize_t = 6 * (column * scene.friction_count + j)
+    write_vector(scene.contact_forces, write_vector(scene.contact_forces, offset, E1), E2)
 
 
 def force_part(scene: cython.pointer[Scene], column: cython.Py_ssize_t, j: cython.Py_ssize_t, end: cython.int) -> Vec3:
     """Return E1 or E2 (end 0, 1) of a joint in a column."""
-    offset: cython.Py_ssize_t = 6 * (column * scene.rub_count + j) + 3 * end
-    return Vec3(scene.carried[offset], scene.carried[offset + 1], scene.carried[offset + 2])
+    offset: cython.Py_ssize_t = 6 * (column * scene.friction_count + j) + 3 * end
+    return read_vector(scene.contact_forces, offset)
 
 
 # How hard
@@ -191,50 +159,52 @@ def find_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
     load.
     """
     k: cython.Py_ssize_t
-    n: cython.Py_ssize_t = scene.rub_count
+    n: cython.Py_ssize_t = scene.friction_count
     outcome: cython.int = FOUND
     failing: cython.int = factor_friction_bound(scene)
     if failing < 0:
         iterate_normal_forces(scene)
-    elif scene.bound[n * failing + failing] != scene.bound[n * failing + failing]:
-        scene.trial[0] = NAN  # loads without a value (NaN): there is no solution, but friction is not the reason
+    elif scene.friction_bound[n * failing + failing] != scene.friction_bound[n * failing + failing]:
+        scene.friction_trial[0] = (
+            NAN  # loads without a value (NaN): there is no solution, but friction is not the reason
+        )
     else:
         outcome = solve_single_friction(scene) if n == 1 else UNPROVED
     if outcome != FOUND:
-        scene.jammed = outcome
-        scene.jammed_load = scene.rubs[failing]
-        scene.jammed_at = scene.programs.variables[0]
+        scene.friction_outcome = outcome
+        scene.friction_outcome_load = scene.friction_loads[failing]
+        scene.friction_outcome_time = scene.programs.variables[0]
     for k in range(n):
-        load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[k]])
-        load.pressed = scene.trial[k] if outcome == FOUND else NAN
+        load: cython.pointer[Load] = cython.address(scene.loads[scene.friction_loads[k]])
+        load.normal_force = scene.friction_trial[k] if outcome == FOUND else NAN
         load.span = outcome if k == failing else FOUND
 
 
 def factor_friction_bound(scene: cython.pointer[Scene]) -> cython.int:
     """Eliminate 1 - B and find the weights w = (1 - B)^-1 1. Returns -1, or the row whose pivot is too small."""
-    n: cython.Py_ssize_t = scene.rub_count
+    n: cython.Py_ssize_t = scene.friction_count
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     i: cython.Py_ssize_t
     x: cython.double
     w: cython.Py_ssize_t = WEIGHT * n
     for j in range(n):
-        scene.trial[w + j] = 1.0
+        scene.friction_trial[w + j] = 1.0
         for k in range(n):
             x = norm(force_part(scene, k + 1, j, 0)) + norm(force_part(scene, k + 1, j, 1))
-            scene.bound[n * j + k] = (1.0 if j == k else 0.0) - x
+            scene.friction_bound[n * j + k] = (1.0 if j == k else 0.0) - x
     for k in range(n):
-        if not scene.bound[n * k + k] > scene.limits.friction_left:
+        if not scene.friction_bound[n * k + k] > scene.limits.friction_left:
             return k
         for j in range(k + 1, n):
-            x = scene.bound[n * j + k] / scene.bound[n * k + k]
+            x = scene.friction_bound[n * j + k] / scene.friction_bound[n * k + k]
             for i in range(k + 1, n):
-                scene.bound[n * j + i] -= x * scene.bound[n * k + i]
-            scene.trial[w + j] -= x * scene.trial[w + k]
+                scene.friction_bound[n * j + i] -= x * scene.friction_bound[n * k + i]
+            scene.friction_trial[w + j] -= x * scene.friction_trial[w + k]
     for k in range(n - 1, -1, -1):
         for i in range(k + 1, n):
-            scene.trial[w + k] -= scene.bound[n * k + i] * scene.trial[w + i]
-        scene.trial[w + k] /= scene.bound[n * k + k]
+            scene.friction_trial[w + k] -= scene.friction_bound[n * k + i] * scene.friction_trial[w + i]
+        scene.friction_trial[w + k] /= scene.friction_bound[n * k + k]
     return -1
 
 
@@ -242,8 +212,8 @@ def contact_force_part(scene: cython.pointer[Scene], j: cython.Py_ssize_t, end: 
     """Return E1 or E2 of a joint at the trial N."""
     k: cython.Py_ssize_t
     total: Vec3 = force_part(scene, 0, j, end)
-    for k in range(scene.rub_count):
-        total = add_scaled(total, scene.trial[k], force_part(scene, k + 1, j, end))
+    for k in range(scene.friction_count):
+        total = add_scaled(total, scene.friction_trial[k], force_part(scene, k + 1, j, end))
     return total
 
 
@@ -253,7 +223,7 @@ def friction_residual(scene: cython.pointer[Scene]) -> cython.double:
 
     0 if all residuals are rounding of their terms.
     """
-    n: cython.Py_ssize_t = scene.rub_count
+    n: cython.Py_ssize_t = scene.friction_count
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     end: cython.int
@@ -262,50 +232,52 @@ def friction_residual(scene: cython.pointer[Scene]) -> cython.double:
     largest: cython.double = 0.0
     has_residual: cython.bint = False
     for j in range(n):
-        scene.trial[RESIDUAL * n + j] = -scene.trial[j]
-        size = fabs(scene.trial[j])
+        scene.friction_trial[RESIDUAL * n + j] = -scene.friction_trial[j]
+        size = fabs(scene.friction_trial[j])
         for k in range(n):
-            scene.newton[n * j + k] = 1.0 if j == k else 0.0
+            scene.friction_slope[n * j + k] = 1.0 if j == k else 0.0
         for end in range(2):
             E: Vec3 = contact_force_part(scene, j, end)
             length = norm(E)
-            scene.trial[RESIDUAL * n + j] += length
+            scene.friction_trial[RESIDUAL * n + j] += length
             size += norm(force_part(scene, 0, j, end))
             for k in range(n):
                 A: Vec3 = force_part(scene, k + 1, j, end)
-                size += fabs(scene.trial[k]) * norm(A)
+                size += fabs(scene.friction_trial[k]) * norm(A)
                 if length > 0.0:
-                    scene.newton[n * j + k] -= dot(E, A) / length
-        has_residual = has_residual or not fabs(scene.trial[RESIDUAL * n + j]) <= FRICTION_ROUNDING * size
-        if not fabs(scene.trial[RESIDUAL * n + j]) <= largest * scene.trial[WEIGHT * n + j]:
-            largest = fabs(scene.trial[RESIDUAL * n + j]) / scene.trial[WEIGHT * n + j]
+                    scene.friction_slope[n * j + k] -= dot(E, A) / length
+        has_residual = has_residual or not fabs(scene.friction_trial[RESIDUAL * n + j]) <= FRICTION_ROUNDING * size
+        if not fabs(scene.friction_trial[RESIDUAL * n + j]) <= largest * scene.friction_trial[WEIGHT * n + j]:
+            largest = fabs(scene.friction_trial[RESIDUAL * n + j]) / scene.friction_trial[WEIGHT * n + j]
     return largest if has_residual else 0.0
 
 
 def iterate_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
     """Solve by Newton's method; if a step does not halve the residual, by the contraction itself."""
-    n: cython.Py_ssize_t = scene.rub_count
+    n: cython.Py_ssize_t = scene.friction_count
     k: cython.Py_ssize_t
     i: cython.int
     residual: cython.double
     previous: cython.double
     for k in range(n):
-        scene.trial[k] = norm(force_part(scene, 0, k, 0)) + norm(force_part(scene, 0, k, 1))
+        scene.friction_trial[k] = norm(force_part(scene, 0, k, 0)) + norm(force_part(scene, 0, k, 1))
     residual = friction_residual(scene)
     for i in range(MAX_FRICTION_ITERATIONS):
         if not residual > 0.0:
             break
         previous = residual
         for k in range(n):
-            scene.trial[CONTRACTION_STEP * n + k] = scene.trial[RESIDUAL * n + k]
-            scene.trial[FORCE_CHANGE * n + k] = scene.trial[RESIDUAL * n + k]
+            scene.friction_trial[CONTRACTION_STEP * n + k] = scene.friction_trial[RESIDUAL * n + k]
+            scene.friction_trial[FORCE_CHANGE * n + k] = scene.friction_trial[RESIDUAL * n + k]
         solve_friction_newton(scene, FORCE_CHANGE * n)
         for k in range(n):
-            scene.trial[k] += scene.trial[FORCE_CHANGE * n + k]
+            scene.friction_trial[k] += scene.friction_trial[FORCE_CHANGE * n + k]
         residual = friction_residual(scene)
         if not residual <= 0.5 * previous:
             for k in range(n):
-                scene.trial[k] += scene.trial[CONTRACTION_STEP * n + k] - scene.trial[FORCE_CHANGE * n + k]
+                scene.friction_trial[k] += (
+                    scene.friction_trial[CONTRACTION_STEP * n + k] - scene.friction_trial[FORCE_CHANGE * n + k]
+                )
             residual = friction_residual(scene)
             if not residual < previous:
                 break  # what is left is rounding
@@ -316,42 +288,42 @@ def solve_friction_newton(scene: cython.pointer[Scene], offset: cython.Py_ssize_
 
     No rows are exchanged: 1 - B bounds the matrix, so that no pivot is less than that of 1 - B (an H-matrix).
     """
-    n: cython.Py_ssize_t = scene.rub_count
+    n: cython.Py_ssize_t = scene.friction_count
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     x: cython.double
     for k in range(n):
         for j in range(k + 1, n):
-            x = scene.newton[n * j + k] / scene.newton[n * k + k]
+            x = scene.friction_slope[n * j + k] / scene.friction_slope[n * k + k]
             for i in range(k + 1, n):
-                scene.newton[n * j + i] -= x * scene.newton[n * k + i]
-            scene.trial[offset + j] -= x * scene.trial[offset + k]
+                scene.friction_slope[n * j + i] -= x * scene.friction_slope[n * k + i]
+            scene.friction_trial[offset + j] -= x * scene.friction_trial[offset + k]
     for k in range(n - 1, -1, -1):
         for i in range(k + 1, n):
-            scene.trial[offset + k] -= scene.newton[n * k + i] * scene.trial[offset + i]
-        scene.trial[offset + k] /= scene.newton[n * k + k]
+            scene.friction_trial[offset + k] -= scene.friction_slope[n * k + i] * scene.friction_trial[offset + i]
+        scene.friction_trial[offset + k] /= scene.friction_slope[n * k + k]
 
 
 def solve_single_friction(scene: cython.pointer[Scene]) -> cython.int:
-    """Decide a single N for which the bound fails: FOUND if nothing presses, else JAMS or TWO.
+    """Decide a single N for which the bound fails: FOUND if there is no normal force, else JAMS or TWO.
 
     From below Newton's method on the convex |E(N)| - N stays short of its first zero; where it rises there is none.
     Just before the bound fails there is one solution: it is about to disappear, or a second one comes from infinity.
     """
     i: cython.int
     residual: cython.double
-    if scene.bound[0] > 0.0 and excess_at_infinity(scene) > 0.0:
+    if scene.friction_bound[0] > 0.0 and excess_at_infinity(scene) > 0.0:
         return JAMS
-    scene.trial[NORMAL_FORCE] = 0.0
-    scene.trial[WEIGHT] = 1.0
+    scene.friction_trial[NORMAL_FORCE] = 0.0
+    scene.friction_trial[WEIGHT] = 1.0
     for i in range(MAX_FRICTION_ITERATIONS):
         residual = friction_residual(scene)
         if not residual > 0.0:
-            return FOUND if scene.trial[NORMAL_FORCE] == 0.0 else TWO
-        if not scene.newton[0] > 0.0:
+            return FOUND if scene.friction_trial[NORMAL_FORCE] == 0.0 else TWO
+        if not scene.friction_slope[0] > 0.0:
             return JAMS
-        scene.trial[NORMAL_FORCE] += scene.trial[RESIDUAL] / scene.newton[0]
+        scene.friction_trial[NORMAL_FORCE] += scene.friction_trial[RESIDUAL] / scene.friction_slope[0]
     return TWO
 
 
@@ -373,20 +345,20 @@ def excess_at_infinity(scene: cython.pointer[Scene]) -> cython.double:
 
 def find_normal_force_tangent(scene: cython.pointer[Scene]) -> cython.void:
     """Write the change of N to its row of `trial`, from the change of E at the same N: column n + 1."""
-    n: cython.Py_ssize_t = scene.rub_count
+    n: cython.Py_ssize_t = scene.friction_count
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t
     end: cython.int
     length: cython.double
     for j in range(n):
-        scene.trial[FORCE_CHANGE * n + j] = 0.0
+        scene.friction_trial[FORCE_CHANGE * n + j] = 0.0
         for k in range(n):
-            scene.newton[n * j + k] = 1.0 if j == k else 0.0
+            scene.friction_slope[n * j + k] = 1.0 if j == k else 0.0
         for end in range(2):
             E: Vec3 = contact_force_part(scene, j, end)
             length = norm(E)
             if length > 0.0:
-                scene.trial[FORCE_CHANGE * n + j] += dot(E, force_part(scene, n + 1, j, end)) / length
+                scene.friction_trial[FORCE_CHANGE * n + j] += dot(E, force_part(scene, n + 1, j, end)) / length
                 for k in range(n):
-                    scene.newton[n * j + k] -= dot(E, force_part(scene, k + 1, j, end)) / length
+                    scene.friction_slope[n * j + k] -= dot(E, force_part(scene, k + 1, j, end)) / length
     solve_friction_newton(scene, FORCE_CHANGE * n)

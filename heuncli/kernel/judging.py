@@ -8,25 +8,13 @@ against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solvin
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, pow, sqrt
 
-if not cython.compiled:
-    from math import fabs, pow, sqrt
-
-    from heuncli.kernel.attitudes import scale_chart_errors
-    from heuncli.kernel.collocation import estimate_error, refine_error
-    from heuncli.kernel.contact_rounding import remove_contact_rounding
-    from heuncli.kernel.dense import combine_stages
-    from heuncli.kernel.scene import Group, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
-
-    # What `run_steps` returns (steps.py), and the verdicts on a step.
-    REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
-    STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
+from heuncli.kernel.attitudes import scale_chart_errors
+from heuncli.kernel.collocation import estimate_error, refine_error
+from heuncli.kernel.contact_rounding import remove_contact_rounding
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import combine_stages
 
 # Hairer, Norsett and Wanner, II.4: take a little less than the length that would just be allowed, as a rejected step
 # costs a whole one, and limit the change of length, as the error estimate is valid for small changes only.
@@ -102,9 +90,9 @@ def exceeds_chart(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
     one.
     """
     part: cython.double
-    if not run.chart.nearing * run.h > scene.limits.chart_turn:
+    if not run.chart.approach_rate * run.h > scene.limits.chart_turn:
         return False
-    part = 0.9 * scene.limits.chart_turn / (run.chart.nearing * run.h)
+    part = 0.9 * scene.limits.chart_turn / (run.chart.approach_rate * run.h)
     run.control.proposed = run.h * (part if part > 0.2 else 0.2)
     run.control.rejected_before = 1
     return True
@@ -124,7 +112,7 @@ def assess_step(
     if method.fixed:
         return assess_given_step(method, run, trouble)
     error = implicit_error(scene, method, run) if method.implicit else explicit_error(scene, method, run)
-    if run.near:
+    if run.projects_stages:
         if dodge_singularity(scene, run, error, trouble):
             return AGAIN
         noise = singular_noise(scene, run)
@@ -150,7 +138,7 @@ def assess_step(
 
 def assess_given_step(method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int) -> cython.int:
     """Return ACCEPTED, or why a step whose length is given cannot be taken."""
-    if method.implicit and not run.newton.solved:
+    if method.implicit and not run.newton.has_stages:
         return UNSOLVED
     if not update_group_rates(run):
         return NOT_A_NUMBER
@@ -193,7 +181,7 @@ def implicit_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.double:
     """Return the error of the trial step of an implicit method; without stages, a value that halves the step."""
-    if not run.newton.solved:
+    if not run.newton.has_stages:
         return pow(UNSOLVED_ERROR, 1.0 / method.exponent)
     estimate_error(method, run, run.K[0])
     error: cython.double = free_error(scene, method, run)
@@ -214,19 +202,19 @@ def dodge_singularity(
     if scene.pivot_of_step > 0.0:
         noise = scene.limits.pivot_rounding * run.h * run.control.rate / (scene.pivot_of_step * run.control.tolerance)
     broken: cython.bint = error != error or trouble < 0
-    if run.control.dodges >= scene.limits.dodges or run.last:
+    if run.control.retries >= scene.limits.singular_retries or run.ends_piece:
         return 0
-    if not (noise > 0.1 or broken or (error > 1.0 and run.control.dodges > 0)):
+    if not (noise > 0.1 or broken or (error > 1.0 and run.control.retries > 0)):
         return 0
     worst: cython.double = error if error > noise else noise
     if broken:
         worst = 1e300
-    if run.control.dodges == 0 or worst < run.control.best:
+    if run.control.retries == 0 or worst < run.control.best:
         run.control.best = worst
         run.control.best_h = run.h
-    run.control.dodges += 1
+    run.control.retries += 1
     run.control.proposed = (
-        run.control.best_h if run.control.dodges == scene.limits.dodges else scene.limits.dodge * run.h
+        run.control.best_h if run.control.retries == scene.limits.singular_retries else scene.limits.retry_ratio * run.h
     )
     return 1
 
@@ -238,7 +226,7 @@ def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cy
     pivot: cython.double = scene.pivot_of_step
     if run.control.pivot_at_start < pivot:
         pivot = run.control.pivot_at_start
-    if pivot > 0.0 and run.control.dodges == scene.limits.dodges:
+    if pivot > 0.0 and run.control.retries == scene.limits.singular_retries:
         return scene.limits.pivot_noise * run.h * run.control.rate / (pivot * run.control.tolerance)
     return 0.0
 

@@ -7,52 +7,24 @@ should have met it, until both agree.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.contacts import (
+    begin_margin_extremes,
+    find_contact_event,
+    start_contacts,
+    update_margin_extremes,
+)
+from heuncli.kernel.course import build_end_window, build_step_course, course_instant
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import HERMITE_ROWS, build_hermite, clip_time, ensure_interpolant
+from heuncli.kernel.events import find_first_event, hold_branches, relative_jump
+from heuncli.kernel.points import evaluate_variables
+from heuncli.kernel.response import evaluate
+from heuncli.kernel.watches import check_coarsely, record_extremes, reset_extremes
 
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.contacts import (
-        begin_margin_extremes,
-        find_contact_event,
-        start_contacts,
-        update_margin_extremes,
-    )
-    from heuncli.kernel.course import build_end_window, build_step_course, course_instant
-    from heuncli.kernel.dense import (
-        EVENT_CHATTER,
-        HERMITE_ROWS,
-        MAX_LANDINGS,
-        NO_EVENT,
-        REPEAT_TO,
-        build_hermite,
-        clip_time,
-        ensure_interpolant,
-    )
-    from heuncli.kernel.events import (
-        BRANCH_IN_DOUBT,
-        CLEAR,
-        NOTHING,
-        TURNS,
-        UNSEEN,
-        check_coarsely,
-        find_first_event,
-        hold_branches,
-        record_extremes,
-        relative_jump,
-        reset_extremes,
-    )
-    from heuncli.kernel.points import evaluate_variables
-    from heuncli.kernel.response import evaluate
-    from heuncli.kernel.scene import Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Course, Method, Run
-
-    MAX_FLURRY_EVENTS = 16  # events that gather at an instant
+MAX_FLURRY_EVENTS = 16  # events that gather at an instant
 
 
 # What the steps see
@@ -64,7 +36,7 @@ def begin_step_extremes(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
         reset_extremes(scene)
         evaluate_variables(scene, clip_time(run, run.t), run.y)
         record_extremes(scene)
-    if run.watching:
+    if run.watches_contacts:
         begin_margin_extremes(scene)
 
 
@@ -72,7 +44,7 @@ def record_stage(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cyth
     """Include what was evaluated last, at t; lengths given by a law are those of that instant."""
     if scene.watch_count:
         record_extremes(scene)
-    if run.watching:
+    if run.watches_contacts:
         update_margin_extremes(scene, t)
 
 
@@ -91,7 +63,7 @@ def find_events_of_step(
         code = find_branch_event(scene, method, run)
         if code == NO_EVENT:
             run.landing.attempts = 0
-    if run.watching and code == NO_EVENT:
+    if run.watches_contacts and code == NO_EVENT:
         code = find_contact_event(scene, method, run)
     scene.pivot = pivot
     scene.pivot_of_step = least
@@ -152,8 +124,8 @@ def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], 
         event_time = event_time + least_distance
     distance: cython.double = fabs(event_time - run.stop)
     if event_time - run.t <= 2.0 * least_distance:
-        run.landing.at_once += 1
-        if run.landing.at_once > 4 + 2 * scene.held_count or count_flurry_event(scene, run, run.t):
+        run.landing.turns_at_instant += 1
+        if run.landing.turns_at_instant > 4 + 2 * scene.held_count or count_flurry_event(scene, run, run.t):
             return EVENT_CHATTER
         hold_branches(scene, course.turned)
         evaluate(scene, clip_time(run, run.t), run.y, run.K[0])

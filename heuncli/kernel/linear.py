@@ -6,16 +6,9 @@ coordinates depend on few others. Golub, Van Loan, Matrix Computations (2013), 3
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs
 
-if not cython.compiled:
-    from math import fabs
-
-    from heuncli.kernel.shadow import cython
-
+from heuncli.kernel.declarations import *
 
 # Real
 

@@ -14,25 +14,14 @@ along a unit step of phi is at most 1/2 + f' + 2 f / theta, which is 1/2 + pi/4 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import norm
-    from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.intervals import all_numbers
-    from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
-    from heuncli.kernel.programs import Bounds, Span
-    from heuncli.kernel.rope_ranges import bound_rope
-    from heuncli.kernel.ropes import measure_rope
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Orbits
-    from heuncli.kernel.strains import bushing_strain, find_span_vector, line_rate, vector_component
-    from heuncli.kernel.values import LengthBounds, RopeMotion
+from heuncli.kernel.declarations import *
+from heuncli.kernel.enclosure import enclose
+from heuncli.kernel.intervals import all_numbers
+from heuncli.kernel.libm import INFINITY
+from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
+from heuncli.kernel.rope_ranges import bound_rope
+from heuncli.kernel.ropes import measure_rope
+from heuncli.kernel.strains import bushing_strain, find_span_vector, line_rate, vector_component
 
 QUARTER_TURN = 1.5707963267948966
 MAX_MAP_SLOPE = 1.93  # K
@@ -58,7 +47,7 @@ def evaluate_load_end(
 
 def bound_load_variable(
     scene: cython.pointer[Scene],
-    points: cython.pointer[Orbits],
+    points: cython.pointer[PointCourse],
     i: cython.Py_ssize_t,
     T: cython.double,
     value: Bounds,
@@ -95,7 +84,7 @@ def bound_load_variable(
 
 def bound_load_motion(
     scene: cython.pointer[Scene],
-    points: cython.pointer[Orbits],
+    points: cython.pointer[PointCourse],
     load: cython.pointer[Load],
     i: cython.Py_ssize_t,
     T: cython.double,

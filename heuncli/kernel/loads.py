@@ -5,47 +5,17 @@ Each is applied to the bodies as force and moment; its value, rate and power are
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, tanh
 
-if not cython.compiled:
-    from math import atan2, tanh
-
-    from heuncli.kernel.algebra import Vec3, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.bushings import apply_bushing_load, bushing_energy
-    from heuncli.kernel.closures import apply_condition_load
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.evaluator import evaluate_program
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
-    from heuncli.kernel.scene import (
-        ACTUATOR,
-        BUSHING_SHIFT,
-        BUSHING_TURN,
-        COUPLE,
-        FORCE,
-        ROPE,
-        SHIFT_DAMPER,
-        SHIFT_FRICTION,
-        SPRING,
-        STRAND,
-        THREAD_FRICTION,
-        THRUST,
-        TORQUE,
-        TURN_FRICTION,
-        TURN_SPRING,
-        Body,
-        Closure,
-        Counter,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import find_span_vector
-    from heuncli.kernel.tree import add_load_to_body, locate_point
-    from heuncli.kernel.values import PointMotion, RopeMotion
+from heuncli.kernel.bushings import apply_bushing_load, bushing_energy
+from heuncli.kernel.carried_points import body_omega
+from heuncli.kernel.closures import apply_condition_load
+from heuncli.kernel.declarations import *
+from heuncli.kernel.evaluator import evaluate_program
+from heuncli.kernel.kinematics import add_load_to_body, locate_point
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
+from heuncli.kernel.strains import find_span_vector
 
 
 def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
@@ -57,7 +27,7 @@ def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
         load: cython.pointer[Load] = cython.address(scene.loads[i])
         point: PointMotion = locate_point(scene, load.b, load.q)
         vector: Vec3 = evaluate_load_vector(scene, load)
-        load.at = point.x
+        load.place = point.x
         load.force = zero
         load.moment = zero
         if load.kind == FORCE or load.kind == COUPLE:
@@ -94,7 +64,7 @@ def apply_outer_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     else:
         load.moment = world_vector
         load.power = dot(world_vector, body_omega(scene, load.b))
-    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
+    add_load_to_body(scene, load.b, load.place, load.force, load.moment)
 
 
 def apply_pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], vector: Vec3, v: Vec3) -> cython.double:
@@ -106,8 +76,8 @@ def apply_pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], ve
     """
     inside: cython.bint = load.a == load.b
     start_point: PointMotion = locate_point(scene, load.a, load.p)
-    span: Vec3 = sub(load.at, start_point.x)
-    load.from_at = start_point.x
+    span: Vec3 = sub(load.place, start_point.x)
+    load.place_on_a = start_point.x
     load.span = norm(span)
     load.rate = dot(span, sub(v, start_point.v))
     if load.span > 0.0:
@@ -129,8 +99,8 @@ def apply_pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], ve
     elif load.kind == SPRING and load.length == 0.0:
         load.force = Vec3(0.0 - load.stiffness * span.x, 0.0 - load.stiffness * span.y, 0.0 - load.stiffness * span.z)
     if not inside:
-        add_load_to_body(scene, load.b, load.at, load.force, load.moment)
-        add_load_to_body(scene, load.a, load.from_at, scale_vector(-1.0, load.force), load.moment)
+        add_load_to_body(scene, load.b, load.place, load.force, load.moment)
+        add_load_to_body(scene, load.a, load.place_on_a, scale_vector(-1.0, load.force), load.moment)
     return lost
 
 
@@ -160,8 +130,8 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
             load.rate = speed  # a motion without a single axis is measured by its speed
         resistance_factor: cython.double = load.coefficient
         if is_friction(load):
-            if not load.presses:
-                load.pressed = vector.x
+            if not load.normal_force_kind:
+                load.normal_force = vector.x
             resistance_factor = load.coefficient * vector.x / load.speed  # what it comes to at rest, as a slope
             if speed > 0.0:
                 resistance_factor = load.coefficient * vector.x * tanh(speed / load.speed) / speed
@@ -175,12 +145,12 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     if load.kind == THREAD_FRICTION:
         load.force = scale_vector(load.factor, load_on_b)
         load.power += dot(load.force, sliding_velocity(scene, load, v))
-    load.from_at = load.at
-    if load.presses:  # for a normal force of 1 N; the normal force is found with the accelerations
+    load.place_on_a = load.place
+    if load.normal_force_kind:  # for a normal force of 1 N; the normal force is found with the accelerations
         load.unit = load_on_b
         return 0.0
-    add_load_to_body(scene, load.b, load.at, load.force, load.moment)
-    add_load_to_body(scene, load.a, load.at, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
+    add_load_to_body(scene, load.b, load.place, load.force, load.moment)
+    add_load_to_body(scene, load.a, load.place, scale_vector(-1.0, load.force), scale_vector(-1.0, load.moment))
     return -load.coefficient * load.rate * load.rate if load.kind == TURN_SPRING else load.power
 
 
@@ -189,7 +159,7 @@ def apply_rope_load(scene: cython.pointer[Scene], load: cython.pointer[Load], ve
     potential.
     """
     motion: RopeMotion = measure_rope(scene, load)
-    load.from_at = load.at
+    load.place_on_a = load.place
     load.value = NAN if has_wound_up(scene, load) else vector.x
     load.span = motion.S
     load.rate = motion.rate
@@ -264,13 +234,13 @@ def turn_spring_angle(scene: cython.pointer[Scene], load: cython.pointer[Load]) 
         return load.offset
     counter: cython.pointer[Counter] = cython.address(scene.counters[load.counter])
     n: Vec3 = world_direction(scene, load.a, load.axis)
-    reference: Vec3 = world_direction(scene, load.a, load.across)
-    marker: Vec3 = world_direction(scene, load.b, load.mark)
+    reference: Vec3 = world_direction(scene, load.a, load.mark_a)
+    marker: Vec3 = world_direction(scene, load.b, load.mark_b)
     angle: cython.double = atan2(dot(n, cross(reference, marker)), dot(reference, marker))
     half: cython.double = 3.141592653589793
-    while counter.counted - angle > half:
+    while counter.value - angle > half:
         angle += 2.0 * half
-    while angle - counter.counted > half:
+    while angle - counter.value > half:
         angle -= 2.0 * half
     return angle
 
@@ -285,11 +255,4 @@ def sliding_velocity(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     if load.a < 0:
         return v
     a: cython.pointer[Body] = cython.address(scene.bodies[load.a])
-    return sub(sub(v, cross(a.omega, sub(load.at, a.r))), a.v)
-
-
-def body_omega(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """Return the angular velocity of a body; zero for the ground."""
-    if body < 0:
-        return Vec3(0.0, 0.0, 0.0)
-    return scene.bodies[body].omega
+    return sub(sub(v, cross(a.omega, sub(load.place, a.r))), a.v)

@@ -5,13 +5,7 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
 
 
 class Memory:

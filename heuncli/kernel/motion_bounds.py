@@ -2,42 +2,34 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, norm
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Orbits
+from heuncli.kernel.declarations import *
 
 
-def bound_acceleration(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
+def bound_acceleration(points: cython.pointer[PointCourse], body: cython.int, q: Vec3) -> cython.double:
     """Return the largest acceleration of a body's point over the part."""
     if body < 0:
         return 0.0
     # 9/8: the dense outputs of coordinates and of rates agree to the error of a step, far better than to an
     # eighth
-    spin: cython.double = points.spin[body]
-    return 1.125 * (points.pull[body] + (points.twist[body] + spin * spin) * norm(q))
+    spin: cython.double = points.angular_velocity[body]
+    return 1.125 * (points.acceleration[body] + (points.angular_acceleration[body] + spin * spin) * norm(q))
 
 
-def bound_speed(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
+def bound_speed(points: cython.pointer[PointCourse], body: cython.int, q: Vec3) -> cython.double:
     """Return the largest speed of a body's point over the part."""
-    return 1.125 * (points.speed[body] + points.spin[body] * norm(q)) if body >= 0 else 0.0
+    return 1.125 * (points.speed[body] + points.angular_velocity[body] * norm(q)) if body >= 0 else 0.0
 
 
-def bound_reach(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
+def bound_reach(points: cython.pointer[PointCourse], body: cython.int, q: Vec3) -> cython.double:
     """Return how far a body's point may be from the origin."""
     return norm(q) + (points.reach[body] if body >= 0 else 0.0)
 
 
-def bound_spin(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
+def bound_spin(points: cython.pointer[PointCourse], body: cython.int) -> cython.double:
     """Return the largest angular velocity of a body."""
-    return 1.125 * points.spin[body] if body >= 0 else 0.0
+    return 1.125 * points.angular_velocity[body] if body >= 0 else 0.0
 
 
-def bound_twist(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
+def bound_twist(points: cython.pointer[PointCourse], body: cython.int) -> cython.double:
     """Return the largest angular acceleration of a body."""
-    return 1.125 * points.twist[body] if body >= 0 else 0.0
+    return 1.125 * points.angular_acceleration[body] if body >= 0 else 0.0

@@ -66,8 +66,7 @@ def parse_modules(folder: Path) -> dict[str, ast.Module]:
 
 def compose(folder: Path, modules: dict[str, ast.Module]) -> str:
     """Return the text of the .pyx."""
-    blocks = {name: headers.find_plain_block(module) for name, module in modules.items() if name in MODULES}
-    library = sorted({name for block in blocks.values() for name in headers.find_library_names(block)})
+    library = sorted({library_name for name in MODULES for library_name in headers.find_library_names(modules[name])})
     imports = {ast.unparse(node) for name in MODULES for node in modules[name].body if is_import(node)}
     numbers = [pair for name in MODULES for pair in headers.find_float_constants(modules[name])]
     structs = headers.find_struct_names(modules)
@@ -89,14 +88,17 @@ def compose(folder: Path, modules: dict[str, ast.Module]) -> str:
 
 def is_import(node: ast.stmt) -> bool:
     """Return whether a statement imports what the compiled kernel needs from Python."""
-    return isinstance(node, ast.Import) or (isinstance(node, ast.ImportFrom) and node.module != "__future__")
+    if isinstance(node, ast.ImportFrom):
+        return node.module not in ("__future__", "math") and not str(node.module).startswith(f"{PACKAGE}.")
+    return isinstance(node, ast.Import)
 
 
 def convert_module(text: str, module: ast.Module, structs: frozenset[str]) -> str:
     """Return a module's text in the form that the .pyx includes, line for line."""
     lines = text.splitlines()
     for node in module.body:
-        if isinstance(node, (ast.Import, ast.ImportFrom, ast.Try, ast.If)) or headers.is_float_constant(node):
+        is_number = headers.is_float_constant(node) or headers.is_integer_constant(node)
+        if is_number or isinstance(node, (ast.Import, ast.ImportFrom)):
             clear_lines(lines, node.lineno, node.end_lineno or node.lineno)
         elif isinstance(node, ast.FunctionDef):
             rewrite_head(lines, node, structs)
@@ -125,9 +127,8 @@ def clear_lines(lines: list[str], first: int, last: int) -> None:
 
 def refuse_duplicates(modules: dict[str, ast.Module]) -> None:
     """Raises DuplicateName if a name of the kernel is defined twice, or is one of Python's own or of C's library."""
-    blocks = [headers.find_plain_block(module) for name, module in modules.items() if name in MODULES]
     places = dict.fromkeys(dir(builtins), "Python itself") | dict.fromkeys(GENERATED_NAMES, "one_module.py")
-    places |= {name: "C's library" for block in blocks for name in headers.find_library_names(block)}
+    places |= {name: "C's library" for module in MODULES for name in headers.find_library_names(modules[module])}
     wrong = []
     for module, name, line in iter_defined_names(modules):
         place = f"{module}.py:{line}"
@@ -139,9 +140,9 @@ def refuse_duplicates(modules: dict[str, ast.Module]) -> None:
 
 
 def iter_defined_names(modules: dict[str, ast.Module]) -> Iterator[tuple[str, str, int]]:
-    """Yield module, name and line of all that is defined at the top of modules, or in their blocks for plain Python."""
+    """Yield module, name and line of all that is defined at the top of modules."""
     for module, text in modules.items():
-        for node in (*text.body, *([] if module in DECLARED else headers.find_plain_block(text))):
+        for node in text.body:
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
                 yield module, node.name, node.lineno
             elif isinstance(node, ast.Assign):

@@ -13,25 +13,17 @@ BIT 38 (1998) 34-50).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Vec3, half_solve, inverse_diagonal_roots, undo_half_solve
-    from heuncli.kernel.closures import (
-        add_unit_load,
-        build_column,
-        clear_path,
-        size_of_required_acceleration,
-        sweep_column,
-    )
-    from heuncli.kernel.plane_rows import spread_row_in_plane
-    from heuncli.kernel.scene import Body, Closure, Freedom, Scene
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.closures import (
+    add_unit_load,
+    build_column,
+    clear_path,
+    size_of_required_acceleration,
+    sweep_column,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.plane_rows import spread_row_in_plane
 
 
 def factor_closures(scene: cython.pointer[Scene]) -> cython.double:
@@ -44,8 +36,8 @@ def factor_closures(scene: cython.pointer[Scene]) -> cython.double:
     pivot: cython.double
     least: cython.double = 1.0
     set_inertia_roots(scene)
-    for i in range(scene.answer_count):
-        scene.taken[i] = 0
+    for i in range(scene.velocity_count):
+        scene.is_pivot[i] = 0
     for i in range(scene.selected_count):
         pivot = eliminate_row(scene, i)
         if pivot < least:
@@ -61,52 +53,48 @@ def set_inertia_roots(scene: cython.pointer[Scene]) -> cython.void:
     if scene.flat:
         for k in range(scene.freedom_count):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-            scene.root[freedom.answer_at] = sqrt(freedom.D)
+            scene.inertia_root[freedom.velocity_at] = sqrt(freedom.D)
         return
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        offset = body.answer_at
+        offset = body.velocity_at
         if body.ball:
-            r: Vec3 = inverse_diagonal_roots(body.turning)
-            scene.root[offset] = r.x
-            scene.root[offset + 1] = r.y
-            scene.root[offset + 2] = r.z
+            r: Vec3 = inverse_diagonal_roots(body.A_factors)
+            write_vector(scene.inertia_root, offset, r)
             offset += 3
         for k in range(body.first_freedom, body.end_freedom):
-            scene.root[offset] = sqrt(scene.freedoms[k].D)
+            scene.inertia_root[offset] = sqrt(scene.freedoms[k].D)
             offset += 1
 
 
 def scale_by_roots(scene: cython.pointer[Scene], body: cython.pointer[Body], x: cython.p_double) -> cython.void:
     """x <- D^(-1/2) x on the freedoms of one body."""
     k: cython.Py_ssize_t
-    offset: cython.Py_ssize_t = body.answer_at
+    offset: cython.Py_ssize_t = body.velocity_at
     if body.ball:
-        root: Vec3 = Vec3(scene.root[offset], scene.root[offset + 1], scene.root[offset + 2])
-        turns: Vec3 = half_solve(body.turning, root, Vec3(x[offset], x[offset + 1], x[offset + 2]))
-        x[offset] = turns.x
-        x[offset + 1] = turns.y
-        x[offset + 2] = turns.z
+        root: Vec3 = read_vector(scene.inertia_root, offset)
+        turns: Vec3 = half_solve(body.A_factors, root, read_vector(x, offset))
+        write_vector(x, offset, turns)
         offset += 3
     for k in range(offset, offset + body.end_freedom - body.first_freedom):
-        x[k] *= scene.root[k]
+        x[k] *= scene.inertia_root[k]
 
 
 def add_unscaled(scene: cython.pointer[Scene], body: cython.pointer[Body], x: cython.p_double) -> cython.void:
     """e <- e + D^(1/2) x on the freedoms of one body; freedoms without D do not respond."""
     k: cython.Py_ssize_t
-    offset: cython.Py_ssize_t = body.answer_at
+    offset: cython.Py_ssize_t = body.velocity_at
     if body.ball:
-        if scene.root[offset] > 0.0:
-            root: Vec3 = Vec3(scene.root[offset], scene.root[offset + 1], scene.root[offset + 2])
-            turns: Vec3 = undo_half_solve(body.turning, root, Vec3(x[offset], x[offset + 1], x[offset + 2]))
+        if scene.inertia_root[offset] > 0.0:
+            root: Vec3 = read_vector(scene.inertia_root, offset)
+            turns: Vec3 = undo_half_solve(body.A_factors, root, read_vector(x, offset))
             scene.e[offset] += turns.x
             scene.e[offset + 1] += turns.y
             scene.e[offset + 2] += turns.z
         offset += 3
     for k in range(offset, offset + body.end_freedom - body.first_freedom):
-        if scene.root[k] > 0.0:
-            scene.e[k] += x[k] / scene.root[k]
+        if scene.inertia_root[k] > 0.0:
+            scene.e[k] += x[k] / scene.inertia_root[k]
 
 
 def response_of_sides(
@@ -145,8 +133,8 @@ def response_of_spread(scene: cython.pointer[Scene], row: cython.pointer[Closure
     k: cython.Py_ssize_t
     total: cython.double = 0.0
     x: cython.double
-    for k in range(row.answer_count):
-        x = scene.spread[scene.indices[row.answers + k]]
+    for k in range(row.velocity_count):
+        x = scene.velocity_vector[scene.indices[row.velocities + k]]
         total += x * x
     return total
 
@@ -164,11 +152,11 @@ def spread_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) ->
     """Spread the row's column of B, from e_r as it is built, over all freedoms."""
     k: cython.Py_ssize_t
     for k in range(row.filled_count):
-        scene.spread[scene.indices[row.answers + k]] = 0.0
-    for k in range(row.answer_count):
-        scene.spread[scene.indices[row.answers + k]] = scene.columns[row.column + k]
+        scene.velocity_vector[scene.indices[row.velocities + k]] = 0.0
+    for k in range(row.velocity_count):
+        scene.velocity_vector[scene.indices[row.velocities + k]] = scene.columns[row.column + k]
     for k in range(row.path, row.path + row.path_count):
-        scale_by_roots(scene, cython.address(scene.bodies[scene.indices[k]]), scene.spread)
+        scale_by_roots(scene, cython.address(scene.bodies[scene.indices[k]]), scene.velocity_vector)
 
 
 def apply_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure], x: cython.p_double) -> cython.void:
@@ -213,8 +201,8 @@ def eliminate_row(scene: cython.pointer[Scene], i: cython.int) -> cython.double:
     for k in range(row.couplings, row.couplings + row.coupled_count):
         rank = scene.coupled[k]
         earlier: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[rank]])
-        apply_reflector(scene, earlier, scene.spread)
-        R[m * i + rank] = scene.spread[earlier.pivot_at]
+        apply_reflector(scene, earlier, scene.velocity_vector)
+        R[m * i + rank] = scene.velocity_vector[earlier.pivot_velocity]
     left: cython.double = make_reflector(scene, row)
     if left == 0.0:
         R[m * i + i] = 1.0
@@ -238,19 +226,19 @@ def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
     Only its nonzero entries are stored: the pivots of earlier rows drop out, so that loops in a chain stay separate.
     """
     k: cython.Py_ssize_t
-    answer: cython.int
+    velocity: cython.int
     x: cython.double
     square: cython.double = 0.0
     largest: cython.double = 0.0
     pivot_position: cython.Py_ssize_t = -1
     n: cython.Py_ssize_t = row.column
-    for k in range(row.answers, row.answers + row.filled_count):
-        answer = scene.indices[k]
-        x = scene.spread[answer]
-        if x == 0.0 or scene.taken[answer]:
+    for k in range(row.velocities, row.velocities + row.filled_count):
+        velocity = scene.indices[k]
+        x = scene.velocity_vector[velocity]
+        if x == 0.0 or scene.is_pivot[velocity]:
             continue
         scene.columns[n] = x
-        scene.support[n] = answer
+        scene.support[n] = velocity
         square += x * x
         if fabs(x) > largest:
             largest = fabs(x)
@@ -258,7 +246,7 @@ def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
         n += 1
     row.support_count = n - row.column
     row.reflector = 0.0
-    row.pivot_at = scene.indices[row.answers]
+    row.pivot_velocity = scene.indices[row.velocities]
     if pivot_position < 0:
         row.support_count = 0
         return 0.0
@@ -266,8 +254,8 @@ def make_reflector(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
     left: cython.double = -length if scene.columns[pivot_position] > 0.0 else length
     scene.columns[pivot_position] -= left
     row.reflector = 1.0 / (square + length * largest)
-    row.pivot_at = scene.support[pivot_position]
-    scene.taken[row.pivot_at] = 1
+    row.pivot_velocity = scene.support[pivot_position]
+    scene.is_pivot[row.pivot_velocity] = 1
     return left
 
 
@@ -275,8 +263,8 @@ def solve_closures(scene: cython.pointer[Scene]) -> cython.void:
     """Find the multipliers that meet the rows' demands, and add their effect to the loads e on the freedoms."""
     i: cython.Py_ssize_t
     m: cython.Py_ssize_t = scene.selected_count
-    x: cython.p_double = scene.spread
-    y: cython.p_double = scene.y
+    x: cython.p_double = scene.velocity_vector
+    y: cython.p_double = scene.row_vector
     for i in range(scene.closure_count):
         scene.closures[i].multiplier = 0.0
     scene.load_size = size_of_loads(scene)
@@ -284,21 +272,21 @@ def solve_closures(scene: cython.pointer[Scene]) -> cython.void:
         apply_reflector(scene, cython.address(scene.closures[scene.selected[i]]), x)
     solve_demands(scene)
     for i in range(m):
-        y[i] -= x[scene.closures[scene.selected[i]].pivot_at]
-    for i in range(scene.answer_count):
+        y[i] -= x[scene.closures[scene.selected[i]].pivot_velocity]
+    for i in range(scene.velocity_count):
         x[i] = 0.0
     for i in range(m):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
-        x[row.pivot_at] = y[i]
+        x[row.pivot_velocity] = y[i]
     solve_backward(scene, y)
     for i in range(m):
         scene.closures[scene.selected[i]].multiplier = y[i]
     for i in range(m - 1, -1, -1):
         apply_reflector(scene, cython.address(scene.closures[scene.selected[i]]), x)
     if scene.flat:
-        for i in range(scene.answer_count):
-            if scene.root[i] > 0.0:
-                scene.e[i] += x[i] / scene.root[i]
+        for i in range(scene.velocity_count):
+            if scene.inertia_root[i] > 0.0:
+                scene.e[i] += x[i] / scene.inertia_root[i]
         return
     for i in range(scene.body_count):
         add_unscaled(scene, cython.address(scene.bodies[i]), x)
@@ -308,8 +296,8 @@ def solve_demands(scene: cython.pointer[Scene]) -> cython.void:
     """y = -R^-T demand."""
     i: cython.Py_ssize_t
     for i in range(scene.selected_count):
-        scene.y[i] = -scene.closures[scene.selected[i]].demand
-    solve_forward(scene, scene.y)
+        scene.row_vector[i] = -scene.closures[scene.selected[i]].demand
+    solve_forward(scene, scene.row_vector)
 
 
 def solve_forward(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
@@ -347,12 +335,12 @@ def estimate_multiplier_doubt(scene: cython.pointer[Scene]) -> cython.void:
     k: cython.Py_ssize_t
     m: cython.Py_ssize_t = scene.selected_count
     z: cython.double
-    y: cython.p_double = scene.y
+    y: cython.p_double = scene.row_vector
     R: cython.p_double = scene.R
     rounding: cython.double = scene.limits.rounding
     loads: cython.double = rounding * (scene.load_size + size_of_multipliers(scene))
     for i in range(scene.closure_count):
-        scene.closures[i].doubt = 0.0
+        scene.closures[i].multiplier_error = 0.0
     for i in range(m):
         z = 0.0
         for k in range(scene.envelope[i], i):
@@ -364,14 +352,14 @@ def estimate_multiplier_doubt(scene: cython.pointer[Scene]) -> cython.void:
     for i in range(m):
         y[i] = fabs(y[i]) + loads
     for i in range(m):
-        scene.closures[scene.selected[i]].doubt = 0.0
+        scene.closures[scene.selected[i]].multiplier_error = 0.0
     for i in range(m - 1, -1, -1):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
-        row.doubt = grow_magnitude(row.doubt, y[i]) * R[m * i + i]
+        row.multiplier_error = grow_magnitude(row.multiplier_error, y[i]) * R[m * i + i]
         for k in range(scene.envelope[i], i):
-            scene.closures[scene.selected[k]].doubt -= R[m * i + k] * row.doubt
+            scene.closures[scene.selected[k]].multiplier_error -= R[m * i + k] * row.multiplier_error
     for i in range(m):
-        scene.closures[scene.selected[i]].doubt = fabs(scene.closures[scene.selected[i]].doubt)
+        scene.closures[scene.selected[i]].multiplier_error = fabs(scene.closures[scene.selected[i]].multiplier_error)
 
 
 def grow_magnitude(x: cython.double, increment: cython.double) -> cython.double:
@@ -384,16 +372,16 @@ def size_of_loads(scene: cython.pointer[Scene]) -> cython.double:
     i: cython.Py_ssize_t
     square: cython.double = 0.0
     if scene.flat:
-        for i in range(scene.answer_count):
-            scene.spread[i] = scene.root[i] * scene.e[i]
-            square += scene.spread[i] * scene.spread[i]
+        for i in range(scene.velocity_count):
+            scene.velocity_vector[i] = scene.inertia_root[i] * scene.e[i]
+            square += scene.velocity_vector[i] * scene.velocity_vector[i]
         return sqrt(square)
-    for i in range(scene.answer_count):
-        scene.spread[i] = scene.e[i]
+    for i in range(scene.velocity_count):
+        scene.velocity_vector[i] = scene.e[i]
     for i in range(scene.body_count):
-        scale_by_roots(scene, cython.address(scene.bodies[i]), scene.spread)
-    for i in range(scene.answer_count):
-        square += scene.spread[i] * scene.spread[i]
+        scale_by_roots(scene, cython.address(scene.bodies[i]), scene.velocity_vector)
+    for i in range(scene.velocity_count):
+        square += scene.velocity_vector[i] * scene.velocity_vector[i]
     return sqrt(square)
 
 

@@ -12,17 +12,8 @@ for n' = -a / b^(3/2) r'; the higher derivatives are exact too, as the fourth de
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, add_scaled, cross, dot, norm, rotate, scale_vector
-    from heuncli.kernel.libm import NAN, floor
-    from heuncli.kernel.scene import Freedom, PathPiece, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PathPoint
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import NAN, floor
 
 
 def place_on_path(scene: cython.pointer[Scene], parent: cython.int, freedom: cython.pointer[Freedom]) -> Vec3:

@@ -12,18 +12,10 @@ lengths include them. Loads out of the plane are not found here: they move nothi
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import cos, sin
 
-if not cython.compiled:
-    from math import cos, sin
-
-    from heuncli.kernel.algebra import Mat3, Sym3, Vec3
-    from heuncli.kernel.paths import place_on_path
-    from heuncli.kernel.scene import SHIFT, Body, Freedom, Scene
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.paths import place_on_path
 
 
 def move_in_plane(scene: cython.pointer[Scene]) -> cython.void:
@@ -290,7 +282,7 @@ def sweep_up_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> cy
             e: cython.double = 0.0
             if not freedom.driven:
                 e = -(freedom.s.x * x + freedom.s.y * y + freedom.s.z * M)
-            scene.e[freedom.answer_at] = e
+            scene.e[freedom.velocity_at] = e
             e *= freedom.D
             x += e * freedom.U_shift.x
             y += e * freedom.U_shift.y
@@ -336,7 +328,7 @@ def sweep_down_in_plane(scene: cython.pointer[Scene], inertial: cython.bint) -> 
             if freedom.driven:
                 continue
             base_load: cython.double = freedom.U_shift.x * x + freedom.U_shift.y * y + freedom.U_turn.z * alpha
-            udot: cython.double = freedom.D * (scene.e[freedom.answer_at] - base_load)
+            udot: cython.double = freedom.D * (scene.e[freedom.velocity_at] - base_load)
             freedom.udot = udot
             x += udot * freedom.s.x
             y += udot * freedom.s.y

@@ -8,18 +8,9 @@ Heights along z count in the length of a rod only.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import sqrt
 
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.algebra import Vec3
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, SUM, TURN, Body, Closure, Freedom, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PlanarPointKinematics
+from heuncli.kernel.declarations import *
 
 
 def direction_in_plane(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
@@ -196,8 +187,8 @@ def add_unit_load_in_plane(
 def spread_row_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """Spread D^(-1/2) e_r, the response of the freedoms of the row's paths to its unit load, over all freedoms."""
     n: cython.Py_ssize_t
-    for n in range(row.answers + row.answer_count, row.answers + row.filled_count):
-        scene.spread[scene.indices[n]] = 0.0
+    for n in range(row.velocities + row.velocity_count, row.velocities + row.filled_count):
+        scene.velocity_vector[scene.indices[n]] = 0.0
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         body.M_branch = Vec3(0.0, 0.0, 0.0)
@@ -225,7 +216,7 @@ def sweep_column_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Bod
         e: cython.double = 0.0
         if not freedom.driven:
             e = -(freedom.s.x * x + freedom.s.y * y + freedom.s.z * M)
-        scene.spread[freedom.answer_at] = scene.root[freedom.answer_at] * e
+        scene.velocity_vector[freedom.velocity_at] = scene.inertia_root[freedom.velocity_at] * e
         e *= freedom.D
         x += e * freedom.U_shift.x
         y += e * freedom.U_shift.y

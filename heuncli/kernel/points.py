@@ -17,34 +17,23 @@ bodies, because those of the scene may be in use.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import dot, norm
-    from heuncli.kernel.attitudes import GLOBAL, leave_chart
-    from heuncli.kernel.bernstein import (
-        PARABOLA_END,
-        PARABOLA_MIDDLE,
-        PARABOLA_START,
-        bound_polynomial,
-        convert_rows,
-        differentiate,
-    )
-    from heuncli.kernel.enclosure import enclose
-    from heuncli.kernel.intervals import all_numbers, magnitude
-    from heuncli.kernel.load_ranges import bound_load_variable, bounds_between, evaluate_load_end
-    from heuncli.kernel.motion_bounds import bound_acceleration
-    from heuncli.kernel.programs import Bounds, Jet, Span
-    from heuncli.kernel.scene import OF_LOAD, ROPE, SHIFT, Body, Freedom, Load, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Course, Method, Orbits, Run
-    from heuncli.kernel.tree import locate_point, set_coordinates, update_kinematics
-    from heuncli.kernel.values import PointMotion
+from heuncli.kernel.attitudes import GLOBAL, leave_chart
+from heuncli.kernel.bernstein import (
+    PARABOLA_END,
+    PARABOLA_MIDDLE,
+    PARABOLA_START,
+    bound_polynomial,
+    convert_rows,
+    differentiate,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.enclosure import enclose
+from heuncli.kernel.intervals import all_numbers, magnitude
+from heuncli.kernel.kinematics import locate_point, set_coordinates, update_kinematics
+from heuncli.kernel.load_ranges import bound_load_variable, bounds_between, evaluate_load_end
+from heuncli.kernel.motion_bounds import bound_acceleration
 
 # At an instant
 
@@ -53,10 +42,10 @@ def swap_bodies(scene: cython.pointer[Scene]) -> cython.void:
     """Exchange the scene's bodies and freedoms with the spare ones."""
     bodies: cython.pointer[Body] = scene.bodies
     freedoms: cython.pointer[Freedom] = scene.freedoms
-    scene.bodies = scene.bodies_beside
-    scene.freedoms = scene.freedoms_beside
-    scene.bodies_beside = bodies
-    scene.freedoms_beside = freedoms
+    scene.bodies = scene.spare_bodies
+    scene.freedoms = scene.spare_freedoms
+    scene.spare_bodies = bodies
+    scene.spare_freedoms = freedoms
 
 
 def evaluate_variables(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
@@ -72,11 +61,11 @@ def evaluate_variables(scene: cython.pointer[Scene], t: cython.double, y: cython
 def interpolate_course(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.void:
     """Write the state at x of the interval to points.at."""
     i: cython.Py_ssize_t
-    points: cython.pointer[Orbits] = cython.address(course.points)
+    points: cython.pointer[PointCourse] = cython.address(course.points)
     for i in range(points.n):
-        points.at[i] = bound_polynomial(points.states[i], course.degree, x, x, course.work).low
-    if points.charted:
-        leave_chart(scene, points.charted, points.origin, points.at)
+        points.state[i] = bound_polynomial(points.states[i], course.degree, x, x, course.work).low
+    if points.interval_chart:
+        leave_chart(scene, points.interval_chart, points.origin, points.state)
 
 
 def set_point_variables_at(
@@ -84,7 +73,7 @@ def set_point_variables_at(
 ) -> cython.void:
     """Set the variables to their values at x of the interval, which is the instant t."""
     interpolate_course(scene, course, x)
-    evaluate_variables(scene, t, course.points.at)
+    evaluate_variables(scene, t, course.points.state)
 
 
 def has_far_turn(scene: cython.pointer[Scene], duration: cython.double) -> cython.bint:
@@ -123,8 +112,8 @@ def body_turns_far(scene: cython.pointer[Scene], body: cython.int, duration: cyt
 def build_state_course(run: cython.pointer[Run], rows: cython.int) -> cython.void:
     """Set all components of the state over the trial step from some rows of its interpolating polynomial."""
     i: cython.Py_ssize_t
-    points: cython.pointer[Orbits] = cython.address(run.course.points)
-    points.charted = points.chart
+    points: cython.pointer[PointCourse] = cython.address(run.course.points)
+    points.interval_chart = points.chart
     for i in range(points.n):
         convert_rows(run.chart.y[i], run.dense, rows, i, points.states[i])
 
@@ -135,9 +124,9 @@ def build_state_window(
     """Set all components of the state about the end of the trial step: coordinates as parabolas, others as lines."""
     i: cython.Py_ssize_t
     bend: cython.double
-    points: cython.pointer[Orbits] = cython.address(run.course.points)
+    points: cython.pointer[PointCourse] = cython.address(run.course.points)
     last: cython.p_double = run.K[method.stages]
-    points.charted = 0
+    points.interval_chart = 0
     for i in range(points.n):
         points.states[i][PARABOLA_START] = run.z[i] - half * last[i]
         points.states[i][PARABOLA_MIDDLE] = run.z[i]
@@ -167,15 +156,15 @@ def bound_point_variables(
     those.
     """
     i: cython.Py_ssize_t
-    points: cython.pointer[Orbits] = cython.address(course.points)
+    points: cython.pointer[PointCourse] = cython.address(course.points)
     T: cython.double = (x1 - x0) * course.length
     bound_bodies(scene, course, x0, x1)
     for i in range(scene.variable_count):
-        points.kept[i] = scene.programs.variables[i]
+        points.saved_variables[i] = scene.programs.variables[i]
     evaluate_part_end(scene, course, x0, points.first_place, points.first_rate)
     evaluate_part_end(scene, course, x1, points.last_place, points.last_rate)
     for i in range(scene.variable_count):
-        scene.programs.variables[i] = points.kept[i]
+        scene.programs.variables[i] = points.saved_variables[i]
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
         if not variable.is_point:
@@ -209,7 +198,7 @@ def evaluate_part_end(
     t: cython.double = course.begin + x * course.length
     interpolate_course(scene, course, x)
     swap_bodies(scene)
-    update_kinematics(scene, course.latest if t > course.latest else t, course.points.at)
+    update_kinematics(scene, course.latest if t > course.latest else t, course.points.state)
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
         if variable.is_point == OF_LOAD:
@@ -223,7 +212,7 @@ def evaluate_part_end(
 
 def point_rounding(
     scene: cython.pointer[Scene],
-    points: cython.pointer[Orbits],
+    points: cython.pointer[PointCourse],
     variable: cython.pointer[Variable],
     of_rate: cython.bint,
 ) -> cython.double:
@@ -233,7 +222,7 @@ def point_rounding(
         return 0.0
     arm: cython.double = norm(variable.q)
     if of_rate:
-        return scene.limits.rounding * (points.speed[i] + points.spin[i] * arm)
+        return scene.limits.rounding * (points.speed[i] + points.angular_velocity[i] * arm)
     return scene.limits.rounding * (points.reach[i] + arm + fabs(variable.offset))
 
 
@@ -262,7 +251,7 @@ def bound_joint_point(
     """Bound distance, speed and acceleration of a body's joint point."""
     k: cython.Py_ssize_t
     body: cython.pointer[Body] = cython.address(scene.bodies[i])
-    points: cython.pointer[Orbits] = cython.address(course.points)
+    points: cython.pointer[PointCourse] = cython.address(course.points)
     arm: cython.double = norm(body.joint_in_parent)
     speed: cython.double = 0.0
     pull: cython.double = 0.0
@@ -278,13 +267,15 @@ def bound_joint_point(
             pull += bounds.second
     points.reach[i] = arm
     points.speed[i] = speed
-    points.pull[i] = pull
+    points.acceleration[i] = pull
     if body.parent >= 0:
         p: cython.Py_ssize_t = body.parent
-        spin: cython.double = points.spin[p]
+        spin: cython.double = points.angular_velocity[p]
         points.reach[i] = points.reach[p] + arm
         points.speed[i] = points.speed[p] + spin * arm + speed
-        points.pull[i] = points.pull[p] + (points.twist[p] + spin * spin) * arm + 2.0 * spin * speed + pull
+        points.acceleration[i] = (
+            points.acceleration[p] + (points.angular_acceleration[p] + spin * spin) * arm + 2.0 * spin * speed + pull
+        )
 
 
 def bound_turning(
@@ -297,9 +288,9 @@ def bound_turning(
     """Bound angular velocity and angular acceleration of a body."""
     k: cython.Py_ssize_t
     body: cython.pointer[Body] = cython.address(scene.bodies[i])
-    points: cython.pointer[Orbits] = cython.address(course.points)
-    points.spin[i] = points.spin[body.parent] if body.parent >= 0 else 0.0
-    points.twist[i] = points.twist[body.parent] if body.parent >= 0 else 0.0
+    points: cython.pointer[PointCourse] = cython.address(course.points)
+    points.angular_velocity[i] = points.angular_velocity[body.parent] if body.parent >= 0 else 0.0
+    points.angular_acceleration[i] = points.angular_acceleration[body.parent] if body.parent >= 0 else 0.0
     if body.ball:
         bound_ball(course, body, i, x0, x1)
         return
@@ -307,8 +298,10 @@ def bound_turning(
         if scene.freedoms[k].kind != SHIFT:
             bounds: Jet = bound_freedom(scene, course, k, x0, x1)
             # parallel axes do not turn each other
-            points.twist[i] += bounds.second + (0.0 if scene.flat else points.spin[i] * bounds.rate)
-            points.spin[i] += bounds.rate
+            points.angular_acceleration[i] += bounds.second + (
+                0.0 if scene.flat else points.angular_velocity[i] * bounds.rate
+            )
+            points.angular_velocity[i] += bounds.rate
 
 
 def bound_ball(
@@ -326,16 +319,16 @@ def bound_ball(
     c: cython.Py_ssize_t
     spin: cython.double = 0.0
     twist: cython.double = 0.0
-    points: cython.pointer[Orbits] = cython.address(course.points)
+    points: cython.pointer[PointCourse] = cython.address(course.points)
     for c in range(body.rate_at, body.rate_at + 3):
         bounds: Jet = bound_component(course, c, x0, x1)
         spin += bounds.value * bounds.value
         twist += bounds.rate * bounds.rate
-    points.spin[i] = sqrt(spin)
-    points.twist[i] = sqrt(twist)
-    if points.charted == GLOBAL:
-        points.twist[i] = 2.0 * points.twist[i] + 2.0 * spin
-        points.spin[i] = 2.0 * points.spin[i]
+    points.angular_velocity[i] = sqrt(spin)
+    points.angular_acceleration[i] = sqrt(twist)
+    if points.interval_chart == GLOBAL:
+        points.angular_acceleration[i] = 2.0 * points.angular_acceleration[i] + 2.0 * spin
+        points.angular_velocity[i] = 2.0 * points.angular_velocity[i]
 
 
 def bound_freedom(

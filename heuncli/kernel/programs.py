@@ -77,7 +77,7 @@ class Programs(Struct):
     variables: list[float]
     stack: list[float]
     jets: list[Jet]
-    held: list[float]
+    branches: list[float]
     holding: int
     doubt: list[int]  # whether each held branch may change over the interval of time
     ranges: list[Span]  # ranges of the variables over a time interval

@@ -9,47 +9,39 @@ Accelerations (49), velocity jumps (48), projection onto the closures and single
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Quaternion, Vec3, apply_small_rotation, dot, rotate_tensor
-    from heuncli.kernel.closures import (
-        apply_multipliers,
-        find_counter_rates,
-        measure_moving_rows,
-        measure_row,
-        required_acceleration,
-    )
-    from heuncli.kernel.joint_friction import (
-        apply_friction,
-        apply_unit_friction,
-        find_normal_forces,
-        record_contact_forces,
-        restore_applied_loads,
-        store_applied_loads,
-    )
-    from heuncli.kernel.loads import apply_loads
-    from heuncli.kernel.orthogonal import factor_closures, solve_closures
-    from heuncli.kernel.scene import CARRIES, ArtificialInertia, Body, Closure, Freedom, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import (
-        add_zero_accelerations,
-        balance_joints,
-        factor_tree,
-        factor_with_loads,
-        push_artificial_load,
-        set_branch_loads,
-        set_full_branch_loads,
-        sweep_down,
-        sweep_up,
-        update_kinematics,
-        write_derivative,
-    )
+from heuncli.kernel.closures import (
+    apply_multipliers,
+    find_counter_rates,
+    measure_moving_rows,
+    measure_row,
+    required_acceleration,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.joint_friction import (
+    apply_friction,
+    apply_unit_friction,
+    find_normal_forces,
+    record_contact_forces,
+    restore_applied_loads,
+    store_applied_loads,
+)
+from heuncli.kernel.kinematics import update_kinematics
+from heuncli.kernel.loads import apply_loads
+from heuncli.kernel.orthogonal import factor_closures, solve_closures
+from heuncli.kernel.tree import (
+    add_zero_accelerations,
+    balance_joints,
+    factor_tree,
+    factor_with_loads,
+    push_artificial_load,
+    set_branch_loads,
+    set_full_branch_loads,
+    sweep_down,
+    sweep_up,
+    write_derivative,
+)
 
 
 def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
@@ -66,9 +58,9 @@ def configure(scene: cython.pointer[Scene], t: cython.double) -> cython.int:
             scene.pivot_of_step = scene.pivot
         if scene.pivot < 0.0:
             return -1
-    if scene.lent_count:
+    if scene.artificial_count:
         massless += factor_inertia_shares(scene)
-        if scene.limits.own_share < scene.own_share < scene.limits.much_lent:
+        if scene.limits.own_share < scene.own_share < scene.limits.much_artificial:
             reduce_artificial_inertia(scene)
     return massless
 
@@ -81,10 +73,10 @@ def solve_response(scene: cython.pointer[Scene], inertial: cython.bint) -> cytho
     """
     i: cython.Py_ssize_t
     separate: cython.bint = inertial and scene.selected_count > 0
-    for i in range(scene.lent_count):
-        scene.lents[i].z = 0.0
+    for i in range(scene.artificial_count):
+        scene.artificial_inertias[i].z = 0.0
     solve_loads(scene, inertial, separate)
-    if scene.lent_count:
+    if scene.artificial_count:
         find_artificial_loads(scene)
         solve_loads(scene, inertial, separate)
     if separate:
@@ -126,7 +118,7 @@ def factor_inertia_shares(scene: cython.pointer[Scene]) -> cython.int:
     """
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
-    n: cython.Py_ssize_t = scene.lent_count
+    n: cython.Py_ssize_t = scene.artificial_count
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     unheld: cython.int = 0
     x: cython.double
@@ -137,12 +129,12 @@ def factor_inertia_shares(scene: cython.pointer[Scene]) -> cython.int:
         for i in range(scene.body_count):
             scene.bodies[i].M_branch = zero
             scene.bodies[i].f_branch = zero
-        scene.lents[j].z = 1.0
-        push_artificial_load(scene, cython.address(scene.lents[j]))
+        scene.artificial_inertias[j].z = 1.0
+        push_artificial_load(scene, cython.address(scene.artificial_inertias[j]))
         solve_branch_loads(scene, False)
         for i in range(j, n):
-            scene.own[n * i + j] = (1.0 if i == j else 0.0) - artificial_acceleration(
-                scene, cython.address(scene.lents[i])
+            scene.own_inertia[n * i + j] = (1.0 if i == j else 0.0) - artificial_acceleration(
+                scene, cython.address(scene.artificial_inertias[i])
             )
     for j in range(n):
         x = eliminate_share_column(scene, j)
@@ -160,12 +152,12 @@ def reduce_artificial_inertia(scene: cython.pointer[Scene]) -> cython.void:
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         body.A = rotate_tensor(body.R, body.inertia)
-    scene.lent_part = sqrt(sqrt(share))
+    scene.artificial_part = sqrt(sqrt(share))
     factor_tree(scene)
     if scene.selected_count:
         factor_closures(scene)
     factor_inertia_shares(scene)
-    scene.lent_part = 1.0
+    scene.artificial_part = 1.0
     scene.own_share = share
     scene.pivot = pivot
 
@@ -181,17 +173,17 @@ def eliminate_share_column(scene: cython.pointer[Scene], j: cython.Py_ssize_t) -
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    n: cython.Py_ssize_t = scene.lent_count
+    n: cython.Py_ssize_t = scene.artificial_count
     x: cython.double
-    pivot: cython.double = scene.own[n * j + j]
+    pivot: cython.double = scene.own_inertia[n * j + j]
     for k in range(j):
-        pivot -= scene.own[n * j + k] * scene.own[n * j + k]
-    scene.own[n * j + j] = 1.0 / sqrt(pivot) if pivot > scene.limits.own_share else 0.0
+        pivot -= scene.own_inertia[n * j + k] * scene.own_inertia[n * j + k]
+    scene.own_inertia[n * j + j] = 1.0 / sqrt(pivot) if pivot > scene.limits.own_share else 0.0
     for i in range(j + 1, n):
-        x = scene.own[n * i + j]
+        x = scene.own_inertia[n * i + j]
         for k in range(j):
-            x -= scene.own[n * i + k] * scene.own[n * j + k]
-        scene.own[n * i + j] = x * scene.own[n * j + j]
+            x -= scene.own_inertia[n * i + k] * scene.own_inertia[n * j + k]
+        scene.own_inertia[n * i + j] = x * scene.own_inertia[n * j + j]
     return pivot
 
 
@@ -199,18 +191,18 @@ def find_artificial_loads(scene: cython.pointer[Scene]) -> cython.void:
     """z = (1 - T)^-1 z_0 from the accelerations due to the loads alone."""
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
-    n: cython.Py_ssize_t = scene.lent_count
+    n: cython.Py_ssize_t = scene.artificial_count
     z: cython.double
     for i in range(n):
-        z = artificial_acceleration(scene, cython.address(scene.lents[i]))
+        z = artificial_acceleration(scene, cython.address(scene.artificial_inertias[i]))
         for k in range(i):
-            z -= scene.own[n * i + k] * scene.lents[k].z
-        scene.lents[i].z = z * scene.own[n * i + i]
+            z -= scene.own_inertia[n * i + k] * scene.artificial_inertias[k].z
+        scene.artificial_inertias[i].z = z * scene.own_inertia[n * i + i]
     for i in range(n - 1, -1, -1):
-        z = scene.lents[i].z
+        z = scene.artificial_inertias[i].z
         for k in range(i + 1, n):
-            z -= scene.own[n * k + i] * scene.lents[k].z
-        scene.lents[i].z = z * scene.own[n * i + i]
+            z -= scene.own_inertia[n * k + i] * scene.artificial_inertias[k].z
+        scene.artificial_inertias[i].z = z * scene.own_inertia[n * i + i]
 
 
 def evaluate(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:
@@ -232,7 +224,7 @@ def evaluate(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double,
 
 def is_free_tree(scene: cython.pointer[Scene]) -> cython.bint:
     """Return whether the scene is a spatial tree without closures: its loads can be swept together with the factors."""
-    return not (scene.flat or scene.closure_count or scene.lent_count or scene.rub_count)
+    return not (scene.flat or scene.closure_count or scene.artificial_count or scene.friction_count)
 
 
 def evaluate_projected(
@@ -268,7 +260,7 @@ def evaluate_with_factors(
     scene: cython.pointer[Scene], y: cython.p_double, dy: cython.p_double, power: cython.double
 ) -> cython.void:
     """Find the time derivative with the present factors."""
-    if scene.rub_count:
+    if scene.friction_count:
         power += solve_joint_friction(scene)
     solve_response(scene, True)
     write_state_derivative(scene, y, dy, power)
@@ -281,7 +273,7 @@ def write_state_derivative(
 
     If something is driven the joint loads are found too, for the work of the drives.
     """
-    if scene.driven:
+    if scene.has_drives:
         apply_multipliers(scene)
         balance_joints(scene, True)
         power += driving_power(scene)
@@ -304,17 +296,17 @@ def solve_joint_friction(scene: cython.pointer[Scene]) -> cython.double:
     store_applied_loads(scene)
     solve_applied(scene, True)
     record_contact_forces(scene, 0)
-    for k in range(scene.rub_count):
+    for k in range(scene.friction_count):
         apply_unit_friction(scene, k)
         solve_applied(scene, False)
         record_contact_forces(scene, k + 1)
     find_normal_forces(scene)
     restore_applied_loads(scene)
-    for k in range(scene.rub_count):
-        load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[k]])
-        apply_friction(scene, load, load.pressed)
-        load.value *= load.pressed
-        load.power *= load.pressed
+    for k in range(scene.friction_count):
+        load: cython.pointer[Load] = cython.address(scene.loads[scene.friction_loads[k]])
+        apply_friction(scene, load, load.normal_force)
+        load.value *= load.normal_force
+        load.power *= load.normal_force
         power += load.power
     return power
 
@@ -447,7 +439,7 @@ def largest_gap(scene: cython.pointer[Scene]) -> cython.double:
 def solve_demands_only(scene: cython.pointer[Scene]) -> cython.void:
     """Find the least motion, in the norm of M, that compensates the rows' demands: a response to no load at all."""
     i: cython.Py_ssize_t
-    for i in range(scene.answer_count):
+    for i in range(scene.velocity_count):
         scene.e[i] = 0.0
     solve_closures(scene)
     sweep_down(scene, False)
@@ -466,11 +458,8 @@ def add_motion(scene: cython.pointer[Scene], y: cython.p_double, rates: cython.b
             y[k + 2] += body.alpha.z
         elif body.ball:
             k = body.attitude_at
-            q: Quaternion = apply_small_rotation(Quaternion(y[k], y[k + 1], y[k + 2], y[k + 3]), body.alpha)
-            y[k] = q.w
-            y[k + 1] = q.x
-            y[k + 2] = q.y
-            y[k + 3] = q.z
+            q: Quaternion = apply_small_rotation(read_quaternion(y, k), body.alpha)
+            write_quaternion(y, k, q)
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if not freedom.driven:

@@ -8,22 +8,25 @@ As c is the lowest point, n . (v_b - v_a) is the rate of the gap. The other two 
 speed, not a pose. c moves along the rim and along the plane, and so does not move with either body's point:
 
     gamma = e' . (v_b - v_a) + e . (cen_b - cen_a + omega_b x (c' - v_b) - omega_a x (c' - v_a))
+
+Below: the change along a direction of the state, line by line:
+
+    A = e' . (v_b - v_a) + e . (a_b - a_a + omega_b x (c' - v_b) - omega_a x (c' - v_a))       J Vdot + gamma
+
+A vector comes with its rate, with its change along the direction, and with the change of its rate.
 """
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.scene import BALL_ROLLS, BALL_TOUCHES, ROLLS, ROLLS_ASIDE, Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PointKinematics, VectorRate, WheelContact
+from heuncli.kernel.carried_points import (
+    body_omega,
+    point_acceleration,
+    point_motion,
+    point_motion_tangent,
+    world_place,
+)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
 
 
 def measure_rolling(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -97,3 +100,95 @@ def unit_rate(w: VectorRate) -> VectorRate:
         return VectorRate(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
     u: Vec3 = scale_vector(1.0 / size, w.x)
     return VectorRate(u, scale_vector(1.0 / size, add_scaled(w.rate, -dot(u, w.rate), u)))
+
+
+# Along a direction of the state
+
+
+def rolling_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:
+    """Return the change of one row: its place and unit load, its rate and its acceleration J Vdot + gamma."""
+    contact: WheelTangent = wheel_contact_tangent(scene, row)
+    c: VectorRate = contact.c.own
+    e: VectorRate = contact.e.own
+    ob: Vec3 = body_omega(scene, row.b)
+    oa: Vec3 = body_omega(scene, row.a)
+    vb: Vec3 = point_motion(scene, row.b, c.x).v
+    va: Vec3 = point_motion(scene, row.a, c.x).v
+    b: MotionTangent = point_motion_tangent(scene, row.b, c.x, contact.c.change.x)
+    a: MotionTangent = point_motion_tangent(scene, row.a, c.x, contact.c.change.x)
+    v: Vec3 = sub(vb, va)
+    dv: Vec3 = sub(b.v, a.v)
+    X: Vec3 = sub(point_acceleration(scene, row.b, c.x), point_acceleration(scene, row.a, c.x))
+    X = sub(add(X, cross(ob, sub(c.rate, vb))), cross(oa, sub(c.rate, va)))
+    dX: Vec3 = sub(b.a, a.a)
+    dX = add(
+        dX, cross_product_tangent(omega_tangent(scene, row.b), ob, sub(c.rate, vb), sub(contact.c.change.rate, b.v))
+    )
+    dX = sub(
+        dX, cross_product_tangent(omega_tangent(scene, row.a), oa, sub(c.rate, va), sub(contact.c.change.rate, a.v))
+    )
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    rate: cython.double = dot(contact.e.change.x, v) + dot(e.x, dv)
+    acceleration: cython.double = dot(contact.e.change.rate, v) + dot(e.rate, dv)
+    acceleration += dot(contact.e.change.x, X) + dot(e.x, dX)
+    return RowTangent(contact.c.change.x, contact.e.change.x, zero, rate, acceleration)
+
+
+def cross_product_tangent(domega: Vec3, omega: Vec3, v: Vec3, dv: Vec3) -> Vec3:
+    """Return the change of omega x v."""
+    return add(cross(domega, v), cross(omega, dv))
+
+
+def wheel_contact_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> WheelTangent:
+    """Return the contact and the direction of the row, with their changes."""
+    n: VectorRateTangent = direction_rate_tangent(scene, row.a, row.e)
+    centre: PointMotion = point_tangent(scene, row.b, row.q)
+    C: VectorRateTangent = VectorRateTangent(centre_rate(scene, row), VectorRate(centre.x, centre.v))
+    if row.kind == BALL_TOUCHES or row.kind == BALL_ROLLS:
+        return WheelTangent(sum_rate_tangent(C, -row.radius, n), direction_rate_tangent(scene, row.a, row.g))
+    k: VectorRateTangent = direction_rate_tangent(scene, row.b, row.g)
+    t: VectorRateTangent = unit_rate_tangent(cross_rate_tangent(k, n))
+    c: VectorRateTangent = sum_rate_tangent(C, -row.radius, cross_rate_tangent(t, k))
+    if row.kind == ROLLS:
+        return WheelTangent(c, t)
+    if row.kind == ROLLS_ASIDE:
+        return WheelTangent(c, cross_rate_tangent(n, t))
+    return WheelTangent(c, n)
+
+
+def direction_rate_tangent(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> VectorRateTangent:
+    """Return a direction fixed in a body with its change: e by turn x e, its rate omega x e by d omega x e + omega x
+    de.
+    """
+    base_direction: VectorRate = direction_rate(scene, body, a)
+    de: Vec3 = vector_tangent(scene, body, base_direction.x)
+    rate: Vec3 = cross_product_tangent(omega_tangent(scene, body), body_omega(scene, body), base_direction.x, de)
+    return VectorRateTangent(base_direction, VectorRate(de, rate))
+
+
+def cross_rate_tangent(a: VectorRateTangent, b: VectorRateTangent) -> VectorRateTangent:
+    """a x b, with its change."""
+    left: VectorRate = cross_rate(a.change, b.own)
+    return VectorRateTangent(cross_rate(a.own, b.own), sum_rate(left, 1.0, cross_rate(a.own, b.change)))
+
+
+def sum_rate_tangent(a: VectorRateTangent, s: cython.double, b: VectorRateTangent) -> VectorRateTangent:
+    """a + s b, with its change."""
+    return VectorRateTangent(sum_rate(a.own, s, b.own), sum_rate(a.change, s, b.change))
+
+
+def unit_rate_tangent(w: VectorRateTangent) -> VectorRateTangent:
+    """u = w / |w|, with its change: |w| du = dw - (u . dw) u, and the same from |w| u' + |w|' u = w'."""
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    size: cython.double = norm(w.own.x)
+    if size == 0.0:
+        return VectorRateTangent(VectorRate(zero, zero), VectorRate(zero, zero))
+    s: cython.double = 1.0 / size
+    u: Vec3 = scale_vector(s, w.own.x)
+    grows: cython.double = dot(u, w.own.rate)
+    rate: Vec3 = scale_vector(s, add_scaled(w.own.rate, -grows, u))
+    longer: cython.double = dot(u, w.change.x)
+    du: Vec3 = scale_vector(s, add_scaled(w.change.x, -longer, u))
+    growing: cython.double = dot(du, w.own.rate) + dot(u, w.change.rate)
+    drate: Vec3 = add_scaled(add_scaled(w.change.rate, -growing, u), -grows, du)
+    return VectorRateTangent(VectorRate(u, rate), VectorRate(du, scale_vector(s, add_scaled(drate, -longer, rate))))

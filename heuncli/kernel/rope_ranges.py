@@ -14,26 +14,15 @@ on a sheave changes with its strands.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Vec3, dot, norm, sub
-    from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import ROD, STRAND, Closure, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Orbits
-    from heuncli.kernel.values import LengthBounds
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import INFINITY
+from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
 
 
 def bound_rope(
-    scene: cython.pointer[Scene], points: cython.pointer[Orbits], load: cython.pointer[Load], T: cython.double
+    scene: cython.pointer[Scene], points: cython.pointer[PointCourse], load: cython.pointer[Load], T: cython.double
 ) -> LengthBounds:
     """Bound all parts of a rope together, from their positions at the end of the interval."""
     i: cython.Py_ssize_t
@@ -51,7 +40,7 @@ def bound_rope(
     return LengthBounds(rate, second, bend, far, scene.limits.rounding)
 
 
-def bound_strand(points: cython.pointer[Orbits], part: cython.pointer[Closure], T: cython.double) -> Jet:
+def bound_strand(points: cython.pointer[PointCourse], part: cython.pointer[Closure], T: cython.double) -> Jet:
     """Bound one strand: its distance from the origin, and its rates; between two points the bodies' rotation has no
     effect.
     """

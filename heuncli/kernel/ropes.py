@@ -6,22 +6,16 @@
     k = k0 L / l0              k0: at the length L, for a shorter rope of the same kind is stiffer
 
 A rope that only pulls stores nothing if it is shorter than l0: it is slack there.
+
+Below: its change along a direction of the state.
 """
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.conditions import measure_condition, set_load_places
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import Closure, Load, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import RopeMotion
+from heuncli.kernel.conditions import condition_tangent, measure_condition, set_load_places
+from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import jet
+from heuncli.kernel.sheaves import body_rotation, point_displacement
 
 
 def measure_rope(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:
@@ -75,4 +69,41 @@ def rope_power(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cyth
     power: cython.double = load.value * load.rate + pull * (load.rate - free.rate)
     if load.y.count:
         power -= 0.5 * pull * x * free.rate / free.value
+    return power
+
+
+# Along a direction of the state
+
+
+def rope_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:
+    """Return the changes of S and S': dS = sum of f . (displacement of b - that of a at Q) + m . (rotation of b - that
+    of a).
+    """
+    i: cython.Py_ssize_t
+    longer: cython.double = 0.0
+    faster: cython.double = 0.0
+    for i in range(load.part, load.part + load.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        part_change: cython.double = dot(
+            part.f, sub(point_displacement(scene, part.b, part.Q), point_displacement(scene, part.a, part.Q))
+        )
+        part_change += dot(part.m, sub(body_rotation(scene, part.b), body_rotation(scene, part.a)))
+        longer += part.factor * part_change
+        faster += part.factor * condition_tangent(scene, part).rate
+    return RopeMotion(longer, faster)
+
+
+def rope_power_tangent(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], pull: cython.double, d: RopeMotion
+) -> cython.double:
+    """Return the change of value S' + dV/dt for a change `pull` of `value`, and d of S and S', at one instant."""
+    free: Jet = free_length(scene, load)
+    power: cython.double = pull * load.rate + load.value * d.rate
+    x: cython.double = rope_stretch(load, load.span, free.value)
+    if x == 0.0 and load.in_body:
+        return power
+    k: cython.double = rope_stiffness(load, free.value)
+    power += k * (d.S * (load.rate - free.rate) + x * d.rate)
+    if load.y.count:
+        power -= k * x * d.S * free.rate / free.value
     return power

@@ -5,17 +5,14 @@ What is computed at a state depends on these rows too: another set of independen
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from heuncli.kernel.declarations import *
+from heuncli.kernel.orthogonal import list_coupled_rows
+from heuncli.kernel.response import project_state
+from heuncli.kernel.selection import order_all, select_independent_rows
 
-if not cython.compiled:
-    from heuncli.kernel.orthogonal import list_coupled_rows
-    from heuncli.kernel.response import project_state
-    from heuncli.kernel.scene import Closure, Scene
-    from heuncli.kernel.selection import order_all, select_independent_rows
-    from heuncli.kernel.shadow import cython
+# What a saved choice has of each row, behind its pivot.
+ROW_RANK, ROW_SCALE = range(2)
+ROW_NUMBERS = 2
 
 
 def choose_rows_again(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
@@ -46,17 +43,16 @@ def set_row_threshold(scene: cython.pointer[Scene], t: cython.double, y: cython.
 
 def choice_width(scene: cython.pointer[Scene]) -> cython.int:
     """Return how many numbers a saved choice has."""
-    return 1 + 2 * scene.closure_count
+    return 1 + ROW_NUMBERS * scene.closure_count
 
 
 def save_choice(scene: cython.pointer[Scene], buffer: cython.p_double, offset: cython.Py_ssize_t) -> cython.void:
     """Write the choice: the smallest pivot when it was made; for each row its rank (-1: left out) and its scale."""
     i: cython.Py_ssize_t
-    buffer[offset] = scene.pivot_chosen
+    offset = write_number(buffer, offset, scene.pivot_chosen)
     for i in range(scene.closure_count):
-        row: cython.pointer[Closure] = cython.address(scene.closures[i])
-        buffer[offset + 1 + 2 * i] = row.rank
-        buffer[offset + 2 + 2 * i] = row.pose_scale
+        offset = write_number(buffer, offset, scene.closures[i].rank)
+        offset = write_number(buffer, offset, scene.closures[i].pose_scale)
 
 
 def restore_choice(
@@ -70,9 +66,9 @@ def restore_choice(
     scene.selected_count = 0
     for i in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[i])
-        rank = int(saved_choice[offset + 1 + 2 * i])
+        rank = int(saved_choice[offset + 1 + ROW_NUMBERS * i + ROW_RANK])
         row.rank = rank
-        row.pose_scale = saved_choice[offset + 2 + 2 * i]
+        row.pose_scale = saved_choice[offset + 1 + ROW_NUMBERS * i + ROW_SCALE]
         if rank >= 0:
             scene.selected[rank] = i
             scene.selected_count += 1

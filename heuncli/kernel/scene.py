@@ -3,16 +3,17 @@
     [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on the branch from its body
                                                                  outward, about the body's joint point r; world axes
 
-Rows of NumPy tables (multibody/tree/tables.py makes their types from these classes) are the compiled kernel's memory;
-the plain kernel makes objects of them. Fields up to the blank line are set when the scene is packed, the others belong
-to the kernel. World axes unless stated otherwise; `a` always is the acceleration minus that of gravity.
+Each field is declared here alone: C's structs (headers.py) and the NumPy types of the tables that are the compiled
+kernel's memory (multibody/tree/tables.py) follow. The rows of a scene are packed as objects of these classes, by the
+names of the fields: a field that is ZERO here may be left out, what stands below `Computed` belongs to the kernel.
+World axes unless stated otherwise; `a` always is the acceleration minus that of gravity.
 """
 
 from __future__ import annotations
 
 from heuncli.kernel.algebra import Ldl3, Mat3, Sym3, Vec3
 from heuncli.kernel.programs import Program, Programs
-from heuncli.kernel.structs import Pointer, Record, Struct
+from heuncli.kernel.structs import ZERO, Computed, Pointer, Record, Struct
 
 # Kinds of freedoms, loads (named in base/load_kinds.py; their order means nothing) and closure rows.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
@@ -40,14 +41,15 @@ class Body(Record):
     rate_at: int  # and its angular velocity
     first_freedom: int  # scalar freedoms, in the order from the parent outward
     end_freedom: int
-    answer_at: int  # position of a ball's three turns, then its freedoms, among the loads e on the freedoms
-    framed: int  # 1: `frame` is not 1
+    velocity_at: int  # position of a ball's three turns, then its freedoms, among the loads e on the freedoms
+    has_frame: int  # 1: `frame` is not 1
     mass: float
     first_moment: Vec3  # m c, body axes from the joint point
     inertia: Sym3  # J about the joint point, body axes
     joint_in_parent: Vec3  # the joint point in the parent, from its joint point, its axes
     frame: Mat3  # attitude in the parent where all coordinates are zero
 
+    _: Computed
     R: Mat3  # attitude, body to world
     r: Vec3  # joint point
     omega: Vec3
@@ -65,7 +67,7 @@ class Body(Record):
     A: Sym3  # articulated inertia of the branch; in a flat scene all of it, of turn about z, shift x, shift y
     C: Mat3
     K: Sym3
-    turning: Ldl3  # for a ball: factors of A
+    A_factors: Ldl3  # for a ball: factors of A
     G: Mat3  # for a ball: A^-1 C
     M_branch: Vec3  # load that the branch needs from its joint; for all loads, or for one closure row's unit load
     f_branch: Vec3
@@ -82,20 +84,21 @@ class Freedom(Record):
     q_at: int  # where coordinate and rate stand in the state; -1: driven
     u_at: int
     driven: int
-    answer_at: int
+    velocity_at: int
     body: int
     program: Program  # value of the drive
     direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
-    offset: float  # coordinate minus the drive's value
-    path: int  # first piece of the path along which a point runs
-    pieces: int  # and how many it has; 0: its direction is fixed
-    period: float  # period of the coordinate on a closed path; else 0
-    reach: float  # bounds of the path's |r|, |r'| and |r''|
-    slope: float
-    bend: float
-    radius: float  # distance of a roller's centre from the path; 0: on it
-    normal: Vec3  # normal of the path's plane; the roller is to its left
+    offset: float = ZERO  # coordinate minus the drive's value
+    path: int = ZERO  # first piece of the path along which a point runs
+    pieces: int = ZERO  # and how many it has; 0: its direction is fixed
+    period: float = ZERO  # period of the coordinate on a closed path; else 0
+    reach: float = ZERO  # bounds of the path's |r|, |r'| and |r''|
+    slope: float = ZERO
+    bend: float = ZERO
+    radius: float = ZERO  # distance of a roller's centre from the path; 0: on it
+    normal: Vec3 = ZERO  # normal of the path's plane; the roller is to its left
 
+    _: Computed
     s: Vec3  # its direction, of unit length or, along a path, r'
     curved: Vec3  # along a path r'', else zero
     twisted: Vec3  # and r'''
@@ -104,7 +107,7 @@ class Freedom(Record):
     D: float  # 1 / (s . I s); zero where it is driven or moves nothing
     q: float
     u: float
-    still: int  # 1: a closed contact holds it, so that its rate is exactly 0, without rounding
+    is_held: int  # 1: a closed contact holds it, so that its rate is exactly 0, without rounding
     udot: float  # prescribed, or found
     drive: float  # load of the drive along it
 
@@ -115,50 +118,50 @@ class Load(Record):
     kind: int
     a: int
     b: int
-    in_body: int  # the vector's components are in b's axes; of joint loads: told along the axis; of ropes: only pulls
-    freedom: int  # for a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
-    counter: int  # that then counts its turns
-    x: Program  # components of `vector` that vary; x alone for a single value
-    y: Program  # for a rope: its length without load
-    z: Program
-    p: Vec3  # point of a, from its joint point, its axes
-    q: Vec3  # point of b
-    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator, size of friction) stands in x
-    stiffness: float  # spring [N/m], torsion spring [N m/rad]
-    length: float  # free length of a spring or rope [m]; torsion spring: free angle; bushing: largest angle [rad]
-    coefficient: float  # damping [N s/m], [N m s]; for friction the factor on its size
-    axis: Vec3  # in a
-    speed: float  # for friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
-    factor: float  # for a force or couple: by which the vector is to be multiplied; of a thread's friction its force by
-    # its moment [1/m]
-    offset: float
-    across: Vec3  # for a joint that was cut: a direction across the axis, in a
-    mark: Vec3  # and the one in b that agrees with it at angle 0
+    in_body: int = ZERO  # the vector is in b's axes; of joint loads: reported along the axis; of ropes: only pulls
+    freedom: int = ZERO  # for a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
+    counter: int = ZERO  # that then counts its turns
+    x: Program = ZERO  # components of `vector` that vary; x alone for a single value
+    y: Program = ZERO  # for a rope: its length without load
+    z: Program = ZERO
+    p: Vec3 = ZERO  # point of a, from its joint point, its axes
+    q: Vec3 = ZERO  # point of b
+    vector: Vec3 = ZERO  # force [N], couple [N m]; a single value (torque, actuator, size of friction) stands in x
+    stiffness: float = ZERO  # spring [N/m], torsion spring [N m/rad]
+    length: float = ZERO  # free length of a spring or rope [m]; free angle of a torsion spring, largest of a bushing
+    coefficient: float = ZERO  # damping [N s/m], [N m s]; for friction the factor on its size
+    axis: Vec3 = ZERO  # in a
+    speed: float = ZERO  # for friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
+    factor: float = ZERO  # on the vector of a force or couple; of a thread's friction its force by its moment [1/m]
+    offset: float = ZERO
+    mark_a: Vec3 = ZERO  # for a joint that was cut: a direction across the axis, in a
+    mark_b: Vec3 = ZERO  # and the one in b that agrees with it at angle 0
     # for friction: GIVEN, or which part of the joint's own load is the normal force; the coefficient then
     # multiplies it
-    presses: int
-    held_by: int  # the body whose joint it is; -1: the joint was cut
-    row: int  # for a joint that was cut: its first closure row; of a thread its own
-    row_count: int
-    reach: float  # for ENDS: the distance between the two ends [m]
-    frame: Mat3  # for a bushing: its axes, in a
-    to_frame: Mat3  # and those in b that agree with them where it is not turned
-    stiffnesses: Vec3  # along its axes [N/m], of turning [N m/rad]
-    resistances: Vec3  # [N s/m], [N m s]
-    part: int  # for a rope: the first of its parts
-    part_count: int
+    normal_force_kind: int = ZERO
+    joint_body: int = ZERO  # the body whose joint it is; -1: the joint was cut
+    row: int = ZERO  # for a joint that was cut: its first closure row; of a thread its own
+    row_count: int = ZERO
+    reach: float = ZERO  # for ENDS: the distance between the two ends [m]
+    frame: Mat3 = ZERO  # for a bushing: its axes, in a
+    to_frame: Mat3 = ZERO  # and those in b that agree with them where it is not turned
+    stiffnesses: Vec3 = ZERO  # along its axes [N/m], of turning [N m/rad]
+    resistances: Vec3 = ZERO  # [N s/m], [N m s]
+    part: int = ZERO  # for a rope: the first of its parts
+    part_count: int = ZERO
 
+    _: Computed
     force: Vec3  # on b
     moment: Vec3
-    at: Vec3  # where on b
-    from_at: Vec3  # where on a
+    place: Vec3  # where on b
+    place_on_a: Vec3  # where on a
     value: float
-    span: float  # length of the line, of a rope; of a turn spring its angle; of what presses whether it was FOUND
+    span: float  # length of the line, of a rope; of a turn spring its angle; of friction its normal force's outcome
     strain: Vec3  # for a bushing: its shift or its turn, in its axes
     rate: float
     power: float
     unit: Vec3  # for joint friction: force or moment on b for a normal force of 1; of a thread the moment
-    pressed: float  # normal force [N]; of GIVEN friction its size [N], [N m]
+    normal_force: float  # normal force [N]; of GIVEN friction its size [N], [N m]
 
 
 class Closure(Record):
@@ -183,41 +186,42 @@ class Closure(Record):
     kind: int
     a: int
     b: int
-    freedom: int  # for a TURN: whose angle
-    program: Program  # driven length
-    path: int  # first of the bodies between its two ends and the ground, tips first, in `indices`
-    path_count: int
-    column: int  # its first number in `columns`
-    answers: int  # which answers of the freedoms these are, in `indices`: first those of its path, then what fills in
-    answer_count: int  # number of answers of its path
-    filled_count: int  # with those that fill in when earlier rows are taken out of it
-    couplings: int  # earlier rows that fill in, in `indices`
-    coupling_count: int
-    rank: int  # its place among the independent rows; -1: left out
-    e: Vec3
-    g: Vec3
-    p: Vec3  # point of a, from its joint point, its axes
-    q: Vec3  # point of b
-    length: float
+    freedom: int = ZERO  # for a TURN: whose angle
+    program: Program = ZERO  # driven length
+    path: int = ZERO  # first of the bodies between its two ends and the ground, tips first, in `indices`
+    path_count: int = ZERO
+    column: int = ZERO  # its first number in `columns`
+    velocities: int = ZERO  # which generalised velocities, in `indices`: first those of its path, then what fills in
+    velocity_count: int = ZERO  # how many of its path
+    filled_count: int = ZERO  # with those that fill in when earlier rows are taken out of it
+    couplings: int = ZERO  # earlier rows that fill in, in `indices`
+    coupling_count: int = ZERO
+    rank: int = ZERO  # its place among the independent rows; -1: left out
+    e: Vec3 = ZERO
+    g: Vec3 = ZERO
+    p: Vec3 = ZERO  # point of a, from its joint point, its axes
+    q: Vec3 = ZERO  # point of b
+    length: float = ZERO
     weight: float  # weight of the gap [m per unit]
-    part: int  # for a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
-    part_count: int
-    factor: float  # for a part of a SUM its factor; 1 for a row itself
-    c: int  # for a MESH or WOUND: the body that carries its place and directions; -1: the ground
-    ratio: float  # factor on the coordinate of `freedom`
-    freedom_b: int
-    ratio_b: float
-    lift: int  # for a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
-    pieces: int
-    period: float
-    swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
-    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
-    radius: float  # radius of the roller; 0: a point
-    pivot: Vec3
-    h: Vec3
-    counter: int  # for a TRACK: which counter counts its place
-    measure: float  # size of its unit load: 1 for a force, the island's length for a couple
+    part: int = ZERO  # for a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
+    part_count: int = ZERO
+    factor: float = ZERO  # for a part of a SUM its factor; 1 for a row itself
+    c: int = ZERO  # for a MESH or WOUND: the body that carries its place and directions; -1: the ground
+    ratio: float = ZERO  # factor on the coordinate of `freedom`
+    freedom_b: int = ZERO
+    ratio_b: float = ZERO
+    lift: int = ZERO  # for a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
+    pieces: int = ZERO
+    period: float = ZERO
+    swings: int = ZERO  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
+    faced: int = ZERO  # 1: touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
+    radius: float = ZERO  # radius of the roller; 0: a point
+    pivot: Vec3 = ZERO
+    h: Vec3 = ZERO
+    counter: int = ZERO  # for a TRACK: which counter counts its place
+    unit_load_size: float = ZERO  # size of its unit load: 1 for a force, the island's length for a couple
 
+    _: Computed
     f: Vec3
     m: Vec3
     Q: Vec3
@@ -232,15 +236,15 @@ class Closure(Record):
     demand: float  # what it demands of the response: J V = -demand
     prescribed_rate: float
     prescribed_second: float  # second derivative of a driven length; in an impulse the jump of its rate
-    answer: float  # size of the freedoms' response to its unit load, in the norm of M
-    doubt: float  # what rounding may make of its multiplier
+    response_size: float  # size of the freedoms' response to its unit load, in the norm of M
+    multiplier_error: float  # what rounding may make of its multiplier
     mode: int  # CARRIES; of a contact also APART: it is open; LEANS: kept closed by other contacts, it carries nothing
-    pivot_at: int  # the answer that its reflector leaves something of
-    chosen: int  # while rows are selected: its place in the order of pivots; -1: not yet
+    pivot_velocity: int  # the generalised velocity that its reflector leaves something of
+    selection_order: int  # while rows are selected: its place in the order of pivots; -1: not yet
     support_count: int  # numbers of its reflector
     coupled_count: int  # independent rows that fill it
     reflector: float  # 2 / |v|^2 of its reflector 1 - 2 v v' / |v|^2
-    pose_scale: float  # 1 / sqrt of a part of what it could answer across its arms, and of what it does
+    pose_scale: float  # 1 / sqrt of a part of its possible response across its arms, and of its response
 
 
 class Contact(Record):
@@ -252,10 +256,11 @@ class Contact(Record):
 
     row: int
     sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
-    opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
+    mode_index: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
     freedom: int  # which it limits or holds; -1: no single one
-    held_at: int  # for a latch 1 + where, behind these, it is told at which length it holds; 0: of others
+    latch_index: int = ZERO  # for a latch 1 + the index, behind these, of the length at which it holds; 0: of others
 
+    _: Computed
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
     least: float  # what the stages of a step saw of it
@@ -263,11 +268,11 @@ class Contact(Record):
     level: float  # above it the contact closes, or opens
     highest: float  # over a part of a step: the largest, the largest second difference, the one before, and before that
     bent: float
-    before: float
+    previous: float
     first: float
     fastest: float  # the same of its rate
     rate_bent: float
-    rate_before: float
+    rate_previous: float
     rate_first: float
 
 
@@ -286,11 +291,12 @@ class Counter(Record):
 
     a: int
     b: int
-    at: int  # where it stands in the state
+    state_at: int  # where it stands in the state
     axis: Vec3  # in a
     track: int  # for a place: 1 + its TRACK among the closure rows; 0: an angle
 
-    counted: float  # the state's angle, which is right to half a turn; or its place, right to its branch of the path
+    _: Computed
+    value: float  # the state's angle, which is right to half a turn; or its place, right to its branch of the path
 
 
 class Variable(Record):
@@ -300,15 +306,15 @@ class Variable(Record):
     component of its strain.
     """
 
-    freedom: int
-    is_rate: int
-    is_point: int  # 0, AT_POINT, OF_LOAD
-    load: int
-    part: int  # part of the load: along its axis 0, 1 or 2; ALONG_LINE, DRAWN
-    body: int  # body of the point; -1: the ground
-    q: Vec3  # the point, from the body's joint point, its axes
-    direction: Vec3  # unit vector, world axes
-    offset: float  # offset of its place along the direction
+    freedom: int = ZERO
+    is_rate: int = ZERO
+    is_point: int = ZERO  # 0, AT_POINT, OF_LOAD
+    load: int = ZERO
+    part: int = ZERO  # part of the load: along its axis 0, 1 or 2; ALONG_LINE, DRAWN
+    body: int = ZERO  # body of the point; -1: the ground
+    q: Vec3 = ZERO  # the point, from the body's joint point, its axes
+    direction: Vec3 = ZERO  # unit vector, world axes
+    offset: float = ZERO  # offset of its place along the direction
 
 
 class Watch(Record):
@@ -319,6 +325,7 @@ class Watch(Record):
     condition: int  # 1: its branches alone count
     load: int  # for a bushing: the load of whose force or moment it is a part; -1: it is of none
 
+    _: Computed
     low: float  # what the stages of a step saw of it
     high: float
     scale: float  # how large it may be in the step
@@ -334,6 +341,7 @@ class ArtificialInertia(Record):
     root: float  # square root of the inertia
     axis: Vec3  # unit vector, body axes
 
+    _: Computed
     n: Vec3  # root times the axis, world
     z: float  # n . alpha: the artificial inertia takes the load z n on the body
 
@@ -345,6 +353,7 @@ class Group(Record):
     rates: int
     end: int
 
+    _: Computed
     rate: float  # the largest it has had
     trial: float  # step being tried
 
@@ -361,11 +370,11 @@ class Island(Record):
 class Limits(Record):
     """Thresholds of the kernel: heuncli/base/tolerances.py derives each."""
 
-    dodges: int  # lengths tried for a step whose stages come near to a singular pose
+    singular_retries: int  # lengths tried for a step whose stages come near to a singular pose
     no_inertia: float  # relative to the inertia in all directions: below it, nothing is moved
     own_share: float  # relative to a motion's inertia with the artificial part: below it, nothing resists
-    much_lent: float  # with a smaller share than this, but more than that, less artificial inertia is used
-    across: float  # part of what a row could answer across its arms that counts as its scale in any pose
+    much_artificial: float  # with a smaller share than this, but more than that, less artificial inertia is used
+    row_across: float  # part of a row's possible response across its arms that counts as its scale in any pose
     independent: float  # least length of what is left of a row, by the rows chosen before it, for it to be chosen
     passing: float  # the same on the way through a singular pose
     passing_of_start: float  # and no more than this of what the rows of the start have left
@@ -378,7 +387,7 @@ class Limits(Record):
     closed: float  # gaps of the scene's size: rounding, nothing to mend
     nearly_closed: float  # rounding after a correction
     reopened: float  # a row that was left out opens
-    lost: float  # the closures cannot be held
+    closures_lost: float  # the closures cannot be held
     jump: float  # relative to the largest rate: a larger change of rates by the closures is not rounding
     jump_of_error: float  # the same of the local tolerance, by the root of the pivot
     jump_of_given: float  # and the same at most of what a given step turns the scene by
@@ -386,7 +395,7 @@ class Limits(Record):
     held_rate: float  # relative to the rate that loads could cause: bodies held at rest are judged as if this fast
     least_step: float  # relative to the time: rounding
     given_end: float  # relative to a given step: a shorter remainder of a piece is merged into its last step
-    dodge: float  # ratio of the lengths tried
+    retry_ratio: float  # ratio of the lengths tried
     pivot_rounding: float  # what rounding makes of the closures, times h rate / pivot
     one_instant: float  # relative to the time: rounding of an instant
     finest: float  # part of a step down to which events are told apart
@@ -402,7 +411,7 @@ class Limits(Record):
     unseen: float  # relative to a load's largest value: change unseen by the stages before a step is repeated
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
     branch_step: float  # relative to the least pivot: motion of the coordinates in a step along a branch
-    branch_beside: float  # factor on branch_step for a run begun next to the start
+    branch_next_start: float  # factor on branch_step for a run begun next to the start
     branch_between: float  # [rad, of an island's length]: the course of what a drive moves, between a step's ends
     branch_bend: float  # relative to a drive's acceleration in a step: allowed error of its midpoint
     half_turn: float  # cosine of half a turn: where it is less, Rodrigues' numbers have come to a half turn
@@ -463,19 +472,19 @@ class Scene(Struct):
     counter_count: int
     variable_count: int
     point_count: int  # variables that are of points or loads
-    lent_count: int
+    artificial_count: int
     island_count: int
     watch_count: int
     contact_count: int  # one-sided rows
     held_count: int  # branches of expressions that are held over a step
     angle_count: int  # number of these that belong to atan2
-    answer_count: int  # freedoms, a ball's three turns among them
+    velocity_count: int  # freedoms, a ball's three turns among them
     selected_count: int  # independent closure rows
-    rub_count: int  # loads of joint friction that depend on the joint's own load
-    jammed: int  # what was last found of them where no one answer was: JAMS, TWO, UNPROVED
-    jammed_load: int  # and which load it is that says so
-    jammed_at: float  # when
-    driven: int  # something is driven: the work of drives counts
+    friction_count: int  # loads of joint friction that depend on the joint's own load
+    friction_outcome: int  # the last outcome that was not FOUND: JAMS, TWO, UNPROVED
+    friction_outcome_load: int  # and which load it is that says so
+    friction_outcome_time: float  # when
+    has_drives: int  # something is driven: the work of drives counts
     flat: int  # bodies turn about z and shift across it: plane.py moves them
     work_at: int  # position of the work in the state; -1: it is not computed
     gravity: Vec3
@@ -487,7 +496,7 @@ class Scene(Struct):
     pivot: float  # now
     pivot_of_step: float  # least since the step began
     gap: float  # largest gap of the last recovered state, over all rows [m]
-    lent_part: float  # root of the part of the inertias in `lents` that is lent
+    artificial_part: float  # root of the part of the artificial inertias that is used
     own_share: float  # least pivot of 1 - T: share of a motion's inertia that is its own, not artificial
     pivot_recovered: float  # least of the independent rows there, as they were selected: geometry alone, squared
     load_size: float  # |D^(-1/2) e|: size of the response without closures, in the norm of M
@@ -500,9 +509,9 @@ class Scene(Struct):
     counters: list[Counter]
     variables: list[Variable]
     pieces: list[PathPiece]
-    bodies_beside: list[Body]  # spare bodies, on which points are evaluated without changing the scene's
-    freedoms_beside: list[Freedom]
-    lents: list[ArtificialInertia]
+    spare_bodies: list[Body]  # spare bodies, on which points are evaluated without changing the scene's
+    spare_freedoms: list[Freedom]
+    artificial_inertias: list[ArtificialInertia]
     islands: list[Island]
     watches: list[Watch]
     contacts: list[Contact]
@@ -510,36 +519,36 @@ class Scene(Struct):
     least: list[float]  # range of each variable as seen by the stages of a step
     most: list[float]
     programs: Pointer[Programs]
-    indices: list[int]  # paths, answers and couplings of the closure rows
+    indices: list[int]  # paths, generalised velocities and couplings of the closure rows
     selected: list[int]  # independent rows, ascending
     envelope: list[int]  # first coupled row of each of them
-    support: list[int]  # which answers the reflectors have something of, as their numbers stand in `columns`
+    support: list[int]  # which generalised velocities the reflectors have, in the order of `columns`
     coupled: list[int]  # for the independent rows: earlier rows coupled to them, at the place of their couplings
-    taken: list[int]  # which answers are pivots of reflectors already
-    measure: list[float]  # of each answer in an island: 1 translation, 1 / length rotation; 0: in none, or driven
+    is_pivot: list[int]  # which generalised velocities are pivots of reflectors already
+    velocity_scale: list[float]  # in an island: 1 translation, 1 / length rotation; 0: in none, or driven
     e: list[float]  # load on each freedom
-    root: list[float]  # D^(-1/2) of each answer
-    spread: list[float]  # one vector over all answers
+    inertia_root: list[float]  # D^(-1/2) of each generalised velocity
+    velocity_vector: list[float]  # one vector over all of them
     columns: list[float]  # e_r of all rows, one after the other; then the reflectors that make R of them
     R: list[float]  # R' over the independent rows, the diagonal inverted
     J: list[float]  # one island's rows of J on its freedoms, scaled
-    left: list[float]  # for each of these rows the squared remainder after the rows chosen before
-    filled: list[int]  # the freedoms that the pivot row has something of
-    standing: list[int]  # its rows that may yet be chosen, ascending
-    reach: list[int]  # for each row of J the parts of the island's degrees of freedom with entries, one bit per part
-    y: list[float]  # a number an independent row
-    own: list[float]  # 1 - T of the artificial inertias, and its Cholesky factor
-    at_state: list[BodyAtState]  # what stands at the state whose directions are looked at
+    remainders: list[float]  # for each of these rows the squared remainder after the rows chosen before
+    pivot_row_velocities: list[int]  # the freedoms that the pivot row has something of
+    rows_left: list[int]  # its rows that may yet be chosen, ascending
+    row_bits: list[int]  # for each row of J the parts of the island's degrees of freedom with entries, one bit per part
+    row_vector: list[float]  # a number an independent row
+    own_inertia: list[float]  # 1 - T of the artificial inertias, and its Cholesky factor
+    state_values: list[BodyAtState]  # what stands at the state whose directions are looked at
     tangents: list[BodyTangent]  # tangents of the bodies, along one direction
     freedom_tangents: list[FreedomTangent]
     multipliers: list[float]  # at the state
     slopes: list[float]  # slopes of the variables of the expressions, along the direction
-    sloping: int  # some of them are not 0
-    rubs: list[int]  # the loads of joint friction that depend on the joint's own load
+    has_slopes: int  # some of them are not 0
+    friction_loads: list[int]  # the loads of joint friction that depend on the joint's own load
     # for each cause and each of them: the two vectors whose lengths are normal forces (kernel/joint_friction.py)
-    carried: list[float]
-    kept: list[float]  # moment and force applied to each body, stored while others are solved for
-    bound: list[float]  # by how much what presses one can grow by a unit of another; then its elimination
-    newton: list[float]  # 1 - the slope of that at the answer
-    trial: list[float]  # rows of a number each of them: the answer tried, what it leaves, a weight, the terms' size
-    along: list[float]  # a direction of the state
+    contact_forces: list[float]
+    stored_loads: list[float]  # moment and force applied to each body, stored while others are solved for
+    friction_bound: list[float]  # how much one normal force grows at most by a unit of another; then its elimination
+    friction_slope: list[float]  # 1 - the slope of that at the solution
+    friction_trial: list[float]  # rows of a number each (joint_friction.py)
+    direction: list[float]  # a direction of the state

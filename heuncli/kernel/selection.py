@@ -7,21 +7,14 @@ longer levers are shortened to that. Redundancy is decided from the same matrix 
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, sqrt
 
-if not cython.compiled:
-    from math import fabs, sqrt
-
-    from heuncli.kernel.algebra import Vec3, add, add_cross, cross, dot, inverse_form, sub
-    from heuncli.kernel.closures import add_unit_loads, clear_path, measure_rows
-    from heuncli.kernel.conditions import condition, condition_count
-    from heuncli.kernel.orthogonal import factor_closures, list_coupled_rows, response_of_sides, set_inertia_roots
-    from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Island, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import factor_tree, project_on_freedom, update_kinematics
+from heuncli.kernel.closures import add_unit_loads, clear_path, measure_rows
+from heuncli.kernel.conditions import condition, condition_count
+from heuncli.kernel.declarations import *
+from heuncli.kernel.kinematics import update_kinematics
+from heuncli.kernel.orthogonal import factor_closures, list_coupled_rows, response_of_sides, set_inertia_roots
+from heuncli.kernel.tree import factor_tree, project_on_freedom
 
 
 def select_independent_rows(
@@ -44,7 +37,7 @@ def select_independent_rows(
     for i in range(scene.closure_count):
         chosen_row: cython.pointer[Closure] = cython.address(scene.closures[i])
         chosen_row.rank = -1
-        if chosen_row.chosen >= 0:
+        if chosen_row.selection_order >= 0:
             chosen_row.rank = scene.selected_count
             scene.selected[scene.selected_count] = i
             scene.selected_count += 1
@@ -80,10 +73,10 @@ def order_island_rows(
         if best < 0:
             break
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + best]])
-        left: cython.double = sqrt(scene.left[best])
+        left: cython.double = sqrt(scene.remainders[best])
         if left < least_pivot:
             least_pivot = left
-        row.chosen = n
+        row.selection_order = n
         candidate_count = remove_candidate(scene, candidate_count, best)
         eliminate_pivot(scene, island, candidate_count, best, n)
         n += 1
@@ -97,14 +90,14 @@ def list_candidates(scene: cython.pointer[Scene], island: cython.pointer[Island]
     count: cython.Py_ssize_t = 0
     for k in range(island.row_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
-        row.chosen = -1
+        row.selection_order = -1
         if row.rank < 0:
             continue
         build_scaled_row(scene, island, k)
-        scene.left[k] = remaining_square(scene, island, k, 0)
-        scene.reach[k] = find_reach(scene, list_nonzeros(scene, width * k, 0, width), width)
-        if scene.left[k] != 0.0:
-            scene.standing[count] = k
+        scene.remainders[k] = remaining_square(scene, island, k, 0)
+        scene.row_bits[k] = find_reach(scene, list_nonzeros(scene, width * k, 0, width), width)
+        if scene.remainders[k] != 0.0:
+            scene.rows_left[count] = k
             count += 1
     return count
 
@@ -116,8 +109,8 @@ def remove_candidate(
     j: cython.Py_ssize_t
     count: cython.Py_ssize_t = 0
     for j in range(candidate_count):
-        if scene.standing[j] != best:
-            scene.standing[count] = scene.standing[j]
+        if scene.rows_left[j] != best:
+            scene.rows_left[count] = scene.rows_left[j]
             count += 1
     return count
 
@@ -128,16 +121,20 @@ def build_scaled_row(scene: cython.pointer[Scene], island: cython.pointer[Island
     """
     i: cython.Py_ssize_t
     n: cython.Py_ssize_t = island.freedom_count
-    answer: cython.int
+    velocity: cython.int
     square: cython.double = 0.0
     J: cython.p_double = scene.J
     row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
     for i in range(n):
-        scene.spread[scene.indices[island.freedoms + i]] = 0.0
+        scene.velocity_vector[scene.indices[island.freedoms + i]] = 0.0
     spread_jacobian_row(scene, row)
     for i in range(n):
-        answer = scene.indices[island.freedoms + i]
-        J[n * k + i] = scene.spread[answer] * scene.measure[answer] * row.measure if scene.root[answer] > 0.0 else 0.0
+        velocity = scene.indices[island.freedoms + i]
+        J[n * k + i] = (
+            scene.velocity_vector[velocity] * scene.velocity_scale[velocity] * row.unit_load_size
+            if scene.inertia_root[velocity] > 0.0
+            else 0.0
+        )
         square += J[n * k + i] * J[n * k + i]
     if square > 1.0:
         square = 1.0 / sqrt(square)
@@ -154,16 +151,14 @@ def spread_jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closur
     n: cython.Py_ssize_t
     k: cython.Py_ssize_t
     offset: cython.Py_ssize_t
-    x: cython.p_double = scene.spread
+    x: cython.p_double = scene.velocity_vector
     clear_path(scene, row)
     add_unit_loads(scene, row, -1.0)
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
-        offset = body.answer_at
+        offset = body.velocity_at
         if body.ball:
-            x[offset] = body.M_branch.x
-            x[offset + 1] = body.M_branch.y
-            x[offset + 2] = body.M_branch.z
+            write_vector(x, offset, body.M_branch)
             offset += 3
         for k in range(body.first_freedom, body.end_freedom):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
@@ -198,9 +193,9 @@ def find_next_pivot(
     best: cython.int = -1
     most: cython.double = threshold * threshold / scene.limits.preference
     for j in range(candidate_count):
-        k = scene.standing[j]
-        if scene.left[k] > most * scene.limits.preference:
-            most = scene.left[k]
+        k = scene.rows_left[j]
+        if scene.remainders[k] > most * scene.limits.preference:
+            most = scene.remainders[k]
             best = k
     return best
 
@@ -225,25 +220,25 @@ def eliminate_pivot(
     J: cython.p_double = scene.J
     v: cython.Py_ssize_t = width * best
     x: cython.double
-    left: cython.double = sqrt(scene.left[best])
-    reflector: cython.double = 1.0 / (scene.left[best] + left * fabs(J[v + n]))
+    left: cython.double = sqrt(scene.remainders[best])
+    reflector: cython.double = 1.0 / (scene.remainders[best] + left * fabs(J[v + n]))
     J[v + n] += left if J[v + n] > 0.0 else -left
     nonzero_count: cython.Py_ssize_t = list_nonzeros(scene, v, n, width)
     reach: cython.int = find_reach(scene, nonzero_count, width)
     for j in range(candidate_count):
-        k = scene.standing[j]
+        k = scene.rows_left[j]
         offset = width * k
         x = 0.0
-        if scene.reach[k] & reach:
+        if scene.row_bits[k] & reach:
             for i in range(nonzero_count):
-                x += J[v + scene.filled[i]] * J[offset + scene.filled[i]]
+                x += J[v + scene.pivot_row_velocities[i]] * J[offset + scene.pivot_row_velocities[i]]
         if x != 0.0:
             x *= reflector
             for i in range(nonzero_count):
-                J[offset + scene.filled[i]] -= x * J[v + scene.filled[i]]
-            scene.reach[k] |= reach
+                J[offset + scene.pivot_row_velocities[i]] -= x * J[v + scene.pivot_row_velocities[i]]
+            scene.row_bits[k] |= reach
         if x != 0.0 or J[offset + n] != 0.0:
-            scene.left[k] = remaining_square(scene, island, k, n + 1)
+            scene.remainders[k] = remaining_square(scene, island, k, n + 1)
 
 
 def list_nonzeros(
@@ -254,7 +249,7 @@ def list_nonzeros(
     count: cython.Py_ssize_t = 0
     for i in range(n, width):
         if scene.J[v + i] != 0.0:
-            scene.filled[count] = i
+            scene.pivot_row_velocities[count] = i
             count += 1
     return count
 
@@ -266,7 +261,7 @@ def find_reach(scene: cython.pointer[Scene], nonzero_count: cython.Py_ssize_t, w
     i: cython.Py_ssize_t
     reach: cython.int = 0
     for i in range(nonzero_count):
-        reach |= 1 << (31 * scene.filled[i] // width)  # as many parts as an int has bits without its sign
+        reach |= 1 << (31 * scene.pivot_row_velocities[i] // width)  # as many parts as an int has bits without its sign
     return reach
 
 
@@ -283,7 +278,7 @@ def set_pose_scale(
         part: cython.pointer[Closure] = condition(scene, row, i)
         bound += part.factor * part.factor * bound_row_response(scene, row, part)
         sides += part.factor * part.factor * response_of_sides(scene, row, part)
-    bound *= scene.limits.across
+    bound *= scene.limits.row_across
     if sides > bound:
         bound = sides
     scale: cython.double = 1.0 / sqrt(bound) if bound > 0.0 else 0.0
@@ -324,7 +319,7 @@ def bound_ball_response(
 ) -> cython.double:
     """Return the response of a ball's rotations to a force in each direction at Q, and to the row's couple."""
     arm: Vec3 = sub(row.Q, body.r)
-    x: cython.double = inverse_form(body.turning, Vec3(0.0, arm.z, -arm.y))
-    y: cython.double = inverse_form(body.turning, Vec3(-arm.z, 0.0, arm.x))
-    z: cython.double = inverse_form(body.turning, Vec3(arm.y, -arm.x, 0.0))
-    return force * (x + y + z) + inverse_form(body.turning, row.m)
+    x: cython.double = inverse_form(body.A_factors, Vec3(0.0, arm.z, -arm.y))
+    y: cython.double = inverse_form(body.A_factors, Vec3(-arm.z, 0.0, arm.x))
+    z: cython.double = inverse_form(body.A_factors, Vec3(arm.y, -arm.x, 0.0))
+    return force * (x + y + z) + inverse_form(body.A_factors, row.m)

@@ -48,4 +48,4 @@ class _Cython:
         return _Type()  # pointer, double, p_double, ...
 
 
-cython = _Cython()
+cython: Any = _Cython()  # Any: as a type, too

@@ -5,18 +5,10 @@ A method is data (integration/methods).
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.dense import clip_time, combine_stages, evaluate_stage
-    from heuncli.kernel.landing import record_stage
-    from heuncli.kernel.scene import Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time, combine_stages, evaluate_stage
+from heuncli.kernel.landing import record_stage
 
 
 def evaluate_explicit_stages(
@@ -36,10 +28,10 @@ def evaluate_explicit_stages(
         combine_stages(method, s, run.chart.K, run.n, run.stage)
         for i in range(run.n):
             run.stage[i] = y[i] + run.h * run.stage[i]
-        trouble = evaluate_stage(scene, method, run, s, run.near)
+        trouble = evaluate_stage(scene, method, run, s, run.projects_stages)
         if trouble < worst:
             worst = trouble
-        if run.seeing:
+        if run.sees_stages:
             record_stage(scene, run, clip_time(run, run.t + method.node[s] * run.h))
         clear_accelerations(scene, method, run.K[s], s == 1)
     return worst
@@ -61,10 +53,10 @@ def step_to_instant(
     h: cython.double = run.h
     K: cython.pp_double = run.K
     for i in range(run.n):
-        run.beside[0][i] = K[0][i]
+        run.side_stages[0][i] = K[0][i]
     run.h = t - run.t
-    run.K = run.beside
-    run.chart.K = run.beside
+    run.K = run.side_stages
+    run.chart.K = run.side_stages
     run.evaluations += method.stages - 1
     evaluate_explicit_stages(scene, method, run)
     combine_stages(method, method.stages, run.K, run.n, result)

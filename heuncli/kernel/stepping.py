@@ -5,14 +5,26 @@ from __future__ import annotations
 from heuncli.kernel.scene import Group
 from heuncli.kernel.structs import Struct
 
+# What `run_steps` returns (steps.py), and the verdicts on a step.
+REACHED, MORE, COLLAPSED, NOT_A_NUMBER, CLOSURES_LOST, ROPE_SLACK, CHATTERING = range(7)
+STRUCK, LET_GO, TURNED, STIFF, HALF_TURN, UNSOLVED, ACCEPTED, AGAIN = range(7, 15)
+# What a step tried comes to.
+NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
+# A record of the track: whether the step's polynomial is recorded, its start, its length.
+HAS_COURSE, STEP_START, STEP_LENGTH = range(3)
+MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
+# What happens in an interval of time, and what bounds leave undecided.
+NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
+AS_HELD, BRANCH_TURNED, UNCERTAIN = range(3)  # branches at an instant
+
 
 class Tangent(Struct):
     """The tangent of a motion at a state, and its work arrays."""
 
     n: int
     J: list[float]  # d(ydot)/dy by rows
-    at: list[float]  # the derivative at the state
-    beside: list[float]  # what it changes by along a direction
+    derivative: list[float]  # the derivative at the state
+    change: list[float]  # what it changes by along a direction
 
 
 class Collocation(Struct):
@@ -22,8 +34,8 @@ class Collocation(Struct):
     pair_count: int  # complex pairs of eigenvalues in L
     real: float  # the real eigenvalue in L; 0: it has none
     parts: list[float]  # real and imaginary part of each pair
-    into: list[float]  # T^-1 by rows
-    back: list[float]  # T by rows
+    T_inverse: list[float]  # T^-1 by rows
+    T: list[float]  # T by rows
     end: list[float]  # what of the stages makes the end of a step
     error: list[float]  # what of them makes the estimate
 
@@ -39,15 +51,15 @@ class Factors(Struct):
 class Newton(Struct):
     """The iteration for the stages of a step."""
 
-    solved: int  # 1: there are stages
-    elsewhere: int  # 1: the last that was evaluated is not the end of the step
+    has_stages: int  # 1: there are stages
+    is_evaluated_elsewhere: int  # 1: the last that was evaluated is not the end of the step
     reach: float  # the largest coordinate
     rate: float  # and rate, by which corrections are measured
     tangent: Tangent  # at the start of the step
     real: Factors  # of L - h J
     pairs: tuple[Factors, Factors]
     Z: list[list[float]]  # (stages, n): difference of each stage's state from the start
-    known: list[list[float]]  # the same from 1 on, then the first rows of the interpolating polynomial
+    polynomial_rows: list[list[float]]  # the same from 1 on, then the first rows of the interpolating polynomial
     W: list[list[float]]  # (stages, n): T^-1 Z, in which the equations of the stages come apart
     step: list[list[float]]  # a correction of W
     error: list[float]
@@ -72,7 +84,7 @@ class Method(Struct):
     collocation: Collocation  # coefficients of an implicit method
 
 
-class Orbits(Struct):
+class PointCourse(Struct):
     """The motion of points over an interval of time: the state's components, and bounds of the bodies' motion.
 
     The bounds are magnitudes over the part that is checked, one for each body.
@@ -80,19 +92,19 @@ class Orbits(Struct):
 
     n: int  # length of the state
     chart: int  # as Method.attitude: which numbers attitudes stand in over a step
-    charted: int  # the same over the stretch: 0 about the end of a step
+    interval_chart: int  # the same over the stretch: 0 about the end of a step
     origin: list[float]  # the state at which a chart begins
     states: list[list[float]]  # Bernstein coefficients of each component over the interval
     slopes: list[float]  # those of a component's rate
-    at: list[float]  # a state of the stretch
-    kept: list[float]  # variables put aside
+    state: list[float]  # a state of the stretch
+    saved_variables: list[float]  # variables put aside
     first_place: list[float]  # for each variable of a point: its place at the start of a part, and its rate
     first_rate: list[float]
     last_place: list[float]  # at the end of it
     last_rate: list[float]
-    spin: list[float]  # angular velocity
-    twist: list[float]  # angular acceleration
-    pull: list[float]  # acceleration of the joint point
+    angular_velocity: list[float]  # angular velocity
+    angular_acceleration: list[float]  # angular acceleration
+    acceleration: list[float]  # acceleration of the joint point
     reach: list[float]  # how far it is from the origin
     speed: list[float]  # its velocity
 
@@ -115,11 +127,11 @@ class Course(Struct):
     rate: list[list[float]]  # and those of its rate, and of the rate of that
     second: list[list[float]]
     work: list[float]
-    points: Orbits  # of the points that expressions use
+    points: PointCourse  # of the points that expressions use
     begins: list[float]  # starts of the parts to examine
     ends: list[float]
     promise: list[float]  # and what they may hold
-    before: list[float]  # branches put aside
+    saved_branches: list[float]  # branches put aside
     turned: list[float]  # branches behind the event
     resting: list[float]  # 1: a branch whose margin rests at zero, which is passed over ...
     rests_from: float  # ... between these x
@@ -151,7 +163,7 @@ class Controller(Struct):
     error: float  # error of the tried step, 1 = just allowed
     rate: float  # the scene's largest so far [1/s]
     energy_scale: float  # sum m size^2
-    dodges: int  # other lengths tried for this step, to keep its stages off a singular pose
+    retries: int  # other lengths tried for this step, to keep its stages off a singular pose
     best: float  # the least trouble of the lengths tried, and its length
     best_h: float
     pivot_at_start: float  # least pivot of the closures where the step starts
@@ -160,9 +172,9 @@ class Controller(Struct):
 class Stiffness(Struct):
     """Whether stability, not accuracy, limits the steps (stiffness.py)."""
 
-    after: int  # steps held short after which the loop is left; 0: not looked at
-    easy_after: int  # steps on end that were not, after which their count begins anew
-    look_after: int  # steps after which it is left in any case, twice as many the next time; 0: never
+    short_limit: int  # steps held short after which the loop is left; 0: not looked at
+    easy_limit: int  # steps on end that were not, after which their count begins anew
+    total_limit: int  # steps after which it is left in any case, twice as many the next time; 0: never
     steps: int  # the counts
     easy_steps: int
     stable: float  # h |lambda| from which a step counts as held short
@@ -178,7 +190,7 @@ class Landing(Struct):
     attempts: int  # to end this step on an event of a branch or a load
     contact_attempts: int  # the same where a contact closes or opens
     turns: int  # 1: branches turn at the end of the step under way
-    at_once: int  # turns of branches since the time went on
+    turns_at_instant: int  # turns of branches since the time went on
     flurry: int  # events since flurry_begin
     cut: float
     flurry_begin: float
@@ -190,8 +202,8 @@ class Chart(Struct):
     y: list[float]
     z: list[float]
     K: list[list[float]]
-    ways: list[float]  # for each body the rotation left before it leaves the chart [rad]
-    nearing: float  # largest angular velocity that a stage saw, by the way to the chart's end [1/s]
+    angles_left: list[float]  # for each body the rotation left before it leaves the chart [rad]
+    approach_rate: float  # largest angular velocity that a stage saw, by the way to the chart's end [1/s]
     half_turn: int  # 1 + the body whose attitude has come to the end of its chart
 
 
@@ -207,15 +219,15 @@ class Samples(Struct):
 class Track(Struct):
     """The steps of one call: those done, or those to be repeated."""
 
-    most: int  # room for so many
-    done: int
+    capacity: int  # room for so many
+    step_count: int
     ends: list[float]
     settled: list[float]  # for each step whether its stages were settled
     pivots: list[float]  # least pivot of the closures in each step
     turned: list[float]  # for each step whether branches changed at its end
     branches: list[list[float]]  # branches held in each step
     passed: list[list[float]]  # at each end what the next step starts from (steps.py, write_record)
-    coursed: int  # 1: the polynomials of steps that made one are put down, too
+    has_courses: int  # 1: the polynomials of steps that made one are put down, too
     spans: list[list[float]]  # for each step whether its polynomial is stored, its start and its length
     courses: list[list[float]]  # for each step the state at its start, then the rows of the polynomial, (., n)
 
@@ -228,14 +240,14 @@ class Run(Struct):
     energy_group: int  # the group of the drives' work; -1: none
     determined: int  # 1: nothing is integrated, the closures tell where everything is
     following: int  # 1: the steps are given by the track, none is judged
-    watching: int  # 1: contacts are watched
-    halting: int  # 1: the loop is left where a piece begins and where branches turn
+    watches_contacts: int  # 1: contacts are watched
+    stops_at_turns: int  # 1: the loop is left where a piece begins and where branches turn
     late: int  # 1: events are met late by the rounding of an instant, to see what that makes
 
-    fresh: int  # 1: a piece begins
-    last: int  # 1: this step reaches the end of the piece
-    near: int  # 1: the stages are settled, too
-    seeing: int  # 1: stages are looked at for events
+    begins_piece: int  # 1: a piece begins
+    ends_piece: int  # 1: this step reaches the end of the piece
+    projects_stages: int  # 1: the stages are settled, too
+    sees_stages: int  # 1: stages are looked at for events
     has_interpolant: int  # 1: the dense output of the step tried is there
     contact: int  # 1 + the one-sided row that closes or opens
     undecided: int  # steps of which bounds could not decide what they hold
@@ -255,7 +267,7 @@ class Run(Struct):
     samples: Samples
     track: Track
     course: Course
-    branch: FollowedStep
+    followed_step: FollowedStep
     newton: Newton
 
     groups: list[Group]
@@ -265,7 +277,7 @@ class Run(Struct):
     carry: list[float]  # what rounding took off y when it was summed up (compensated summation)
     z_carry: list[float]  # the same of z
     K: list[list[float]]  # (stages + 1 + extra, n): derivatives at the stages
-    beside: list[list[float]]  # the same of steps to asked instants within the step under way
+    side_stages: list[list[float]]  # the same of steps to asked instants within the step under way
     coarse: list[float]  # error estimates
     fine: list[float]
     dense: list[list[float]]  # (3 + dense_rows, n): rows of the interpolating polynomial

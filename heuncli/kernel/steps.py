@@ -5,78 +5,24 @@ Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.4-
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import fabs, pow, sqrt
 
-if not cython.compiled:
-    from math import fabs, pow, sqrt
-
-    from heuncli.kernel.algebra import Vec3, norm
-    from heuncli.kernel.attitudes import (
-        drop_small_parts,
-        enter_chart,
-        find_half_turn,
-        half_turn_rate,
-        leave_chart,
-        measure_turns_left,
-    )
-    from heuncli.kernel.collocation import collocate, collocate_to
-    from heuncli.kernel.contact_rounding import clear_accelerations
-    from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, start_contacts
-    from heuncli.kernel.dense import (
-        CONTACT_EVENT,
-        EVENT_CHATTER,
-        NO_EVENT,
-        REPEAT_TO,
-        clip_time,
-        combine_stages,
-        ensure_interpolant,
-        interpolate,
-        record_course,
-        store_chart_slopes,
-    )
-    from heuncli.kernel.evaluator import evaluate_program
-    from heuncli.kernel.events import follow_angles, hold_branches
-    from heuncli.kernel.following import follow_drives, is_determined, prepare_step, project_sample
-    from heuncli.kernel.judging import (
-        ACCEPTED,
-        AGAIN,
-        CHATTERING,
-        CLOSURES_LOST,
-        COLLAPSED,
-        HALF_TURN,
-        LET_GO,
-        MORE,
-        NOT_A_NUMBER,
-        REACHED,
-        ROPE_SLACK,
-        STIFF,
-        STRUCK,
-        TURNED,
-        UNSOLVED,
-        assess_step,
-        growth_factor,
-        weighted_norm,
-    )
-    from heuncli.kernel.landing import begin_step_extremes, find_events_of_step, is_in_flurry, record_stage
-    from heuncli.kernel.points import evaluate_variables
-    from heuncli.kernel.programs import HELD, TAKEN
-    from heuncli.kernel.response import (
-        evaluate,
-        evaluate_projected,
-        must_choose_rows,
-        project_evaluated_state,
-        project_state,
-    )
-    from heuncli.kernel.row_choice import choose_rows_again, restore_choice, save_choice
-    from heuncli.kernel.scene import Body, Group, Scene
-    from heuncli.kernel.selection import select_independent_rows
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stages import evaluate_explicit_stages, step_to_instant
-    from heuncli.kernel.stepping import Method, Run
-    from heuncli.kernel.stiffness import estimate_stiffness, is_stability_limited
+from heuncli.kernel.attitudes import enter_chart, find_half_turn, half_turn_rate, measure_turns_left
+from heuncli.kernel.collocation import collocate
+from heuncli.kernel.contact_rounding import clear_accelerations
+from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, start_contacts
+from heuncli.kernel.declarations import *
+from heuncli.kernel.dense import clip_time, combine_stages, store_chart_slopes
+from heuncli.kernel.evaluator import evaluate_program
+from heuncli.kernel.events import hold_branches
+from heuncli.kernel.following import follow_drives, is_determined, prepare_step
+from heuncli.kernel.judging import assess_step, weighted_norm
+from heuncli.kernel.landing import begin_step_extremes, find_events_of_step, is_in_flurry, record_stage
+from heuncli.kernel.response import evaluate, project_state
+from heuncli.kernel.row_choice import choose_rows_again
+from heuncli.kernel.stages import evaluate_explicit_stages
+from heuncli.kernel.step_ends import accept_step, leave_chart_of_step, sample_reached
+from heuncli.kernel.stiffness import estimate_stiffness, is_stability_limited
 
 CODES = {
     "reached": REACHED,
@@ -116,7 +62,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     scene.programs.holding = HELD
     run.evaluations += 1
     start_contacts(scene, run.t)
-    if run.watching and find_pushing_rope(scene, run):
+    if run.watches_contacts and find_pushing_rope(scene, run):
         return ROPE_SLACK
     clear_accelerations(scene, method, run.K[0], True)
     if run.determined:
@@ -128,11 +74,11 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         h = find_first_step(scene, method, run)
         if run.control.proposed <= 0.0 or h < run.control.proposed:
             run.control.proposed = h
-    run.fresh = 0
+    run.begins_piece = 0
     run.control.grid = run.t
     run.control.on_grid = 0
     run.control.rejected_before = 0
-    run.landing.has_cut = run.landing.attempts = run.landing.contact_attempts = run.landing.at_once = 0
+    run.landing.has_cut = run.landing.attempts = run.landing.contact_attempts = run.landing.turns_at_instant = 0
     for i in range(run.n):
         run.carry[i] = 0.0
     return REACHED
@@ -192,43 +138,25 @@ def sum_magnitudes(a: Vec3) -> cython.double:
     return fabs(a.x) + fabs(a.y) + fabs(a.z)
 
 
-def write_record(scene: cython.pointer[Scene], run: cython.pointer[Run], buffer: cython.p_double) -> cython.void:
-    """Write what the next step starts from: the state, its compensation terms, the chosen rows; all else follows."""
-    i: cython.Py_ssize_t
-    for i in range(run.n):
-        buffer[i] = run.y[i]
-        buffer[run.n + i] = run.carry[i]
-    save_choice(scene, buffer, 2 * run.n)
-
-
-def restore_record(scene: cython.pointer[Scene], run: cython.pointer[Run], record: cython.p_double) -> cython.void:
-    """Restore the state from a record."""
-    i: cython.Py_ssize_t
-    for i in range(run.n):
-        run.y[i] = record[i]
-        run.carry[i] = record[run.n + i]
-    restore_choice(scene, record, 2 * run.n)
-
-
 def set_step_end(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
     """Set where the next step ends; the last of a piece ends with it, and the one before is halved for it.
 
     Given steps are counted from the start of the piece, or its last event. The ends alone define the steps.
     """
     run.stop = run.t + run.control.proposed
-    run.last = run.t + 1.01 * run.control.proposed >= run.end
+    run.ends_piece = run.t + 1.01 * run.control.proposed >= run.end
     if run.following:
-        run.stop = run.track.ends[run.track.done]
-        run.last = run.stop >= run.end
+        run.stop = run.track.ends[run.track.step_count]
+        run.ends_piece = run.stop >= run.end
     elif run.landing.has_cut:
         run.stop = run.landing.cut
-        run.last = 0
+        run.ends_piece = 0
     elif run.control.step > 0.0:
         run.stop = run.control.grid + (run.control.on_grid + 1) * run.control.step
-        run.last = run.stop + scene.limits.given_end * run.control.step >= run.end
-        if run.last:
+        run.ends_piece = run.stop + scene.limits.given_end * run.control.step >= run.end
+        if run.ends_piece:
             run.stop = run.end
-    elif run.last:
+    elif run.ends_piece:
         run.stop = run.end
     elif run.t + 2.0 * run.control.proposed > run.end:
         run.stop = run.t + 0.5 * (run.end - run.t)
@@ -237,7 +165,7 @@ def set_step_end(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyth
 
 def find_step_obstacle(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
     """Return why there is no further step: the closures lock, or it is rounding of the time; else REACHED."""
-    if run.following or run.last or run.landing.has_cut:
+    if run.following or run.ends_piece or run.landing.has_cut:
         return REACHED
     if scene.closure_count and scene.pivot < scene.limits.locked and run.h <= scene.limits.locked_step * fabs(run.end):
         return CLOSURES_LOST
@@ -249,7 +177,7 @@ def find_step_obstacle(scene: cython.pointer[Scene], run: cython.pointer[Run]) -
 def is_near_singular(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """Return whether the step before, the last attempt at this one or its start came near a singular pose."""
     if run.following:
-        return run.track.settled[run.track.done] > 0.0
+        return run.track.settled[run.track.step_count] > 0.0
     if scene.closure_count == 0:
         return False
     return scene.pivot_of_step < scene.limits.near_singular or run.control.pivot_at_start < scene.limits.near_singular
@@ -266,7 +194,7 @@ def attempt_step(scene: cython.pointer[Scene], method: cython.pointer[Method], r
     if method.implicit:
         return collocate(scene, method, run)
     run.has_interpolant = 0
-    if run.seeing:
+    if run.sees_stages:
         begin_step_extremes(scene, run)
     if method.attitude:
         enter_chart_of_step(scene, method, run)
@@ -284,10 +212,10 @@ def attempt_step(scene: cython.pointer[Scene], method: cython.pointer[Method], r
     trouble: cython.int = evaluate(scene, clip_time(run, run.stop), run.z, run.K[method.stages])
     if method.attitude:
         store_chart_slopes(scene, method, run, run.z, method.stages)
-    if run.seeing:
+    if run.sees_stages:
         record_stage(scene, run, clip_time(run, run.stop))
     clear_accelerations(scene, method, run.K[method.stages], method.stages == 1)
-    if run.stiffness.after:
+    if run.stiffness.short_limit:
         estimate_stiffness(method, run)
     return worst if method.fixed and worst < trouble else trouble
 
@@ -303,215 +231,14 @@ def enter_chart_of_step(
     store_chart_slopes(scene, method, run, run.y, 0)
 
 
-def leave_chart_of_step(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.void:
-    """Convert the end of a step back to a state, and drop the compensation terms of the chart's numbers."""
-    i: cython.Py_ssize_t
-    for i in range(run.n):
-        run.z[i] = run.chart.z[i]
-    leave_chart(scene, method.attitude, run.y, run.z)
-    drop_small_parts(scene, method.attitude, run.z_carry)
-
-
 def leaves_chart(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.bint:
     """Return whether an attitude is at the end of its chart; else limit the step to a fraction of the way there."""
     run.chart.half_turn = find_half_turn(scene, method.attitude, run.y)
-    measure_turns_left(scene, method.attitude, run.y, run.chart.ways)
-    run.chart.nearing = half_turn_rate(scene, run.y, run.chart.ways)
-    if 0.9 * scene.limits.chart_turn < run.chart.nearing * run.control.proposed:
-        run.control.proposed = 0.9 * scene.limits.chart_turn / run.chart.nearing
+    measure_turns_left(scene, method.attitude, run.y, run.chart.angles_left)
+    run.chart.approach_rate = half_turn_rate(scene, run.y, run.chart.angles_left)
+    if 0.9 * scene.limits.chart_turn < run.chart.approach_rate * run.control.proposed:
+        run.control.proposed = 0.9 * scene.limits.chart_turn / run.chart.approach_rate
     return run.chart.half_turn > 0
-
-
-def sample_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """Find the states at the requested instants within the step y -> z; they have no effect on the steps."""
-    x: cython.double
-    pivot: cython.double = scene.pivot_of_step
-    if run.samples.next >= run.samples.count or run.samples.times[run.samples.next] >= run.stop:
-        return
-    if method.by_step:
-        sample_by_steps(scene, method, run)
-        scene.pivot_of_step = pivot
-        return
-    ensure_interpolant(scene, method, run)
-    scene.pivot_of_step = pivot
-    while run.samples.next < run.samples.count and run.samples.times[run.samples.next] < run.stop:
-        x = (run.samples.times[run.samples.next] - run.t) / run.h
-        interpolate(scene, method, run, x, run.samples.states[run.samples.next])
-        if run.determined:
-            project_sample(scene, run, run.samples.states[run.samples.next])
-        run.samples.next += 1
-
-
-def sample_by_steps(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.void:
-    """Find the requested instants within a step of a method without dense output: by a step of its own to each."""
-    seeing: cython.bint = run.seeing
-    run.seeing = 0
-    run.has_interpolant = 1  # the scene is no longer evaluated at the step's end
-    while run.samples.next < run.samples.count and run.samples.times[run.samples.next] < run.stop:
-        if method.implicit:
-            collocate_to(scene, method, run, run.samples.times[run.samples.next], run.samples.states[run.samples.next])
-        else:
-            step_to_instant(
-                scene, method, run, run.samples.times[run.samples.next], run.samples.states[run.samples.next]
-            )
-        run.samples.next += 1
-    run.seeing = seeing
-
-
-def sample_reached(run: cython.pointer[Run]) -> cython.void:
-    """Copy the state, which is on the closures, to the requested instants up to the one reached."""
-    i: cython.Py_ssize_t
-    while run.samples.next < run.samples.count and run.samples.times[run.samples.next] <= run.t:
-        for i in range(run.n):
-            run.samples.states[run.samples.next][i] = run.y[i]
-        run.samples.next += 1
-
-
-def accept_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
-    """Accept the step: samples, new state, derivative, next length. CLOSURES_LOST, UNSOLVED or REACHED."""
-    i: cython.Py_ssize_t
-    code: cython.int = REACHED
-    run.control.dodges = 0
-    sample_step(scene, method, run)
-    if run.track.coursed:
-        record_course(method, run)
-    for i in range(run.n):
-        run.y[i] = run.z[i]
-        run.carry[i] = run.z_carry[i]
-    if not run.following:
-        update_rates(run)
-    run.t = run.stop
-    run.control.on_grid += 1
-    if run.landing.has_cut:
-        run.control.grid = run.t
-        run.control.on_grid = 0
-    propose_next_length(method, run)
-    run.control.rejected_before = 0
-    run.landing.has_cut = run.landing.attempts = run.landing.contact_attempts = 0
-    run.landing.at_once = 0
-    run.steps += 1
-    pivot: cython.double = scene.pivot_of_step
-    turns: cython.bint = scene.held_count > 0 and switch_branches(scene, run)
-    if scene.closure_count:
-        code = project_step_end(scene, method, run)
-        run.control.pivot_at_start = scene.pivot
-    elif turns:
-        evaluate(scene, clip_time(run, run.t), run.y, run.K[0])
-        run.evaluations += 1
-    else:
-        for i in range(run.n):
-            run.K[0][i] = run.K[method.stages][i]
-    if code == REACHED and run.determined:
-        prepare_step(scene, run)
-    if code == REACHED and method.implicit and not run.newton.solved:
-        code = UNSOLVED  # for a requested instant within the step
-    if code == REACHED:
-        sample_reached(run)
-        if not run.following:
-            run.track.pivots[run.track.done] = pivot
-            record_step(scene, run)
-        run.track.done += 1
-    return code
-
-
-def update_rates(run: cython.pointer[Run]) -> cython.void:
-    """Update the largest rates so far, of each group and of the scene; the work of drives is no motion."""
-    b: cython.Py_ssize_t
-    for b in range(run.group_count):
-        run.groups[b].rate = run.groups[b].trial
-        if run.groups[b].rate > run.control.rate and b != run.energy_group:
-            run.control.rate = run.groups[b].rate
-
-
-def propose_next_length(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
-    """Set the next length from the error; a step cut short by an event does not prevent a longer one."""
-    h: cython.double = run.h * growth_factor(method, run)
-    if not (run.last or run.landing.has_cut) or run.control.proposed < h:
-        run.control.proposed = h
-
-
-def record_step(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
-    """Record the step's end, whether its stages were projected, and what the next one starts from."""
-    run.track.ends[run.track.done] = run.t
-    run.track.settled[run.track.done] = run.near
-    write_record(scene, run, run.track.passed[run.track.done])
-
-
-def switch_branches(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Record the held branches and take those of the next step. Returns whether they change."""
-    i: cython.Py_ssize_t
-    changed: cython.bint = run.landing.turns
-    if run.following:
-        changed = False
-        if run.track.done + 1 < run.track.most:
-            for i in range(scene.held_count):
-                changed = changed or run.track.branches[run.track.done + 1][i] != scene.programs.held[i]
-            hold_branches(scene, run.track.branches[run.track.done + 1])
-        return changed
-    for i in range(scene.held_count):
-        run.track.branches[run.track.done][i] = scene.programs.held[i]
-    run.track.turned[run.track.done] = run.landing.turns
-    if run.landing.turns:
-        hold_branches(scene, run.course.turned)
-    elif scene.angle_count:
-        evaluate_variables(scene, clip_time(run, run.t), run.y)
-        follow_angles(scene, cython.address(run.course))
-    return changed
-
-
-def project_step_end(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.int:
-    """Project the end of a step onto the closures, and find its derivative; CLOSURES_LOST if that fails."""
-    t: cython.double = clip_time(run, run.t)
-    gap: cython.double = (
-        project_evaluated_state(scene, t, run.y) if is_evaluated_at_end(scene, run) else project_state(scene, t, run.y)
-    )
-    if must_choose_rows(scene, gap):
-        select_independent_rows(scene, t, run.y, False)
-        gap = project_state(scene, t, run.y)
-    if gap > run.gap or gap != gap:
-        run.gap = gap
-    if not gap <= scene.limits.lost * scene.size or has_rate_jump(scene, run):
-        return CLOSURES_LOST
-    evaluate_projected(scene, t, run.y, run.K[0])
-    start_contacts(scene, t)
-    clear_accelerations(scene, method, run.K[0], True)
-    run.evaluations += 2
-    return REACHED
-
-
-def is_evaluated_at_end(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Return whether the scene was evaluated last at the end of the step."""
-    return not (run.has_interpolant or run.seeing or run.determined or scene.held_count or run.newton.elsewhere)
-
-
-def has_rate_jump(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Return whether the closures changed the rates by more than the error explains: an impact or another branch."""
-    b: cython.int
-    i: cython.Py_ssize_t
-    change: cython.double
-    explained: cython.double = scene.limits.jump
-    if run.control.step > 0.0:
-        # the rates may be wrong by as much as a step turns the scene: Euler's method by half of it
-        limit: cython.double = scene.limits.jump_of_given
-        explained += run.h * run.control.rate if run.h * run.control.rate < limit else limit
-    elif scene.pivot > 0.0:
-        explained += scene.limits.jump_of_error * run.control.tolerance / sqrt(scene.pivot)
-    if run.following or run.determined:
-        return False
-    for b in range(run.group_count):
-        group: cython.pointer[Group] = cython.address(run.groups[b])
-        for i in range(group.rates, group.end):
-            run.stage[i] = run.y[i] - run.z[i]
-        change = weighted_norm(run, run.stage, group.rates, group.end)
-        if change > explained * run.control.rate:
-            return True
-    return False
 
 
 def find_contact_code(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
@@ -532,7 +259,7 @@ def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: 
     code = find_step_obstacle(scene, run)
     if code != REACHED:
         return code
-    run.near = is_near_singular(scene, run)
+    run.projects_stages = is_near_singular(scene, run)
     scene.pivot_of_step = 1.0
     trouble: cython.int = attempt_step(scene, method, run)
     code = assess_step(scene, method, run, trouble)
@@ -541,13 +268,15 @@ def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: 
         return REACHED
     if code != ACCEPTED:
         return code
-    if run.seeing:
+    if run.sees_stages:
         event = find_events_of_step(scene, method, run)
         if event == EVENT_CHATTER:
             return CHATTERING
         if event == REPEAT_TO:
             run.landing.has_cut = run.landing.cut > run.t
-            return TURNED if run.halting and not run.landing.has_cut else REACHED  # branches changed at the start
+            return (
+                TURNED if run.stops_at_turns and not run.landing.has_cut else REACHED
+            )  # branches changed at the start
         if event == CONTACT_EVENT and run.stop <= run.t:
             return find_contact_code(scene, run)
     code = accept_step(scene, method, run)
@@ -558,9 +287,9 @@ def find_exit_code(scene: cython.pointer[Scene], run: cython.pointer[Run], event
     """Return why the loop ends after an accepted step; else REACHED."""
     if event == CONTACT_EVENT:
         return find_contact_code(scene, run)
-    if run.halting and run.landing.turns:
+    if run.stops_at_turns and run.landing.turns:
         return TURNED
-    if run.stiffness.after and is_stability_limited(run):
+    if run.stiffness.short_limit and is_stability_limited(run):
         return STIFF
     return REACHED
 
@@ -571,15 +300,15 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     Following, `ends` and `settled` give the steps. Halting, TURNED where a piece begins or branches change.
     """
     code: cython.int
-    run.track.done = 0
-    run.control.dodges = 0
-    run.watching = run.watching and not run.following and scene.contact_count > 0
-    run.seeing = not run.following and (scene.watch_count > 0 or run.watching)
-    if run.fresh:
+    run.track.step_count = 0
+    run.control.retries = 0
+    run.watches_contacts = run.watches_contacts and not run.following and scene.contact_count > 0
+    run.sees_stages = not run.following and (scene.watch_count > 0 or run.watches_contacts)
+    if run.begins_piece:
         code = begin_piece(scene, method, run)
         if code != REACHED:
             return code
-        if run.halting:
+        if run.stops_at_turns:
             return TURNED
     sample_reached(run)
     run.control.pivot_at_start = scene.pivot
@@ -587,7 +316,7 @@ def run_steps(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     while run.t < run.end:
         attempts += 1
         if (
-            run.track.done >= run.track.most or attempts > 100 * run.track.most
+            run.track.step_count >= run.track.capacity or attempts > 100 * run.track.capacity
         ):  # also if no step is accepted, so that the caller can check the time
             return MORE
         code = try_step(scene, method, run)

@@ -14,17 +14,9 @@ Hairer, Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import sqrt
 
-if not cython.compiled:
-    from math import sqrt
-
-    from heuncli.kernel.scene import Group
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Method, Run
+from heuncli.kernel.declarations import *
 
 
 def estimate_stiffness(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
@@ -58,19 +50,19 @@ def is_stability_limited(run: cython.pointer[Run]) -> cython.bint:
     If loads may be stiff, also after some steps, and each time that their number has doubled: what saturates, as
     friction does, is driven back and forth by a coarse tolerance, and no quotient shows it.
     """
-    if run.stiffness.look_after and run.steps >= run.stiffness.look_after:
-        run.stiffness.look_after = 2 * run.steps
+    if run.stiffness.total_limit and run.steps >= run.stiffness.total_limit:
+        run.stiffness.total_limit = 2 * run.steps
         return True
-    if run.near or run.last:
+    if run.projects_stages or run.ends_piece:
         return False  # its length says nothing
     if run.stiffness.swiftness > run.stiffness.stable:
         run.stiffness.steps += 1
         run.stiffness.easy_steps = 0
     else:
         run.stiffness.easy_steps += 1
-        if run.stiffness.easy_steps >= run.stiffness.easy_after:
+        if run.stiffness.easy_steps >= run.stiffness.easy_limit:
             run.stiffness.steps = 0
-    if run.stiffness.steps < run.stiffness.after:
+    if run.stiffness.steps < run.stiffness.short_limit:
         return False
     run.stiffness.steps = 0
     return True

@@ -3,24 +3,25 @@
 d = T' (x_b - x_a)              shift of b's point relative to a's, in the axes T = R_a F_a, which turn with a
 exp [phi] = T' R_b F_b          rotation vector of b relative to a, in the same axes; |phi| <= pi
 l = |x_b - x_a|,  l' = n . (v_b - v_a)
+phi' = J^-1 omega               J^-1 = 1 - [phi]/2 + c [phi]^2,  c = (1 - theta/2 cot(theta/2)) / theta^2
+
+theta = |phi|; J is the left Jacobian of rotations: Sola, Deray, Atchuthan, A micro Lie theory (2018), (145)-(146).
+
+Below: the change along a direction of the state, t the rotation of a, with which T turns:
+
+    D = l n:   dl = n . dD,  dn = (dD - n dl) / l,  d(l') = dn . v + n . dv
+    dd = T' (dD - t x D),   dphi = J^-1 T' (t_b - t_a)
 """
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import atan2, sqrt
 
-if not cython.compiled:
-    from math import atan2, sqrt
-
-    from heuncli.kernel.algebra import Mat3, Quaternion, Vec3, dot, norm, product, rotate_back, scale_vector, sub
-    from heuncli.kernel.carried_points import point_motion, world_place
-    from heuncli.kernel.ropes import free_length, measure_rope
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import RopeMotion
+from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.declarations import *
+from heuncli.kernel.libm import tan
+from heuncli.kernel.ropes import free_length, measure_rope, rope_tangent
+from heuncli.kernel.tangent_motion import point_tangent, rotation_tangent, vector_tangent
 
 
 def bushing_axes(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Mat3:
@@ -127,3 +128,109 @@ def separation_velocity(scene: cython.pointer[Scene], load: cython.pointer[Load]
     end_place: Vec3 = world_place(scene, load.b, load.q)
     start_place: Vec3 = world_place(scene, load.a, load.p)
     return sub(point_motion(scene, load.b, end_place).v, point_motion(scene, load.a, start_place).v)
+
+
+# The map between turns and rotation vectors
+
+
+def square_coefficient(phi: Vec3) -> cython.double:
+    """Return c of the module's formulas."""
+    square: cython.double = dot(phi, phi)
+    if square < 4e-4:
+        return 1.0 / 12.0 + square * (1.0 / 720.0 + square / 30240.0)
+    half: cython.double = 0.5 * sqrt(square)
+    return (1.0 - half / tan(half)) / square
+
+
+def square_coefficient_slope(phi: Vec3) -> cython.double:
+    """Return e with dc = e phi . dphi."""
+    square: cython.double = dot(phi, phi)
+    if square < 4e-2:
+        return 1.0 / 360.0 + square * (1.0 / 7560.0 + square * (1.0 / 201600.0 + square / 5987520.0))
+    theta: cython.double = sqrt(square)
+    s: cython.double = 1.0 / tan(0.5 * theta)  # 1/sin^2 = 1 + cot^2
+    return ((0.25 * (1.0 + s * s) * theta + 0.5 * s) * theta - 2.0) / (square * square)
+
+
+def rotation_vector_rate(phi: Vec3, omega: Vec3) -> Vec3:
+    """Return J^-1 omega, using that J^-1 of phi is J^-T of -phi."""
+    return bushing_moment(scale_vector(-1.0, phi), omega)
+
+
+def bushing_moment(phi: Vec3, gamma: Vec3) -> Vec3:
+    """Return J^-T gamma."""
+    first: Vec3 = cross(phi, gamma)
+    return add_scaled(add_scaled(gamma, 0.5, first), square_coefficient(phi), cross(phi, first))
+
+
+def bushing_moment_tangent(phi: Vec3, gamma: Vec3, dphi: Vec3, dgamma: Vec3) -> Vec3:
+    """Return the change of J^-T gamma."""
+    first: Vec3 = cross(phi, gamma)
+    change: Vec3 = cross(dphi, gamma)
+    found: Vec3 = add_scaled(bushing_moment(phi, dgamma), 0.5, change)
+    found = add_scaled(found, square_coefficient(phi), add(cross(dphi, first), cross(phi, change)))
+    return add_scaled(found, square_coefficient_slope(phi) * dot(phi, dphi), cross(phi, first))
+
+
+# Along a direction of the state
+
+
+def set_variable_slopes(scene: cython.pointer[Scene]) -> cython.void:
+    """Set the changes of the variables that belong to points or loads."""
+    i: cython.Py_ssize_t
+    for i in range(1, scene.variable_count):
+        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
+        if variable.is_point:
+            if variable.is_point == OF_LOAD:
+                scene.slopes[i] = load_variable_slope(scene, variable)
+            else:
+                point: PointMotion = point_tangent(scene, variable.body, variable.q)
+                scene.slopes[i] = dot(variable.direction, point.v if variable.is_rate else point.x)
+            if scene.slopes[i] != 0.0:
+                scene.has_slopes = 1
+
+
+def load_variable_slope(scene: cython.pointer[Scene], variable: cython.pointer[Variable]) -> cython.double:
+    """Return the change of a variable that belongs to a load."""
+    load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
+    if variable.part == DRAWN:
+        return 0.0
+    if load.kind == ROPE:
+        rope: RopeMotion = rope_tangent(scene, load)
+        return rope.rate if variable.is_rate else rope.S
+    if variable.part == ALONG_LINE:
+        line: LineTangent = line_tangent(scene, load)
+        return line.rate if variable.is_rate else line.length
+    return vector_component(strain_tangent(scene, load, bushing_strain(scene, load)), variable.part)
+
+
+def line_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> LineTangent:
+    """Return the change of the line between a load's two points; zero if its length is zero."""
+    span: Vec3 = find_span_vector(scene, load)
+    length: cython.double = norm(span)
+    if load.a == load.b or not length > 0.0:
+        return LineTangent(Vec3(0.0, 0.0, 0.0), 0.0, 0.0)
+    w: cython.double = 1.0 / length
+    n: Vec3 = scale_vector(w, span)
+    end_change: PointMotion = point_tangent(scene, load.b, load.q)
+    start_change: PointMotion = point_tangent(scene, load.a, load.p)
+    change: Vec3 = sub(end_change.x, start_change.x)
+    longer: cython.double = dot(n, change)
+    direction_change: Vec3 = scale_vector(w, add_scaled(change, -longer, n))
+    return LineTangent(
+        direction_change,
+        longer,
+        dot(direction_change, separation_velocity(scene, load)) + dot(n, sub(end_change.v, start_change.v)),
+    )
+
+
+def strain_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], x: Vec3) -> Vec3:
+    """Return the change of a bushing's shift or rotation x."""
+    if load.a == load.b:
+        return Vec3(0.0, 0.0, 0.0)
+    if load.kind == BUSHING_SHIFT:
+        displacement: Vec3 = sub(point_tangent(scene, load.b, load.q).x, point_tangent(scene, load.a, load.p).x)
+        swept: Vec3 = vector_tangent(scene, load.a, rotate(bushing_axes(scene, load), x))
+        return rotate_back(bushing_axes(scene, load), sub(displacement, swept))
+    relative_rotation: Vec3 = sub(rotation_tangent(scene, load.b), rotation_tangent(scene, load.a))
+    return rotation_vector_rate(x, rotate_back(bushing_axes(scene, load), relative_rotation))

@@ -11,50 +11,18 @@ ds . F, because its direction turns. A ball's equation is M = 0 of its own body,
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import (
-        Quaternion,
-        Vec3,
-        add,
-        add_cross,
-        add_scaled,
-        cross,
-        dot,
-        quaternion_rate,
-        rotate_back,
-        rotate_tensor,
-        sub,
-    )
-    from heuncli.kernel.closures import apply_multipliers
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.loads import body_omega
-    from heuncli.kernel.orthogonal import solve_closures
-    from heuncli.kernel.response import evaluate, find_artificial_loads
-    from heuncli.kernel.scene import (
-        SHIFT,
-        ArtificialInertia,
-        Body,
-        BodyAtState,
-        BodyTangent,
-        Closure,
-        Counter,
-        Freedom,
-        FreedomTangent,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_closures import add_closure_tangents
-    from heuncli.kernel.tangent_friction import add_friction_tangent, find_joint_load_tangents
-    from heuncli.kernel.tangent_loads import add_load_tangents
-    from heuncli.kernel.tangent_motion import differentiate_motion, omega_tangent, vector_tangent
-    from heuncli.kernel.tangent_strains import set_variable_slopes
-    from heuncli.kernel.tangent_tracks import track_speed_tangent
-    from heuncli.kernel.tree import balance_joints, project_on_freedom, push_artificial_load, sweep_down
+from heuncli.kernel.carried_points import body_omega
+from heuncli.kernel.closures import apply_multipliers
+from heuncli.kernel.declarations import *
+from heuncli.kernel.orthogonal import solve_closures
+from heuncli.kernel.response import evaluate, find_artificial_loads
+from heuncli.kernel.strains import set_variable_slopes
+from heuncli.kernel.tangent_closures import add_closure_tangents
+from heuncli.kernel.tangent_friction import add_friction_tangent, find_joint_load_tangents
+from heuncli.kernel.tangent_loads import add_load_tangents
+from heuncli.kernel.tangent_motion import differentiate_motion, omega_tangent, vector_tangent
+from heuncli.kernel.tracks import track_speed_tangent
+from heuncli.kernel.tree import balance_joints, project_on_freedom, push_artificial_load, sweep_down
 
 
 def evaluate_base_state(
@@ -63,17 +31,17 @@ def evaluate_base_state(
     """Evaluate and store the state from which directions are evaluated. Returns what `evaluate` returns."""
     i: cython.Py_ssize_t
     trouble: cython.int = evaluate(scene, t, y, dy)
-    if not scene.driven:
+    if not scene.has_drives:
         apply_multipliers(scene)
-    for i in range(scene.lent_count):
+    for i in range(scene.artificial_count):
         if keeps_artificial_inertia(scene, i):
-            inertia: cython.pointer[ArtificialInertia] = cython.address(scene.lents[i])
+            inertia: cython.pointer[ArtificialInertia] = cython.address(scene.artificial_inertias[i])
             carrier: cython.pointer[Body] = cython.address(scene.bodies[inertia.body])
             carrier.M_applied = add_scaled(carrier.M_applied, -dot(inertia.n, carrier.alpha), inertia.n)
     balance_joints(scene, True)
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        base: cython.pointer[BodyAtState] = cython.address(scene.at_state[i])
+        base: cython.pointer[BodyAtState] = cython.address(scene.state_values[i])
         base.inertia = rotate_tensor(body.R, body.inertia)
         base.alpha = body.alpha
         base.a = body.a
@@ -90,7 +58,7 @@ def keeps_artificial_inertia(scene: cython.pointer[Scene], j: cython.int) -> cyt
     """Return whether an artificial inertia is not compensated, as nothing else resists its rotation
     (`factor_inertia_shares`).
     """
-    return scene.own[scene.lent_count * j + j] == 0.0
+    return scene.own_inertia[scene.artificial_count * j + j] == 0.0
 
 
 def differentiate_state(
@@ -105,10 +73,10 @@ def differentiate_state(
     add_closure_tangents(scene)
     add_branch_tangents(scene)
     solve_tangent(scene)
-    if scene.rub_count:
+    if scene.friction_count:
         power += add_friction_tangent(scene)
         solve_tangent(scene)
-    if scene.driven and scene.work_at >= 0:
+    if scene.has_drives and scene.work_at >= 0:
         power += drive_power_tangent(scene)
     write_rate_tangents(scene, y, direction, result)
     if scene.work_at >= 0:
@@ -120,11 +88,11 @@ def add_artificial_inertia_tangents(scene: cython.pointer[Scene]) -> cython.void
     body.
     """
     i: cython.Py_ssize_t
-    for i in range(scene.lent_count):
-        inertia: cython.pointer[ArtificialInertia] = cython.address(scene.lents[i])
+    for i in range(scene.artificial_count):
+        inertia: cython.pointer[ArtificialInertia] = cython.address(scene.artificial_inertias[i])
         d: cython.pointer[BodyTangent] = cython.address(scene.tangents[inertia.body])
         if d.moves and keeps_artificial_inertia(scene, i):
-            alpha: Vec3 = scene.at_state[inertia.body].alpha
+            alpha: Vec3 = scene.state_values[inertia.body].alpha
             n: Vec3 = vector_tangent(scene, inertia.body, inertia.n)
             d.M = add_scaled(d.M, dot(inertia.n, alpha), n)
             d.M = add_scaled(d.M, dot(n, alpha) + dot(inertia.n, d.alpha), inertia.n)
@@ -138,7 +106,7 @@ def add_branch_tangents(scene: cython.pointer[Scene]) -> cython.void:
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if not scene.tangents[i].moves:
             continue
-        base: cython.pointer[BodyAtState] = cython.address(scene.at_state[i])
+        base: cython.pointer[BodyAtState] = cython.address(scene.state_values[i])
         if body.parent >= 0:
             parent_tangent: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
             parent_tangent.M = add_cross(parent_tangent.M, scene.tangents[i].arm, base.f)
@@ -150,10 +118,10 @@ def add_branch_tangents(scene: cython.pointer[Scene]) -> cython.void:
 def solve_tangent(scene: cython.pointer[Scene]) -> cython.void:
     """Find the accelerations and multipliers due to the change; artificial inertia has no effect on them."""
     i: cython.Py_ssize_t
-    for i in range(scene.lent_count):
-        scene.lents[i].z = 0.0
+    for i in range(scene.artificial_count):
+        scene.artificial_inertias[i].z = 0.0
     solve_tangent_loads(scene)
-    if scene.lent_count:
+    if scene.artificial_count:
         find_artificial_loads(scene)
         solve_tangent_loads(scene)
 
@@ -164,8 +132,8 @@ def solve_tangent_loads(scene: cython.pointer[Scene]) -> cython.void:
     for i in range(scene.body_count):
         scene.bodies[i].M_branch = scene.tangents[i].M
         scene.bodies[i].f_branch = scene.tangents[i].f
-    for i in range(scene.lent_count):
-        push_artificial_load(scene, cython.address(scene.lents[i]))
+    for i in range(scene.artificial_count):
+        push_artificial_load(scene, cython.address(scene.artificial_inertias[i]))
     sweep_up_tangents(scene)
     if scene.selected_count:
         solve_closures(scene)
@@ -179,14 +147,12 @@ def sweep_up_tangents(scene: cython.pointer[Scene]) -> cython.void:
     for i in range(scene.body_count - 1, -1, -1):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if body.ball:
-            offset: cython.Py_ssize_t = body.answer_at
-            scene.e[offset] = -body.M_branch.x
-            scene.e[offset + 1] = -body.M_branch.y
-            scene.e[offset + 2] = -body.M_branch.z
+            offset: cython.Py_ssize_t = body.velocity_at
+            write_vector(scene.e, offset, scale_vector(-1.0, body.M_branch))
             body.f_branch = sub(body.f_branch, rotate_back(body.G, body.M_branch))
         for k in range(body.first_freedom, body.end_freedom):
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-            scene.e[freedom.answer_at] = eliminate_tangent_load(body, freedom, scene.freedom_tangents[k].load)
+            scene.e[freedom.velocity_at] = eliminate_tangent_load(body, freedom, scene.freedom_tangents[k].load)
         if body.parent >= 0:
             parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
             moment: Vec3 = cross(body.arm, body.f_branch)
@@ -234,18 +200,14 @@ def write_rate_tangents(
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if body.ball:
             k = body.attitude_at
-            q: Quaternion = quaternion_rate(Quaternion(y[k], y[k + 1], y[k + 2], y[k + 3]), scene.tangents[i].omega)
-            dq: Quaternion = quaternion_rate(
-                Quaternion(direction[k], direction[k + 1], direction[k + 2], direction[k + 3]), body.omega
-            )
+            q: Quaternion = quaternion_rate(read_quaternion(y, k), scene.tangents[i].omega)
+            dq: Quaternion = quaternion_rate(read_quaternion(direction, k), body.omega)
             result[k] = q.w + dq.w
             result[k + 1] = q.x + dq.x
             result[k + 2] = q.y + dq.y
             result[k + 3] = q.z + dq.z
             k = body.rate_at
-            result[k] = body.alpha.x
-            result[k + 1] = body.alpha.y
-            result[k + 2] = body.alpha.z
+            write_vector(result, k, body.alpha)
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if not freedom.driven:
@@ -254,9 +216,9 @@ def write_rate_tangents(
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
         if counter.track:
-            result[counter.at] = track_speed_tangent(scene, cython.address(scene.closures[counter.track - 1]))
+            result[counter.state_at] = track_speed_tangent(scene, cython.address(scene.closures[counter.track - 1]))
             continue
         n: Vec3 = world_direction(scene, counter.a, counter.axis)
         change: Vec3 = sub(omega_tangent(scene, counter.b), omega_tangent(scene, counter.a))
         turn: Vec3 = sub(body_omega(scene, counter.b), body_omega(scene, counter.a))
-        result[counter.at] = dot(n, change) + dot(vector_tangent(scene, counter.a, n), turn)
+        result[counter.state_at] = dot(n, change) + dot(vector_tangent(scene, counter.a, n), turn)

@@ -6,19 +6,9 @@ d(J' lambda)           at the present multipliers: applied to the bodies as load
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_scaled, scale_vector
-    from heuncli.kernel.conditions import condition, condition_count
-    from heuncli.kernel.scene import CAM, MESH, Closure, Scene
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_conditions import condition_tangent
-    from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
-    from heuncli.kernel.values import LoadTangent, RowTangent
+from heuncli.kernel.conditions import condition, condition_count, condition_tangent
+from heuncli.kernel.declarations import *
+from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
 
 
 def add_closure_tangents(scene: cython.pointer[Scene]) -> cython.void:

@@ -9,43 +9,23 @@ then acts as friction as N_k does, and has the same kind of response.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scale_vector, sub
-    from heuncli.kernel.closures import apply_multipliers
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.joint_friction import (
-        FORCE_CHANGE,
-        find_normal_force_tangent,
-        joint_force,
-        joint_moment,
-        store_end_forces,
-        store_force_parts,
-        thread_thrust,
-    )
-    from heuncli.kernel.loads import sliding_velocity
-    from heuncli.kernel.scene import (
-        ENDS,
-        SHIFT_FRICTION,
-        THREAD_FRICTION,
-        THRUST_OF_ROW,
-        WHOLE,
-        BodyAtState,
-        BodyTangent,
-        Closure,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_closures import row_tangent
-    from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
-    from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
-    from heuncli.kernel.tree import balance_joints, locate_point
-    from heuncli.kernel.values import LoadTangent
+from heuncli.kernel.closures import apply_multipliers
+from heuncli.kernel.declarations import *
+from heuncli.kernel.joint_friction import (
+    FORCE_CHANGE,
+    find_normal_force_tangent,
+    joint_force,
+    joint_moment,
+    store_end_forces,
+    store_force_parts,
+    thread_thrust,
+)
+from heuncli.kernel.kinematics import locate_point
+from heuncli.kernel.loads import sliding_velocity
+from heuncli.kernel.tangent_closures import row_tangent
+from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
+from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
+from heuncli.kernel.tree import balance_joints
 
 
 def find_joint_load_tangents(scene: cython.pointer[Scene]) -> cython.void:
@@ -61,15 +41,15 @@ def find_joint_load_tangents(scene: cython.pointer[Scene]) -> cython.void:
 def add_friction_tangent(scene: cython.pointer[Scene]) -> cython.double:
     """Apply the change of friction due to that of the normal forces to the bodies. Returns the change of its power."""
     k: cython.Py_ssize_t
-    n: cython.Py_ssize_t = scene.rub_count
+    n: cython.Py_ssize_t = scene.friction_count
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     power: cython.double = 0.0
     find_joint_load_tangents(scene)
     record_contact_force_tangents(scene)
     find_normal_force_tangent(scene)
     for k in range(n):
-        load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[k]])
-        change: Vec3 = scale_vector(scene.trial[FORCE_CHANGE * n + k], load.unit)
+        load: cython.pointer[Load] = cython.address(scene.loads[scene.friction_loads[k]])
+        change: Vec3 = scale_vector(scene.friction_trial[FORCE_CHANGE * n + k], load.unit)
         power += dot(change, world_direction(scene, load.a, load.axis)) * load.rate
         d: LoadTangent = LoadTangent(zero, zero, change)
         if load.kind == SHIFT_FRICTION:
@@ -77,23 +57,23 @@ def add_friction_tangent(scene: cython.pointer[Scene]) -> cython.double:
         elif load.kind == THREAD_FRICTION:
             d = LoadTangent(zero, scale_vector(load.factor, change), change)
             power += dot(d.force, sliding_velocity(scene, load, locate_point(scene, load.b, load.q).v))
-        push_load_tangent(scene, load.b, load.at, zero, d)
-        push_load_tangent(scene, load.a, load.at, zero, opposite_load(d))
+        push_load_tangent(scene, load.b, load.place, zero, d)
+        push_load_tangent(scene, load.a, load.place, zero, opposite_load(d))
     return power
 
 
 def record_contact_force_tangents(scene: cython.pointer[Scene]) -> cython.void:
     """Store the change of E of all joints, in the column after those of friction."""
     j: cython.Py_ssize_t
-    column: cython.Py_ssize_t = scene.rub_count + 1
+    column: cython.Py_ssize_t = scene.friction_count + 1
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-    for j in range(scene.rub_count):
-        load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[j]])
-        if load.presses == THRUST_OF_ROW:
+    for j in range(scene.friction_count):
+        load: cython.pointer[Load] = cython.address(scene.loads[scene.friction_loads[j]])
+        if load.normal_force_kind == THRUST_OF_ROW:
             store_force_parts(scene, column, j, thread_thrust(scene, load), zero)
             continue
         change: Vec3 = joint_force_tangent(scene, load)
-        if load.presses == WHOLE:
+        if load.normal_force_kind == WHOLE:
             store_force_parts(scene, column, j, change, zero)
             continue
         n: Vec3 = world_direction(scene, load.a, load.axis)
@@ -101,7 +81,7 @@ def record_contact_force_tangents(scene: cython.pointer[Scene]) -> cython.void:
         F: Vec3 = base_joint_force(scene, load)
         normal_change: cython.double = dot(dn, F) + dot(n, change)
         change = add_scaled(add_scaled(change, -dot(n, F), dn), -normal_change, n)
-        if load.presses == ENDS:
+        if load.normal_force_kind == ENDS:
             couple: Vec3 = add_cross(cross(dn, base_joint_moment(scene, load)), n, joint_moment_tangent(scene, load))
             store_end_forces(scene, column, j, change, couple)
         else:
@@ -112,8 +92,8 @@ def base_joint_force(scene: cython.pointer[Scene], load: cython.pointer[Load]) -
     """Return the force of the load's joint at the base state (`joint_force`)."""
     i: cython.Py_ssize_t
     total: Vec3 = Vec3(0.0, 0.0, 0.0)
-    if load.held_by >= 0:
-        return scene.at_state[load.held_by].f
+    if load.joint_body >= 0:
+        return scene.state_values[load.joint_body].f
     for i in range(load.row, load.row + load.row_count):
         total = add_scaled(total, scene.multipliers[i], scene.closures[i].f)
     return total
@@ -123,9 +103,9 @@ def base_joint_moment(scene: cython.pointer[Scene], load: cython.pointer[Load]) 
     """Return the moment of the load's joint about its `to` point at the base state (`joint_moment`)."""
     i: cython.Py_ssize_t
     total: Vec3 = Vec3(0.0, 0.0, 0.0)
-    if load.held_by >= 0:
-        base: cython.pointer[BodyAtState] = cython.address(scene.at_state[load.held_by])
-        return add_cross(base.M, sub(scene.bodies[load.held_by].r, load.at), base.f)
+    if load.joint_body >= 0:
+        base: cython.pointer[BodyAtState] = cython.address(scene.state_values[load.joint_body])
+        return add_cross(base.M, sub(scene.bodies[load.joint_body].r, load.place), base.f)
     for i in range(load.row, load.row + load.row_count):
         total = add_scaled(total, scene.multipliers[i], scene.closures[i].m)
     return total
@@ -135,7 +115,7 @@ def joint_force_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]
     """Return the change of the force of the load's joint; for a cut one d(lambda) f + lambda df."""
     i: cython.Py_ssize_t
     total: Vec3 = joint_force(scene, load)
-    if load.held_by < 0:
+    if load.joint_body < 0:
         for i in range(load.row, load.row + load.row_count):
             row: cython.pointer[Closure] = cython.address(scene.closures[i])
             if row.rank >= 0:
@@ -147,10 +127,10 @@ def joint_moment_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load
     """Return the change of the joint's moment about its `to` point x: dM + (dr - dx) x F + (r - x) x dF."""
     i: cython.Py_ssize_t
     total: Vec3 = joint_moment(scene, load)
-    if load.held_by >= 0:
-        d: cython.pointer[BodyTangent] = cython.address(scene.tangents[load.held_by])
+    if load.joint_body >= 0:
+        d: cython.pointer[BodyTangent] = cython.address(scene.tangents[load.joint_body])
         arm_change: Vec3 = sub(d.r, point_tangent(scene, load.b, load.q).x)
-        return add_cross(total, arm_change, scene.at_state[load.held_by].f)
+        return add_cross(total, arm_change, scene.state_values[load.joint_body].f)
     for i in range(load.row, load.row + load.row_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[i])
         if row.rank >= 0:

@@ -6,50 +6,27 @@ itself is in the scene as found at the state.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
+from math import tanh
 
-if not cython.compiled:
-    from math import tanh
-
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scale_vector, sub
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.jets import slope
-    from heuncli.kernel.libm import NAN
-    from heuncli.kernel.loads import (
-        acts_about_axis,
-        body_omega,
-        is_bushing,
-        is_friction,
-        relative_motion,
-        slides_in_joint,
-        sliding_velocity,
-    )
-    from heuncli.kernel.scene import (
-        ACTUATOR,
-        BUSHING_SHIFT,
-        COUPLE,
-        FORCE,
-        ROPE,
-        SPRING,
-        THREAD_FRICTION,
-        TURN_SPRING,
-        Body,
-        BodyTangent,
-        Closure,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_bushings import bushing_tangent
-    from heuncli.kernel.tangent_conditions import condition_tangent
-    from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
-    from heuncli.kernel.tangent_ropes import rope_power_tangent, rope_tangent
-    from heuncli.kernel.tangent_strains import line_tangent
-    from heuncli.kernel.tree import locate_point
-    from heuncli.kernel.values import BushingTangent, LineTangent, LoadTangent, PointMotion, RowTangent
+from heuncli.kernel.bushings import bushing_tangent
+from heuncli.kernel.carried_points import body_omega
+from heuncli.kernel.conditions import condition_tangent
+from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import slope
+from heuncli.kernel.kinematics import locate_point
+from heuncli.kernel.libm import NAN
+from heuncli.kernel.loads import (
+    acts_about_axis,
+    evaluate_load_vector,
+    is_bushing,
+    is_friction,
+    relative_motion,
+    slides_in_joint,
+    sliding_velocity,
+)
+from heuncli.kernel.ropes import rope_power_tangent, rope_tangent
+from heuncli.kernel.strains import line_tangent
+from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
 
 
 def add_load_tangents(scene: cython.pointer[Scene]) -> cython.double:
@@ -64,7 +41,7 @@ def add_load_tangents(scene: cython.pointer[Scene]) -> cython.double:
         is_still_load: cython.bint = load.a < 0 or not scene.tangents[load.a].moves
         if load.b >= 0 and scene.tangents[load.b].moves:
             is_still_load = False
-        if is_still_load and not scene.sloping:
+        if is_still_load and not scene.has_slopes:
             continue
         point: PointMotion = point_tangent(scene, load.b, load.q)
         vector: Vec3 = load_vector_tangent(scene, load)
@@ -81,7 +58,7 @@ def add_load_tangents(scene: cython.pointer[Scene]) -> cython.double:
 
 def load_vector_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """Return the change of the load's components, which are expressions in coordinates and rates."""
-    if not scene.sloping:
+    if not scene.has_slopes:
         return Vec3(0.0, 0.0, 0.0)
     return Vec3(
         slope(scene.programs, load.x, scene.slopes) if load.x.count else 0.0,
@@ -97,13 +74,13 @@ def push_load_tangent(
     if body >= 0:
         target: cython.pointer[BodyTangent] = cython.address(scene.tangents[body])
         moment: Vec3 = add_cross(d.moment, sub(place, scene.bodies[body].r), d.force)
-        target.M = sub(target.M, add_cross(moment, sub(d.at, target.r), force))
+        target.M = sub(target.M, add_cross(moment, sub(d.place, target.r), force))
         target.f = sub(target.f, d.force)
 
 
 def opposite_load(d: LoadTangent) -> LoadTangent:
     """Return the change of the opposite load at the same place."""
-    return LoadTangent(d.at, scale_vector(-1.0, d.force), scale_vector(-1.0, d.moment))
+    return LoadTangent(d.place, scale_vector(-1.0, d.force), scale_vector(-1.0, d.moment))
 
 
 def add_outer_load_tangent(
@@ -118,9 +95,9 @@ def add_outer_load_tangent(
     if load.in_body:
         change = add(change, vector_tangent(scene, load.b, load_on_b))
     if load.kind == FORCE:
-        push_load_tangent(scene, load.b, load.at, load_on_b, LoadTangent(point.x, change, zero))
+        push_load_tangent(scene, load.b, load.place, load_on_b, LoadTangent(point.x, change, zero))
         return dot(change, locate_point(scene, load.b, load.q).v) + dot(load_on_b, point.v)
-    push_load_tangent(scene, load.b, load.at, zero, LoadTangent(point.x, zero, change))
+    push_load_tangent(scene, load.b, load.place, zero, LoadTangent(point.x, zero, change))
     if load.b < 0:
         return 0.0
     return dot(change, scene.bodies[load.b].omega) + dot(load_on_b, scene.tangents[load.b].omega)
@@ -148,13 +125,13 @@ def add_pair_load_tangent(
             power = -2.0 * load.coefficient * load.rate * line.rate
         else:
             power = value_change * load.rate + load.value * line.rate
-        force = add_scaled(scale_vector(F / load.span, sub(load.at, load.from_at)), load.value, line.turned)
+        force = add_scaled(scale_vector(F / load.span, sub(load.place, load.place_on_a)), load.value, line.turned)
     elif load.kind == SPRING and load.length == 0.0:  # the force to first order where the points coincide
         force = scale_vector(-load.stiffness, sub(point.x, start_point.x))
     d: LoadTangent = LoadTangent(point.x, force, zero)
-    push_load_tangent(scene, load.b, load.at, load.force, d)
+    push_load_tangent(scene, load.b, load.place, load.force, d)
     d = opposite_load(LoadTangent(start_point.x, force, zero))
-    push_load_tangent(scene, load.a, load.from_at, scale_vector(-1.0, load.force), d)
+    push_load_tangent(scene, load.a, load.place_on_a, scale_vector(-1.0, load.force), d)
     return power
 
 
@@ -195,8 +172,8 @@ def add_joint_load_tangent(
         d = LoadTangent(point.x, scale_vector(load.factor, load_on_b), load_on_b)
         power += dot(d.force, sliding_velocity(scene, load, locate_point(scene, load.b, load.q).v))
         power += dot(load.force, sliding_velocity_tangent(scene, load, point))
-    push_load_tangent(scene, load.b, load.at, load.force, d)
-    push_load_tangent(scene, load.a, load.at, scale_vector(-1.0, load.force), opposite_load(d))
+    push_load_tangent(scene, load.b, load.place, load.force, d)
+    push_load_tangent(scene, load.a, load.place, scale_vector(-1.0, load.force), opposite_load(d))
     return power
 
 
@@ -212,12 +189,14 @@ def add_bushing_tangent(
     change: Vec3 = sub(omega_tangent(scene, load.b), omega_tangent(scene, load.a))
     if slides:
         change = sliding_velocity_tangent(scene, load, point)
-    tangent_of_load: BushingTangent = bushing_tangent(scene, load, preload_change, motion, change)
+    tangent_of_load: BushingTangent = bushing_tangent(
+        scene, load, evaluate_load_vector(scene, load), preload_change, motion, change
+    )
     d: LoadTangent = (
         LoadTangent(point.x, tangent_of_load.acts, zero) if slides else LoadTangent(point.x, zero, tangent_of_load.acts)
     )
-    push_load_tangent(scene, load.b, load.at, load.force, d)
-    push_load_tangent(scene, load.a, load.at, scale_vector(-1.0, load.force), opposite_load(d))
+    push_load_tangent(scene, load.b, load.place, load.force, d)
+    push_load_tangent(scene, load.a, load.place, scale_vector(-1.0, load.force), opposite_load(d))
     return tangent_of_load.power
 
 
@@ -244,7 +223,7 @@ def sliding_velocity_tangent(scene: cython.pointer[Scene], load: cython.pointer[
         return point.v
     a: cython.pointer[Body] = cython.address(scene.bodies[load.a])
     carrier_tangent: cython.pointer[BodyTangent] = cython.address(scene.tangents[load.a])
-    arm: Vec3 = sub(load.at, a.r)
+    arm: Vec3 = sub(load.place, a.r)
     swept: Vec3 = add_cross(cross(carrier_tangent.omega, arm), a.omega, sub(point.x, carrier_tangent.r))
     return sub(sub(point.v, swept), carrier_tangent.v)
 
@@ -260,8 +239,8 @@ def turn_spring_angle_tangent(scene: cython.pointer[Scene], load: cython.pointer
     if load.counter < 0:
         return 0.0
     n: Vec3 = world_direction(scene, load.a, load.axis)
-    reference: Vec3 = world_direction(scene, load.a, load.across)
-    marker: Vec3 = world_direction(scene, load.b, load.mark)
+    reference: Vec3 = world_direction(scene, load.a, load.mark_a)
+    marker: Vec3 = world_direction(scene, load.b, load.mark_b)
     reference_change: Vec3 = vector_tangent(scene, load.a, reference)
     marker_change: Vec3 = vector_tangent(scene, load.b, marker)
     x: cython.double = dot(reference, marker)
@@ -277,7 +256,7 @@ def resistance_per_speed(load: cython.pointer[Load], speed: cython.double) -> cy
     """Return the load of a damper or friction, divided by the speed."""
     if not is_friction(load):
         return load.coefficient
-    size: cython.double = load.coefficient * load.pressed
+    size: cython.double = load.coefficient * load.normal_force
     if speed > 0.0:
         return size * tanh(speed / load.speed) / speed
     return size / load.speed
@@ -290,5 +269,5 @@ def resistance_slope(load: cython.pointer[Load], speed: cython.double) -> cython
     if not is_friction(load) or not speed > 0.0:
         return 0.0
     f: cython.double = tanh(speed / load.speed)
-    size: cython.double = load.coefficient * load.pressed
+    size: cython.double = load.coefficient * load.normal_force
     return size * ((1.0 - f * f) / load.speed - f / speed) / speed

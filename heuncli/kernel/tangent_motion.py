@@ -9,27 +9,7 @@ equations.
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scale_vector, sub, transform
-    from heuncli.kernel.scene import (
-        SHIFT,
-        TURN_IN_BODY,
-        TURN_IN_PARENT,
-        Body,
-        BodyAtState,
-        BodyTangent,
-        Freedom,
-        FreedomTangent,
-        Scene,
-        Variable,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.values import PointMotion
+from heuncli.kernel.declarations import *
 
 
 def differentiate_motion(scene: cython.pointer[Scene], y: cython.p_double, direction: cython.p_double) -> cython.void:
@@ -48,7 +28,7 @@ def differentiate_motion(scene: cython.pointer[Scene], y: cython.p_double, direc
             set_ball_tangent(body, d, y, direction)
         else:
             set_orientation_tangent(scene, body, d)
-        set_inertia_load_tangent(body, cython.address(scene.at_state[i]), d)
+        set_inertia_load_tangent(body, cython.address(scene.state_values[i]), d)
 
 
 def set_coordinate_tangents(scene: cython.pointer[Scene], direction: cython.p_double) -> cython.void:
@@ -64,7 +44,7 @@ def set_coordinate_tangents(scene: cython.pointer[Scene], direction: cython.p_do
         d.u = 0.0 if freedom.driven else direction[freedom.u_at]
         d.load = 0.0
         d.s = zero
-    scene.sloping = 0
+    scene.has_slopes = 0
     scene.slopes[0] = 0.0
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
@@ -73,7 +53,7 @@ def set_coordinate_tangents(scene: cython.pointer[Scene], direction: cython.p_do
         freedom_tangent: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[variable.freedom])
         scene.slopes[i] = freedom_tangent.u if variable.is_rate else freedom_tangent.q
         if scene.slopes[i] != 0.0:
-            scene.sloping = 1
+            scene.has_slopes = 1
 
 
 def has_motion_change(
@@ -122,7 +102,7 @@ def set_joint_point_tangent(
     if body.parent < 0:
         return
     parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-    alpha: Vec3 = scene.at_state[body.parent].alpha
+    alpha: Vec3 = scene.state_values[body.parent].alpha
     parent_tangent: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
     w: Vec3 = find_sliding_velocity(scene, body)
     swept: Vec3 = cross(parent.omega, body.arm)
@@ -229,7 +209,7 @@ def set_ball_tangent(
     change: Vec3 = Vec3(direction[k + 1], direction[k + 2], direction[k + 3])
     d.turn = scale_vector(g, add_cross(add_scaled(scale_vector(y[k], change), -direction[k], q), q, change))
     k = body.rate_at
-    d.omega = Vec3(direction[k], direction[k + 1], direction[k + 2])
+    d.omega = read_vector(direction, k)
 
 
 def set_inertia_load_tangent(

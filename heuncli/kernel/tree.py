@@ -15,243 +15,16 @@ velocity terms, prescribed accelerations and gravity count: without them the res
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import (
-        Mat3,
-        Quaternion,
-        Vec3,
-        add,
-        add_cross,
-        add_matrix,
-        add_scaled,
-        add_symmetric,
-        add_symmetric_part,
-        add_transformed,
-        both_levers,
-        cross,
-        dot,
-        factor,
-        lever,
-        lever_rows,
-        product,
-        quaternion_rate,
-        rotate,
-        rotate_back,
-        rotate_tensor,
-        rotation,
-        rotation_matrix,
-        scale_vector,
-        scaled_unit_matrix,
-        skew,
-        solve,
-        solve_columns,
-        sub,
-        sub_dyad,
-        sub_product,
-        sub_square,
-        trace,
-        transform,
-        unit_matrix,
-    )
-    from heuncli.kernel.directions import world_direction
-    from heuncli.kernel.jets import jet
-    from heuncli.kernel.paths import place_on_path
-    from heuncli.kernel.plane import (
-        add_zero_accelerations_in_plane,
-        balance_in_plane,
-        factor_in_plane,
-        move_in_plane,
-        set_branch_loads_in_plane,
-        set_full_branch_loads_in_plane,
-        sweep_down_in_plane,
-        sweep_up_in_plane,
-    )
-    from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import (
-        OF_LOAD,
-        SHIFT,
-        TURN_IN_BODY,
-        TURN_IN_PARENT,
-        ArtificialInertia,
-        Body,
-        Freedom,
-        Scene,
-        Variable,
-    )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import evaluate_load_variable
-    from heuncli.kernel.values import PointMotion
-
-
-def set_coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
-    """Set coordinates, rates and prescribed accelerations of the scalar freedoms, and the expressions' variables."""
-    i: cython.Py_ssize_t
-    for i in range(scene.freedom_count):
-        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        if freedom.driven:
-            drive: Jet = jet(scene.programs, freedom.program, t)
-            freedom.q = drive.value + freedom.offset
-            freedom.u = drive.rate
-            freedom.udot = drive.second
-        else:
-            freedom.q = y[freedom.q_at]
-            freedom.u = y[freedom.u_at]
-            freedom.udot = 0.0
-    for i in range(scene.counter_count):
-        scene.counters[i].counted = y[scene.counters[i].at]
-    scene.programs.variables[0] = t
-    for i in range(1, scene.variable_count):
-        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if not variable.is_point:
-            variable_freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
-            scene.programs.variables[i] = (
-                (0.0 if variable_freedom.still else variable_freedom.u) if variable.is_rate else variable_freedom.q
-            )
-
-
-def update_kinematics(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
-    """Find attitudes, joint points, velocities (46) and velocity terms of all bodies at y; clear the applied loads."""
-    set_coordinates(scene, t, y)
-    if scene.flat:
-        move_in_plane(scene)
-    else:
-        move_in_space(scene, y)
-    if scene.point_count:
-        set_point_variables(scene)
-
-
-def set_point_variables(scene: cython.pointer[Scene]) -> cython.void:
-    """Set the variables that are places and velocities of points, or belong to loads, at the present pose."""
-    i: cython.Py_ssize_t
-    for i in range(1, scene.variable_count):
-        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if variable.is_point == OF_LOAD:
-            scene.programs.variables[i] = evaluate_load_variable(scene, variable)
-        elif variable.is_point:
-            point: PointMotion = locate_point(scene, variable.body, variable.q)
-            if variable.is_rate:
-                scene.programs.variables[i] = dot(variable.direction, point.v)
-            else:
-                scene.programs.variables[i] = dot(variable.direction, point.x) + variable.offset
-
-
-def move_in_space(scene: cython.pointer[Scene], y: cython.p_double) -> cython.void:
-    """Find attitudes, joint points, velocities and velocity terms from the freedoms and the attitudes in y."""
-    i: cython.Py_ssize_t
-    for i in range(scene.body_count):
-        body: cython.pointer[Body] = cython.address(scene.bodies[i])
-        set_joint_point(scene, body)
-        if body.ball:
-            offset: cython.Py_ssize_t = body.attitude_at
-            body.R = rotation_matrix(Quaternion(y[offset], y[offset + 1], y[offset + 2], y[offset + 3]))
-            offset = body.rate_at
-            body.omega = Vec3(y[offset], y[offset + 1], y[offset + 2])
-        else:
-            set_orientation(scene, body)
-        set_velocity_terms(body)
-
-
-def set_joint_point(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.void:
-    """Find the joint point, its velocity and its velocity terms, from the parent and the shifts of the joint.
-
-    r = r_p + l,  v = v_p + omega_p x l + w,  a - a_p - alpha_p x l = omega_p x (omega_p x l + 2 w) + wdot, w = sum u s
-
-    Along a path s = r' turns with the coordinate: wdot = udot r' + u^2 r''.
-    """
-    k: cython.Py_ssize_t
-    sliding: Vec3 = Vec3(0.0, 0.0, 0.0)
-    path_acceleration: Vec3 = sliding
-    body.arm = world_direction(scene, body.parent, body.joint_in_parent)
-    for k in range(body.first_freedom, body.end_freedom):
-        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-        if freedom.pieces:
-            body.arm = add(body.arm, place_on_path(scene, body.parent, freedom))
-            sliding = add_scaled(sliding, freedom.u, freedom.s)
-            path_acceleration = add_scaled(
-                add_scaled(path_acceleration, freedom.udot, freedom.s), freedom.u * freedom.u, freedom.curved
-            )
-        elif freedom.kind == SHIFT:
-            freedom.s = world_direction(scene, body.parent, freedom.direction)
-            body.arm = add_scaled(body.arm, freedom.q, freedom.s)
-            sliding = add_scaled(sliding, freedom.u, freedom.s)
-            path_acceleration = add_scaled(path_acceleration, freedom.udot, freedom.s)
-    if body.parent < 0:
-        body.r = body.arm
-        body.v = sliding
-        body.a_bias = path_acceleration
-        return
-    parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-    swept: Vec3 = cross(parent.omega, body.arm)
-    body.r = add(parent.r, body.arm)
-    body.v = add(add(parent.v, swept), sliding)
-    body.a_bias = add(cross(parent.omega, add_scaled(swept, 2.0, sliding)), path_acceleration)
-
-
-def set_orientation(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.void:
-    """Find attitude and angular velocity of a body on single axes: turns in the parent, frame, turns in the body."""
-    k: cython.Py_ssize_t
-    body.alpha_bias = Vec3(0.0, 0.0, 0.0)
-    if body.parent < 0:
-        body.R = unit_matrix()
-        body.omega = Vec3(0.0, 0.0, 0.0)
-    else:
-        parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
-        body.R = parent.R
-        body.omega = parent.omega
-    for k in range(body.first_freedom, body.end_freedom):
-        if scene.freedoms[k].kind == TURN_IN_PARENT:
-            apply_turn(body, cython.address(scene.freedoms[k]))
-    if body.framed:
-        body.R = product(body.R, body.frame)
-    for k in range(body.first_freedom, body.end_freedom):
-        if scene.freedoms[k].kind == TURN_IN_BODY:
-            apply_turn(body, cython.address(scene.freedoms[k]))
-
-
-def apply_turn(body: cython.pointer[Body], freedom: cython.pointer[Freedom]) -> cython.void:
-    """Apply a turn about an axis s: alpha_bias += omega x s u + s udot, omega += s u, R <- R Rot."""
-    freedom.s = rotate(body.R, freedom.direction)
-    spin: Vec3 = scale_vector(freedom.u, freedom.s)
-    body.alpha_bias = add(body.alpha_bias, add_scaled(cross(body.omega, spin), freedom.udot, freedom.s))
-    body.omega = add(body.omega, spin)
-    body.R = product(body.R, rotation(freedom.direction, freedom.q))
-
-
-def set_velocity_terms(body: cython.pointer[Body]) -> cython.void:
-    """Find inertia and first moment in world axes; omega x J omega and omega x (omega x m c), the bias h of (49)."""
-    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-    body.mc = rotate(body.R, body.first_moment)
-    body.A = rotate_tensor(body.R, body.inertia)
-    body.gyroscopic = cross(body.omega, transform(body.A, body.omega))
-    body.centrifugal = cross(body.omega, cross(body.omega, body.mc))
-    body.M_applied = zero
-    body.f_applied = zero
-
-
-def locate_point(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> PointMotion:
-    """Return place and velocity of a body's point, given from its joint point in its axes; a ground point is returned
-    as it is.
-    """
-    if body < 0:
-        return PointMotion(q, Vec3(0.0, 0.0, 0.0))
-    carrier: cython.pointer[Body] = cython.address(scene.bodies[body])
-    arm: Vec3 = rotate(carrier.R, q)
-    return PointMotion(add(arm, carrier.r), add(cross(carrier.omega, arm), carrier.v))
-
-
-def add_load_to_body(
-    scene: cython.pointer[Scene], body: cython.int, place: Vec3, force: Vec3, moment: Vec3
-) -> cython.void:
-    """Add a force at a place, and a moment, to the applied loads of a body; the ground ignores them."""
-    if body >= 0:
-        target: cython.pointer[Body] = cython.address(scene.bodies[body])
-        target.M_applied = add(target.M_applied, add_cross(moment, sub(place, target.r), force))
-        target.f_applied = add(target.f_applied, force)
+from heuncli.kernel.declarations import *
+from heuncli.kernel.plane import (
+    add_zero_accelerations_in_plane,
+    balance_in_plane,
+    factor_in_plane,
+    set_branch_loads_in_plane,
+    set_full_branch_loads_in_plane,
+    sweep_down_in_plane,
+    sweep_up_in_plane,
+)
 
 
 def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
@@ -263,8 +36,8 @@ def factor_tree(scene: cython.pointer[Scene]) -> cython.int:
     for i in range(scene.body_count):
         scene.bodies[i].C = skew(scene.bodies[i].mc)
         scene.bodies[i].K = scaled_unit_matrix(scene.bodies[i].mass)
-    for i in range(scene.lent_count):
-        add_artificial_inertia(scene, cython.address(scene.lents[i]))
+    for i in range(scene.artificial_count):
+        add_artificial_inertia(scene, cython.address(scene.artificial_inertias[i]))
     for i in range(scene.body_count - 1, -1, -1):
         massless += factor_body(scene, cython.address(scene.bodies[i]))
     return massless
@@ -310,17 +83,17 @@ def factor_with_loads(scene: cython.pointer[Scene]) -> cython.int:
 def add_artificial_inertia(scene: cython.pointer[Scene], inertia: cython.pointer[ArtificialInertia]) -> cython.void:
     """Add an artificial inertia n n' to its body's own."""
     body: cython.pointer[Body] = cython.address(scene.bodies[inertia.body])
-    inertia.n = scale_vector(scene.lent_part * inertia.root, rotate(body.R, inertia.axis))
+    inertia.n = scale_vector(scene.artificial_part * inertia.root, rotate(body.R, inertia.axis))
     body.A = sub_square(body.A, inertia.n, scale_vector(-1.0, inertia.n))
 
 
 def eliminate_ball(body: cython.pointer[Body], min_inertia: cython.double) -> cython.int:
     """Eliminate all rotations: A = L D L', G = A^-1 C, K <- K - C' G. Returns 1 if that moves no inertia."""
-    body.turning = factor(body.A, min_inertia)
-    body.G = solve_columns(body.turning, body.C)
+    body.A_factors = factor(body.A, min_inertia)
+    body.G = solve_columns(body.A_factors, body.C)
     if body.parent >= 0 or body.end_freedom > body.first_freedom:
         body.K = sub_product(body.K, body.C, body.G)
-    return body.turning.zz == 0.0
+    return body.A_factors.zz == 0.0
 
 
 def eliminate_freedom(
@@ -376,8 +149,8 @@ def set_branch_loads(scene: cython.pointer[Scene], inertial: cython.bint) -> cyt
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         body.M_branch = sub(body.gyroscopic if inertial else zero, body.M_applied)
         body.f_branch = sub(body.centrifugal if inertial else zero, body.f_applied)
-    for i in range(scene.lent_count):
-        push_artificial_load(scene, cython.address(scene.lents[i]))
+    for i in range(scene.artificial_count):
+        push_artificial_load(scene, cython.address(scene.artificial_inertias[i]))
 
 
 def set_full_branch_loads(scene: cython.pointer[Scene]) -> cython.void:
@@ -406,8 +179,8 @@ def set_full_branch_loads(scene: cython.pointer[Scene]) -> cython.void:
         balance_body(body, True)
         body.M_branch = body.M_joint
         body.f_branch = body.f_joint
-    for i in range(scene.lent_count):
-        push_artificial_load(scene, cython.address(scene.lents[i]))
+    for i in range(scene.artificial_count):
+        push_artificial_load(scene, cython.address(scene.artificial_inertias[i]))
 
 
 def add_zero_accelerations(scene: cython.pointer[Scene]) -> cython.void:
@@ -442,14 +215,12 @@ def sweep_body_up(scene: cython.pointer[Scene], body: cython.pointer[Body], iner
     """Find the loads of a branch on the freedoms of its body's joint; pass the rest to the parent."""
     k: cython.Py_ssize_t
     if body.ball:
-        offset: cython.Py_ssize_t = body.answer_at
-        scene.e[offset] = -body.M_branch.x
-        scene.e[offset + 1] = -body.M_branch.y
-        scene.e[offset + 2] = -body.M_branch.z
+        offset: cython.Py_ssize_t = body.velocity_at
+        write_vector(scene.e, offset, scale_vector(-1.0, body.M_branch))
         body.f_branch = sub(body.f_branch, rotate_back(body.G, body.M_branch))
     for k in range(body.first_freedom, body.end_freedom):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-        scene.e[freedom.answer_at] = eliminate_load(body, freedom)
+        scene.e[freedom.velocity_at] = eliminate_load(body, freedom)
     if body.parent >= 0:
         pass_load_to_parent(cython.address(scene.bodies[body.parent]), body, inertial)
 
@@ -506,14 +277,14 @@ def sweep_down(scene: cython.pointer[Scene], inertial: cython.bint) -> cython.vo
             base_load: cython.double = dot(freedom.U_shift, a)
             if not body.ball:
                 base_load += dot(freedom.U_turn, alpha)
-            freedom.udot = freedom.D * (scene.e[freedom.answer_at] - base_load)
+            freedom.udot = freedom.D * (scene.e[freedom.velocity_at] - base_load)
             if freedom.kind == SHIFT:
                 a = add_scaled(a, freedom.udot, freedom.s)
             else:
                 alpha = add_scaled(alpha, freedom.udot, freedom.s)
         if body.ball:
-            offset: cython.Py_ssize_t = body.answer_at
-            alpha = solve(body.turning, Vec3(scene.e[offset], scene.e[offset + 1], scene.e[offset + 2]))
+            offset: cython.Py_ssize_t = body.velocity_at
+            alpha = solve(body.A_factors, read_vector(scene.e, offset))
             alpha = sub(alpha, rotate(body.G, a))
         body.alpha = alpha
         body.a = a
@@ -529,17 +300,10 @@ def write_derivative(
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         if body.ball:
             offset = body.attitude_at
-            rate: Quaternion = quaternion_rate(
-                Quaternion(y[offset], y[offset + 1], y[offset + 2], y[offset + 3]), body.omega
-            )
-            dy[offset] = rate.w
-            dy[offset + 1] = rate.x
-            dy[offset + 2] = rate.y
-            dy[offset + 3] = rate.z
+            rate: Quaternion = quaternion_rate(read_quaternion(y, offset), body.omega)
+            write_quaternion(dy, offset, rate)
             offset = body.rate_at
-            dy[offset] = body.alpha.x
-            dy[offset + 1] = body.alpha.y
-            dy[offset + 2] = body.alpha.z
+            write_vector(dy, offset, body.alpha)
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if not freedom.driven:

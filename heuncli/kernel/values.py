@@ -43,7 +43,7 @@ class PlanarPointKinematics(Value):
 class LoadTangent(Value):
     """The change of a load along a direction of the state: of its place, force and moment."""
 
-    at: Vec3
+    place: Vec3
     force: Vec3
     moment: Vec3
 
@@ -162,7 +162,7 @@ class CamStance(Value):
 class CamContact(Value):
     """Where a cam touches, from the follower's point on, and the direction of its load there, of any length."""
 
-    beside: Vec3
+    offset: Vec3
     n: Vec3
 
 
@@ -202,10 +202,10 @@ class Instants(Value):
     part_width: Size
     whole_width: Size
     column_width: Size
-    afresh: bool  # the closure rows are chosen anew at each
-    held: bool  # `branches` are given
-    causes: bool  # a column a cause is answered, too
-    opening: int  # numbers of `holding` for each state (set_contact_modes); 0: the contacts stay as they are
+    chooses_rows: bool  # the closure rows are chosen anew at each
+    has_branches: bool  # `branches` are given
+    has_causes: bool  # a column a cause is answered, too
+    mode_count: int  # numbers of `holding` for each state (set_contact_modes); 0: the contacts stay as they are
     branches: list[float]  # that expressions hold
     holding: list[float]  # which contacts are closed, and how; where latches hold
     times: list[float]

@@ -16,34 +16,25 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.allocation import allocate_work, copy_tables, set_numbers
-    from heuncli.kernel.answers import (
-        find_joint_loads,
-        recover_states,
-        set_contact_modes,
-        write_jacobian,
-        write_measured_state,
-    )
-    from heuncli.kernel.closures import measure_rows
-    from heuncli.kernel.columns import measure_row_responses, solve_column, solve_impulse
-    from heuncli.kernel.expressions import Expressions
-    from heuncli.kernel.jacobian import find_jacobian, find_motions
-    from heuncli.kernel.memory import Memory
-    from heuncli.kernel.programs import FREE, HELD, TAKEN
-    from heuncli.kernel.response import configure, evaluate, must_choose_rows, project_state
-    from heuncli.kernel.row_choice import choose_rows_again, set_row_threshold
-    from heuncli.kernel.scene import Scene
-    from heuncli.kernel.selection import select_independent_rows
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.stepping import Tangent
-    from heuncli.kernel.tree import factor_tree, update_kinematics
-    from heuncli.kernel.values import Instants
+from heuncli.kernel.allocation import allocate_work, copy_tables, set_numbers
+from heuncli.kernel.closures import measure_rows
+from heuncli.kernel.columns import measure_row_responses, solve_column, solve_impulse
+from heuncli.kernel.declarations import *
+from heuncli.kernel.expressions import Expressions
+from heuncli.kernel.jacobian import find_jacobian, find_motions
+from heuncli.kernel.kinematics import update_kinematics
+from heuncli.kernel.memory import Memory
+from heuncli.kernel.response import configure, evaluate, must_choose_rows, project_state
+from heuncli.kernel.row_choice import choose_rows_again, set_row_threshold
+from heuncli.kernel.selection import select_independent_rows
+from heuncli.kernel.solutions import (
+    find_joint_loads,
+    recover_states,
+    set_contact_modes,
+    write_jacobian,
+    write_measured_state,
+)
+from heuncli.kernel.tree import factor_tree
 
 
 class Workspace:
@@ -63,7 +54,7 @@ class Workspace:
         scene: cython.pointer[Scene] = cython.address(self.scene)
         self.expressions: Expressions = expressions
         self.memory: Memory = Memory()
-        mode_numbers: Any = [*tables["contacts"]["opens"].tolist(), *tables["contacts"]["held_at"].tolist()]
+        mode_numbers: Any = [*tables["contacts"]["mode_index"].tolist(), *tables["contacts"]["latch_index"].tolist()]
         self.opening: cython.int = sum(1 for k in mode_numbers if k)
         scene.programs = cython.address(expressions.programs)
         scene.held_count = expressions.held_count
@@ -244,19 +235,19 @@ class Workspace:
             tangent = Tangent.blank()
         tangent.n = len(state)
         y: cython.p_double = memory.doubles(state)
-        tangent.at = memory.zeros(tangent.n)
-        tangent.beside = memory.zeros(tangent.n)
+        tangent.derivative = memory.zeros(tangent.n)
+        tangent.change = memory.zeros(tangent.n)
         tangent.J = memory.view_row(result)
         if scene.closure_count:
             choose_rows_again(scene, t, y)
         scene.programs.holding = TAKEN
-        evaluate(scene, t, y, tangent.at)
+        evaluate(scene, t, y, tangent.derivative)
         scene.programs.holding = HELD
         find_jacobian(scene, t, y, cython.address(tangent))
         scene.programs.holding = FREE
         memory.fetch()
         if details is not None:
-            self.write_motions(y, tangent.at, details)
+            self.write_motions(y, tangent.derivative, details)
 
     def write_motions(self, y: cython.p_double, dy: cython.p_double, details: dict[str, Any]) -> None:
         """Write the derivative at the present state, and the changes of bodies and rows along its directions."""
@@ -329,7 +320,7 @@ class Workspace:
         """Return where friction last had not exactly one solution: the outcome found instead, the load, and the time
         [s].
         """
-        return self.scene.jammed, self.scene.jammed_load, self.scene.jammed_at
+        return self.scene.friction_outcome, self.scene.friction_outcome_load, self.scene.friction_outcome_time
 
     @property
     def freedom_count(self) -> int:

@@ -62,9 +62,9 @@ def kernel_numbers(layout: Layout) -> dict[str, Any]:
         "driven": int(layout.has_laws),
         "flat": int(layout.flat),
         "work_at": layout.work_at,
-        "answer_count": layout.velocity_count,
+        "velocity_count": layout.velocity_count,
         "column_count": layout.column_count,
-        "measure": layout.measure,
+        "velocity_scale": layout.velocity_scale,
         "island_room": max((len(i.rows) * len(i.freedoms) for i in layout.islands), default=0),
     }
 
@@ -239,13 +239,13 @@ class Jacobian:
 
 def jacobian(kernel: workspace.Workspace, layout: Layout, times: Array, states: Array) -> Jacobian:
     """Compute J of all closure rows at settled states."""
-    width = int(layout.tables["closures"]["answer_count"].sum())
+    width = int(layout.tables["closures"]["velocity_count"].sum())
     out = np.zeros(len(times) * width)
     kernel.jacobians(times, np.ascontiguousarray(states, dtype=float).ravel(), out)
     indices, closures = np.array(layout.indices), layout.tables["closures"]
-    paths = [indices[row["answers"] : row["answers"] + row["answer_count"]] for row in closures]
+    paths = [indices[row["velocities"] : row["velocities"] + row["velocity_count"]] for row in closures]
     freedom = np.concatenate([np.zeros(0, dtype=int), *paths])
-    row: Array = np.repeat(np.arange(len(closures)), closures["answer_count"])
+    row: Array = np.repeat(np.arange(len(closures)), closures["velocity_count"])
     shape = (len(closures), layout.velocity_count)
     return Jacobian(out.reshape(len(times), width), row, freedom, shape)
 

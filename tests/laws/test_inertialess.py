@@ -40,7 +40,7 @@ def lacking(seed: int) -> tuple[dict[str, Any], dict[str, Placed]]:
 
 def lent(found: Study) -> int:
     """How many axes inertia is lent about."""
-    return len(found.setup.scene.layout.tables["lents"])
+    return len(found.setup.scene.layout.tables["artificial_inertias"])
 
 
 def as_the_oracle(scene: dict[str, Any], found: Study, tolerance: float) -> None:

@@ -40,9 +40,9 @@ def test_velocities_are_twists_times_rates(name: str) -> None:
     own = compute_twists(layout, at)
     rates = np.zeros(layout.velocity_count)
     for k in np.flatnonzero(layout.bodies["ball"]):
-        first = int(layout.bodies["answer_at"][k])
+        first = int(layout.bodies["velocity_at"][k])
         rates[first : first + 3] = bodies["omega"][k]
-    rates[layout.tables["freedoms"]["answer_at"]] = at.freedoms["u"][0]
+    rates[layout.tables["freedoms"]["velocity_at"]] = at.freedoms["u"][0]
     omega = np.einsum("bni,n->bi", own.turn[0], rates)
     v = np.einsum("bni,n->bi", own.shift[0], rates)
     size = max(1.0, float(np.abs(bodies["v"]).max()), float(np.abs(bodies["omega"]).max()))
@@ -60,7 +60,7 @@ def test_closure_rows_are_the_kernels(name: str) -> None:
         return
     J = closure_rows(compute_twists(layout, at), at)
     freedoms = layout.tables["freedoms"]
-    J[:, :, freedoms["answer_at"][freedoms["driven"] == 1]] = 0.0
+    J[:, :, freedoms["velocity_at"][freedoms["driven"] == 1]] = 0.0
     kernel = jacobian(found.runner.workspace, layout, at.times, at.states)
     whole = kernel.block(np.arange(len(layout.rows)), np.arange(layout.velocity_count))
     assert np.abs(J - whole).max() <= ROUNDED * max(1.0, float(np.abs(whole).max()))
@@ -75,9 +75,9 @@ def test_closure_rows_annul_the_velocities(seed: int) -> None:
     at, layout = motion.recover(motion.times[:: max(1, len(motion.times) // 6)]), motion.layout
     rates = np.zeros((len(at.times), layout.velocity_count))
     for k in np.flatnonzero(layout.bodies["ball"]):
-        first = int(layout.bodies["answer_at"][k])
+        first = int(layout.bodies["velocity_at"][k])
         rates[:, first : first + 3] = at.bodies["omega"][:, k]
-    rates[:, layout.tables["freedoms"]["answer_at"]] = at.freedoms["u"]
+    rates[:, layout.tables["freedoms"]["velocity_at"]] = at.freedoms["u"]
     J = closure_rows(compute_twists(layout, at), at)
     counts = (at.rows["closed"] > 0.0) & (layout.tables["closures"]["program"]["count"] == 0)
     off = np.abs(np.einsum("tri,ti->tr", J, rates))[counts]

@@ -96,7 +96,7 @@ def test_a_kernel_compiled_from_older_text_is_not_run(tmp_path: Path) -> None:
     assert version_of(tmp_path).returncode == 0
     text = source.read_text(encoding="utf-8")
     told = re.sub(r'^ {4}"""(?=\w)', '    """Another one.\n\n    ', text, flags=re.M).replace(
-        " cython\n", " cython  # why\n"
+        " -> cython.void:\n", " -> cython.void:  # why\n"
     )
     assert told.count("Another one") > 10 and told.count("# why") > 1
     source.write_text(told + "# edited\n", encoding="utf-8")

@@ -16,17 +16,22 @@ from heuncli.kernel.modules import DECLARED, MODULES
 from tests.shared.folders import KERNEL as FOLDER
 from tests.shared.folders import ROOT
 
+DECLARATIONS = "\nfrom heuncli.kernel.declarations import *\n"  # each module that is written for Cython begins with it
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
 
 def test_the_modules_compiled_are_those_written_for_cython() -> None:
     """And what they take from files that are not compiled is declared."""
-    written = {path.stem for path in FOLDER.glob("*.py") if "\n    import cython\n" in path.read_text(encoding="utf-8")}
+    written = {path.stem for path in FOLDER.glob("*.py") if DECLARATIONS in path.read_text(encoding="utf-8")}
     assert sorted(MODULES) == sorted(written)
     for name in MODULES:
         text = (FOLDER / f"{name}.py").read_text(encoding="utf-8")
-        taken = set(re.findall(r"^    from heuncli\.kernel\.(\w+) import", text, re.M)) - {"libm", "shadow"}
-        assert taken <= {*MODULES, *DECLARED}, name
+        taken = set(re.findall(r"^ *from heuncli\.kernel\.(\w+) import", text, re.M)) - {"libm", "declarations"}
+        assert taken <= set(MODULES), name
+    declared = set(
+        re.findall(r"^from heuncli\.kernel\.(\w+) import \*$", (FOLDER / "declarations.py").read_text(), re.M)
+    )
+    assert declared == set(DECLARED)
 
 
 def test_the_modules_of_the_kernel_are_listed_once() -> None:

@@ -1,42 +1,38 @@
-"""The rows that scenes are laid out in have fields of the kernel's structs, and what is not given is zero."""
+"""Rows that scenes are packed in: fields by name, none missing, unknown or computed; what is not given is zero."""
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from heuncli.kernel.choose import scene as kernel
-from heuncli.multibody.tree import rows
-from heuncli.multibody.tree.tables import struct_dtype
+from heuncli.kernel.choose import structs
+from heuncli.multibody.tree.tables import make_table
 
-ROWS = {
-    "Body": [rows.BodyRow],
-    "Freedom": [rows.FreedomRow],
-    "Load": [rows.LoadRow],
-    "Closure": [rows.ClosureRow, rows.ClosureIndices],
-    "Contact": [rows.ContactRow],
-    "Counter": [rows.CounterRow],
-    "Variable": [rows.VariableRow],
-    "Watch": [rows.WatchRow],
-    "Group": [rows.GroupRow],
-    "Island": [rows.IslandRow],
+PACKED = {
+    record.__name__: record
+    for record in vars(kernel).values()
+    if isinstance(record, type) and issubclass(record, structs.Record) and record is not structs.Record
 }
 
 
-@pytest.mark.parametrize("name", ROWS)
-def test_each_field_is_one_of_the_struct(name: str) -> None:
-    given = [field for part in ROWS[name] for field in part.__annotations__]
-    struct = struct_dtype(getattr(kernel, name))
-    assert len(set(given)) == len(given)
-    assert set(given) <= set(struct.names or ())
-    for part in ROWS[name]:
-        for field, kind in part.__annotations__.items():
-            own = struct[field]
-            assert (kind == "int") == (own.kind == "i"), field
-            assert (kind == "float") == (own.kind == "f"), field
+@pytest.mark.parametrize("name", PACKED)
+def test_a_row_gives_what_it_must_and_nothing_of_the_kernel(name: str) -> None:
+    record = PACKED[name]
+    needed = dict.fromkeys(record.required_fields, 1)
+    for wrong in ({"lenght": 1}, *({field: 1} for field in set(record.__annotations__) - record.row_fields)):
+        with pytest.raises(TypeError, match=next(iter(wrong))):
+            record(**needed, **wrong)
+    for field in record.required_fields:
+        with pytest.raises(TypeError, match=field):
+            record(**{other: 1 for other in needed if other != field})
+    assert record(**needed).collect_fields() == needed
 
 
-@pytest.mark.parametrize("name", ROWS)
-def test_what_has_a_default_is_zero_without_it(name: str) -> None:
-    for part in ROWS[name]:
-        assert all(not np.any(vars(part)[field]) for field in part.__annotations__ if field in vars(part))
+def test_a_table_takes_rows_of_different_fields() -> None:
+    """What only later rows give is kept, what a row leaves out is zero, and a copy of a row may have more."""
+    first = kernel.Closure(kind=kernel.ROD, a=1, b=2, weight=1.0, length=2.0)
+    made = make_table(kernel.Closure, [first, first.replace(a=3, e=(4.0, 5.0, 6.0))])
+    assert made["a"].tolist() == [1, 3]
+    assert made["length"].tolist() == [2.0, 2.0]
+    assert made["e"].tolist() == [(0.0, 0.0, 0.0), (4.0, 5.0, 6.0)]
+    assert not made["gap"].any() and not made["Q"]["x"].any()

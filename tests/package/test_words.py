@@ -35,10 +35,10 @@ PRIVATE_WORDS = {
     "rub", "rubs", "rubbing", "astray", "aside", "apart",
 }  # fmt: skip
 ENDS_IN_ED = {"speed", "seed", "need", "embed", "exceed", "feed", "proceed"}  # and is no participle
-# Fields of these files are names that users write or read: keys of specs, options, JSON; or of the kernel's structs.
+# Fields of these files are names that users write or read: keys of specs, options, JSON.
 FILES_OF_KEYS = re.compile(
     r"scene/file_format/(format\w*|entries|fields|models|loads|couplings)\.py|app/commands/\w+/request\.py|app/python/\w+\.py"
-    r"|kernel/(scene|stepping|values|programs)\.py|multibody/tree/rows\.py|analyses/(balancing/results|lagrange/study)\.py"
+    r"|analyses/(balancing/results|lagrange/study)\.py"
 )
 DECKS = ("abaqus", "ansys", "as_csv", "as_json", "calculix", "nastran")
 # Others that strings refer to, or whose name a protocol of Python's prescribes.
@@ -52,6 +52,7 @@ KEPT = {
     "app/python/solved_scene.py": {"Solved.paths(under)", "Solved.at", "Solved.load_cases(at)", "Solved.plot(over)"},
     "base/named_tuples.py": {"named"},
     "loads/kinetostatics/bodies.py": {"KernelBodyStates._beside"},
+    "kernel/scene.py": {"Freedom.driven"},
     "output/snapshots/golden_file.py": {"EventSnapshot.to"},
     "analyses/find/study.py": {"close_edge(solved)", "evaluate_between(solved)", "predict_edge(solved)"},
     "analyses/lagrange/coordinates.py": {"choose_coordinates(driven)", "group_coordinates(driven)"},

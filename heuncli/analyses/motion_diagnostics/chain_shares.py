@@ -54,10 +54,10 @@ def find_freedoms(layout: Layout, bodies: list[int]) -> tuple[list[int], list[fl
     table = layout.tables["freedoms"]
     for body in layout.bodies[bodies]:
         turns = 3 if body["ball"] else 0
-        freedoms += [int(body["answer_at"]) + i for i in range(turns)]
+        freedoms += [int(body["velocity_at"]) + i for i in range(turns)]
         unit += [1.0] * turns
         for j in range(int(body["first_freedom"]), int(body["end_freedom"])):
-            freedoms.append(int(table["answer_at"][j]))
+            freedoms.append(int(table["velocity_at"][j]))
             unit.append(layout.size if table["kind"][j] == kernel.SHIFT else 1.0)
     return freedoms, unit
 

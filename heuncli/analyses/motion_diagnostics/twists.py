@@ -68,10 +68,10 @@ def compute_twists(layout: Layout, recovered: Evaluation) -> Twists:
             shift[:, k] = shift[:, parent] + cross_rows(turn[:, parent], arm)
             turn[:, k] = 0.0 if body["ball"] else turn[:, parent]
         if body["ball"]:
-            first = int(body["answer_at"])
+            first = int(body["velocity_at"])
             turn[:, k, first : first + 3] = np.eye(3)
         for j in range(int(body["first_freedom"]), int(body["end_freedom"])):
-            kind, answer = table["kind"][j], int(table["answer_at"][j])
+            kind, answer = table["kind"][j], int(table["velocity_at"][j])
             axis_body = k if kind == kernel.TURN_IN_BODY else parent
             path = layout.mechanism.joints[joint].path if (joint := layout.freedoms[j].joint) >= 0 else None
             fixed = (

@@ -102,7 +102,7 @@ class Coordinates:
     def find_owner(self, number: int) -> tuple[str, bool]:
         """Return the joint or body of a coordinate, as named in the spec, and whether the coordinate is a rotation."""
         layout = self.layout
-        place = int(np.searchsorted(layout.bodies["answer_at"], self.result_indices[number], side="right")) - 1
+        place = int(np.searchsorted(layout.bodies["velocity_at"], self.result_indices[number], side="right")) - 1
         link = layout.spanning.links[place]
         turns = not self.shifts[number]
         if link.joint >= 0 and not layout.bodies["ball"][place]:
@@ -115,16 +115,16 @@ def make_coordinates(layout: Layout) -> Coordinates:
     bodies, freedoms = layout.bodies, layout.tables["freedoms"]
     balls = np.flatnonzero(bodies["ball"])
     undriven = np.flatnonzero(freedoms["driven"] == 0)
-    places = {int(a) + k: (int(r) + k) for a, r in bodies[["answer_at", "rate_at"]][balls].tolist() for k in range(3)}
-    places |= dict(freedoms[["answer_at", "u_at"]][undriven].tolist())
+    places = {int(a) + k: (int(r) + k) for a, r in bodies[["velocity_at", "rate_at"]][balls].tolist() for k in range(3)}
+    places |= dict(freedoms[["velocity_at", "u_at"]][undriven].tolist())
     answers = np.array(sorted(places), dtype=int)
     rates = np.array([places[a] for a in answers.tolist()], dtype=int)
-    numbers = np.searchsorted(answers, freedoms["answer_at"][undriven])
+    numbers = np.searchsorted(answers, freedoms["velocity_at"][undriven])
     shifts = np.zeros(len(answers), dtype=bool)
     shifts[numbers] = freedoms["kind"][undriven] == kernel.SHIFT
     return Coordinates(
         layout=layout, shifts=shifts, weights=layout.weights[rates], result_indices=answers, rates=rates, balls=balls,
-        turns=np.searchsorted(answers, bodies["answer_at"][balls]), freedoms=undriven,
+        turns=np.searchsorted(answers, bodies["velocity_at"][balls]), freedoms=undriven,
         numbers=numbers,
     )  # fmt: skip
 

@@ -160,7 +160,7 @@ def multiply_along_tree(layout: Layout, angles: Array, states: Array) -> Array:
             body_freedoms = range(body["first_freedom"], body["end_freedom"])
             for k in (k for k in body_freedoms if kinds[k] == kernel.TURN_IN_PARENT):
                 q = quaternion_product(q, quaternions_about(axes[k], angles[:, k]))
-            if body["framed"]:
+            if body["has_frame"]:
                 q = quaternion_product(q, quaternion_from_matrix(np.reshape(body["frame"].tolist(), (3, 3)))[None])
             for k in (k for k in body_freedoms if kinds[k] == kernel.TURN_IN_BODY):
                 q = quaternion_product(q, quaternions_about(axes[k], angles[:, k]))

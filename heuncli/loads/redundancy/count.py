@@ -138,6 +138,6 @@ def count_pose_freedoms(evaluator: Evaluator) -> int:
     for island in layout.islands:
         rows = island.rows[~find_speed_rows(layout)[island.rows]]
         J = jacobian(evaluator.workspace, layout, np.zeros(1), layout.y0[None, :]).block(rows, island.freedoms)[0]
-        J = J * layout.tables["closures"]["measure"][rows][:, None] * layout.measure[island.freedoms]
+        J = J * layout.tables["closures"]["unit_load_size"][rows][:, None] * layout.velocity_scale[island.freedoms]
         rank += int(np.linalg.matrix_rank(J, tol=tolerances.RANK)) if J.size else 0
     return layout.tree_freedoms - rank

@@ -124,8 +124,8 @@ class Evaluator:
 
         branches (n_t, n): branches that the expressions hold; by default each state determines its own
         hold_rows: reuse the rows of the first state for the others as long as possible, so that pivots are comparable
-        causes: whether to compute one column per cause, too holding (n_t, contacts) or (contacts,): closed contacts are
-        above 0; by default as at the start
+        causes: whether to compute one column per cause, too
+        holding (n_t, contacts) or (contacts,): closed contacts are above 0; by default as at the start
         """
         layout, n_t = self.layout, len(times)
         n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0
@@ -138,28 +138,18 @@ class Evaluator:
         contact_states = self.start_holding if holding is None else holding
         closed[:] = layout.closed_contacts(contact_states)
         inputs = {"times": instants, "branches": held_branches, "holding": closed}
-        outputs = {
-            "states": projected_states,
-            "columns": columns,
-            **{name: as_numbers(table) for name, table in tables.items()},
-        }
+        numbers = {name: as_numbers(table) for name, table in tables.items()}
+        outputs = {"states": projected_states, "columns": columns, **numbers}
         self._recover(inputs, outputs, hold_rows, causes)
         rows, whole = tables["rows"], tables["whole"]
-        residual = whole["residual"][:, 0]
-        if layout.rows:
-            # after an impulse that ends all motion, the rates are rounding, and terms in their squares
-            # count as zero
-            still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
-            residual = np.where(still, 0.0, residual)
+        residual = self._drop_rounding(whole["residual"][:, 0], rows)
         allowed_residual = self.allowed_residual(whole["gap"][:, 0])
-        is_unmet = residual > allowed_residual
-        if is_unmet.any() and (np.asarray(contact_states) == CLOSED_BY_OTHERS).any():
-            is_opening = is_unmet[:, None] & self._find_opening(contact_states, rows, allowed_residual)
-            if is_opening.any():
-                open_states = np.where(is_opening, OPEN, contact_states)
-                return self.evaluate(
-                    times, states, branches=branches, hold_rows=hold_rows, causes=causes, holding=open_states
-                )
+        is_opening = self._find_opening(contact_states, rows, residual, allowed_residual)
+        if is_opening.any():
+            open_states = np.where(is_opening, OPEN, contact_states)
+            return self.evaluate(
+                times, states, branches=branches, hold_rows=hold_rows, causes=causes, holding=open_states
+            )
         return Evaluation(
             times=instants,
             states=projected_states,
@@ -179,13 +169,27 @@ class Evaluator:
             else None,
         )
 
-    def _find_opening(self, contact_states: Array, rows: Table, allowed_residual: Array) -> Mask:
-        """Mark contacts (n_t, contacts), closed by others, that a drive opens by less than the rounding of gaps."""
+    def _drop_rounding(self, residual: Array, rows: Table) -> Array:
+        """Count residuals (n_t,) as zero where the rows' terms are squares of rates that are rounding, as after an
+        impulse that ends all motion.
+        """
+        if not self.layout.rows:
+            return residual
+        return np.where(rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL, 0.0, residual)
+
+    def _find_opening(self, contact_states: Array, rows: Table, residual: Array, allowed_residual: Array) -> Mask:
+        """Mark contacts (n_t, contacts), closed by others, that a drive opens by less than the rounding of gaps: where
+        the residual is not allowed.
+        """
         is_opening = np.zeros((len(rows), len(self.layout.open_contacts)), dtype=bool)
+        is_closed_by_others = np.asarray(contact_states) == CLOSED_BY_OTHERS
+        is_unmet = residual > allowed_residual
+        if not (is_unmet.any() and is_closed_by_others.any()):
+            return is_opening
         for k, contact in enumerate(self.layout.contacts):
             row = rows[:, contact.row]
             is_opening[:, k] = -contact.sense * row["acceleration"] > allowed_residual * row["terms"]
-        return np.asarray(is_opening & (np.asarray(contact_states) == CLOSED_BY_OTHERS))
+        return np.asarray(is_opening & is_closed_by_others & is_unmet[:, None])
 
     def _recover(self, inputs: dict[str, Array], outputs: dict[str, Array], hold_rows: bool, causes: bool) -> None:
         """Call the kernel in batches of instants; the output arrays, the states among them, are written in place.

@@ -78,7 +78,7 @@ BY_SCENE_SIZE = {"bodies": ("joint_in_parent",), "loads": ("p", "q"), "closures"
 # ... or 1, for directions
 BY_ONE = {
     "bodies": ("frame",),
-    "loads": ("axis", "across", "mark"),
+    "loads": ("axis", "mark_a", "mark_b"),
     "closures": ("e", "g"),
     "freedoms": ("direction",),
 }

@@ -20,9 +20,10 @@ from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record, replace
-from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint, JointGaps, joint_conditions, mean_arm
+from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint, joint_conditions, mean_arm
 from heuncli.multibody.assembly.poses import PoseAssembly
 from heuncli.multibody.assembly.rates import RateAssembly
+from heuncli.multibody.assembly.rows import JointGaps
 from heuncli.multibody.assembly.start_choices import (
     describe_resting_centres,
     find_pose_choices,

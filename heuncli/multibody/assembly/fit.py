@@ -23,7 +23,8 @@ from heuncli.base import tolerances
 from heuncli.base.linear_algebra import count_rank
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.islands import AssemblyIsland
-from heuncli.multibody.assembly.rows import ReducedIsland, Rows, least_motion, pose_rows
+from heuncli.multibody.assembly.reduced_islands import ReducedIsland, least_motion
+from heuncli.multibody.assembly.rows import Rows, pose_rows
 from heuncli.multibody.assembly.walk import AssemblyPoses, iter_continuation, place_body
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import rotation_from_vector, vector_from_rotation

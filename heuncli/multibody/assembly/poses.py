@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.multibody.assembly.conditions import JointCondition, JointGaps
+from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.fit import IslandFit
 from heuncli.multibody.assembly.islands import (
     MAX_BODIES,
@@ -18,6 +18,7 @@ from heuncli.multibody.assembly.islands import (
     settle_islands,
     too_many,
 )
+from heuncli.multibody.assembly.rows import JointGaps
 from heuncli.multibody.assembly.walk import (
     AssemblyPoses,
     PlacementTree,

@@ -28,14 +28,8 @@ from heuncli.multibody.assembly.islands import (
     singular_pose,
     too_many,
 )
-from heuncli.multibody.assembly.rows import (
-    ReducedIsland,
-    Rows,
-    acceleration_rows,
-    least_motion,
-    rate_residuals,
-    rate_rows,
-)
+from heuncli.multibody.assembly.reduced_islands import ReducedIsland, least_motion
+from heuncli.multibody.assembly.rows import Rows, acceleration_rows, rate_residuals, rate_rows
 from heuncli.multibody.assembly.walk import AssemblyPoses, find_placement_tree
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Directed, Mechanism

@@ -6,32 +6,22 @@
 
 In the axes of `from` every gap changes as F u and T (σ_b − σ_a), however large it is (manual/theory.md, "Joints as
 rows"; the lever at P_b). The right sides are the residuals: minus the gap, or what is missing in the rates, or in the
-accelerations.
-
-The rows of an island's joints are reduced to the freedoms that the tree leaves; the smallest solution is taken:
-
-    z = t + B y        turn and shift (by the scene's size L) of all members, from the freedoms y
-    C y = e            the remaining rows: closures, and tree joints that a held body cannot follow
-    z = t + Q v, A v = e   the same in as many v, |v| the length of Q v: how a row constrains motions shows its rank
-
-Tree joints are solved outward body by body, so that dense algebra is needed only for the freedoms and the closures.
+accelerations. A kind of `Hold` or `Turn` (base/joint_kinds.py) says here what it constrains: directions, gap, rates and
+accelerations of one joint, and the sizes of the gaps of many (JointGaps).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from functools import cache, cached_property
+from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.linear_algebra import count_rank, solve_with_null_space
 from heuncli.base.records import record
 from heuncli.multibody.assembly.conditions import JointCondition, JointConstraint, condition_on_tangent
-from heuncli.multibody.assembly.islands import AssemblyIsland
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import cross_matrix, cross_vectors, inverse_jacobian, vector_from_rotation
+from heuncli.scene.shapes.rotations import cross_rows, cross_vectors, inverse_jacobian, vector_from_rotation
 
 # Rows
 
@@ -193,152 +183,74 @@ def acceleration_rows(d: JointCondition, row: Rows, x: Array, R: Array, v: Array
     return Rows(row.F, row.T, hold, turn, row.r_a, row.r_b)
 
 
-# Row reduction
-
-MemberFreedoms = Sequence[tuple[bool, bool]]  # whether each member may turn, and shift
+# Gaps
 
 
-@record
-class MemberStep:
-    """How a body of the loop moves with its parent: z = offset + transfer z_parent + N y_here.
+class JointGaps:
+    """Computes the gaps of all joints at once, for any number of poses: joints with the same constraint are stacked."""
 
-    parent: index of the parent, -1 for none
-    rest (r, 6): rows on z_parent that the member cannot follow because it is held
-    lack (r,): their right side
-    """
+    def __init__(self, conditions: Sequence[JointCondition], constraints: Sequence[JointConstraint]) -> None:
+        self.count = len(conditions)
+        self.groups = []
+        for constraint in sorted(set(constraints)):
+            k = [i for i in range(len(conditions)) if constraints[i] == constraint]
+            columns = {
+                name: np.array([getattr(conditions[i], name) for i in k])
+                for name in ("a", "b", "p", "q", "axis", "to_axis", "relative", "length", "path")
+            }
+            self.groups.append((constraint, np.array(k), columns))
 
-    own: Array
-    follow: Array
-    N: Array
-    parent: int
-    rest: Array
-    lack: Array
+    def __call__(self, x: Array, R: Array) -> tuple[Array, Array]:
+        """Return the distances [m] and angles [rad] by which the joints are open, each (..., n_joints).
 
-
-class ReducedIsland:
-    """An island's rows in its freedoms. Bodies that are no members stay."""
-
-    def __init__(
-        self,
-        island: AssemblyIsland,
-        conditions: Sequence[JointCondition],
-        rows: Mapping[int, Rows],
-        free: MemberFreedoms,
-        size: float,
-    ) -> None:
-        place = {body: i for i, body in enumerate(island.members)}
-        self.free = free
-        self.steps = [
-            _member_step(body, conditions[k], rows[k], place, free[i], size) if k >= 0 else _root_step(free[i])
-            for i, (body, k) in enumerate(zip(island.members, island.tree_joints, strict=True))
-        ]
-        self.starts = np.cumsum([0, *(step.N.shape[1] for step in self.steps)]).tolist()
-        pieces = [self._pull_back([(step.parent, step.rest)], step.lack) for step in self.steps if len(step.lack)]
-        for k in island.closures:
-            d = conditions[k]
-            J_a, J_b, c = _row_blocks(rows[k], size)
-            pieces.append(self._pull_back([(place.get(d.a, -1), J_a), (place.get(d.b, -1), J_b)], c))
-        self.C = np.concatenate([C for C, _ in pieces] or [np.zeros((0, self.count))])
-        self.e = np.concatenate([e for _, e in pieces] or [np.zeros(0)])
-
-    @property
-    def count(self) -> int:
-        """The number of freedoms."""
-        return int(self.starts[-1])
-
-    def _pull_back(self, terms: Sequence[tuple[int, Array]], c: Array) -> tuple[Array, Array]:
-        """Transform rows on the members' z into rows on y, with their right side."""
-        C, e = np.zeros((len(c), self.count)), c.copy()
-        pending: dict[int, Array] = {}
-        for i, J in terms:
-            if i >= 0:
-                pending[i] = pending[i] + J if i in pending else J
-        while pending:
-            i = max(pending)
-            J, step = pending.pop(i), self.steps[i]
-            C[:, self.starts[i] : self.starts[i + 1]] = J @ step.N
-            e -= J @ step.own
-            if step.parent >= 0:
-                before = J @ step.follow
-                pending[step.parent] = pending[step.parent] + before if step.parent in pending else before
-        return C, e
-
-    @cached_property
-    def B(self) -> Array:
-        """B of z = t + B y, (6m, n)."""
-        B = np.zeros((6 * len(self.steps), self.count))
-        for i, step in enumerate(self.steps):
-            start, end = self.starts[i], self.starts[i + 1]
-            B[6 * i : 6 * i + 6, start:end] = step.N
-            if step.parent >= 0:
-                B[6 * i : 6 * i + 6, :start] = step.follow @ B[6 * step.parent : 6 * step.parent + 6, :start]
-        return B
-
-    @cached_property
-    def t(self) -> Array:
-        """t of z = t + B y, (6m,)."""
-        t = np.zeros(6 * len(self.steps))
-        for i, step in enumerate(self.steps):
-            t[6 * i : 6 * i + 6] = step.own
-            if step.parent >= 0:
-                t[6 * i : 6 * i + 6] += step.follow @ t[6 * step.parent : 6 * step.parent + 6]
-        return t
-
-    def orthonormalize(self, shift: float = 1.0) -> tuple[Array, Array]:
-        """Compute Q (6m, n) and A (h, n); a shift counts `shift` times a turn."""
-        weight = np.array([1.0, 1.0, 1.0, shift, shift, shift] * len(self.steps))[:, None]
-        Q, R = np.linalg.qr(weight * self.B)
-        return Q / weight, np.linalg.solve(R.T, self.C.T).T
+        x (..., n+1, 3), R (..., n+1, 3, 3): origins and attitudes, the ground last
+        """
+        distance = np.zeros((*x.shape[:-2], self.count))
+        angle = np.zeros_like(distance)
+        for constraint, k, c in self.groups:
+            Ra, Rb = R[..., c["a"], :, :], R[..., c["b"], :, :]
+            D = x[..., c["b"], :] + _apply(Rb, c["q"]) - x[..., c["a"], :] - _apply(Ra, c["p"])
+            if constraint.hold == "curve":
+                D = D - _nearest_path_points(c["path"], Ra, D)
+            distance[..., k] = _distance(constraint, D, _apply(Ra, c["axis"]), c["length"])
+            angle[..., k] = _angle(constraint, Ra, Rb, c)
+        return distance, angle
 
 
-def _row_blocks(row: Rows, size: float) -> tuple[Array, Array, Array]:
-    """Build the rows on (turn, shift/L) of `from` and of `to`, (h+k, 6) each, and the right side, lengths by L."""
-    h, k = len(row.F), len(row.T)
-    J_a, J_b = np.zeros((h + k, 6)), np.zeros((h + k, 6))
-    if h:
-        J_b[:h, :3], J_b[:h, 3:] = -(row.F @ cross_matrix(row.r_b)) / size, row.F
-        J_a[:h, :3], J_a[:h, 3:] = (row.F @ cross_matrix(row.r_a)) / size, -row.F
-    J_b[h:, :3], J_a[h:, :3] = row.T, -row.T
-    return J_a, J_b, np.concatenate([row.hold / size, row.turn])
+def _apply(R: Array, a: Array) -> Array:
+    return np.asarray(np.einsum("...ij,...j->...i", R, a))
 
 
-def _member_step(
-    body: int, d: JointCondition, row: Rows, place: Mapping[int, int], freedoms: tuple[bool, bool], size: float
-) -> MemberStep:
-    J_a, J_b, c = _row_blocks(row, size)
-    J, J_parent, parent = (J_b, J_a, d.a) if body == d.b else (J_a, J_b, d.b)
-    E = _root_step(freedoms).N
-    U, S, V = np.linalg.svd(J @ E)
-    rank = count_rank(S)
-    inverse = E @ ((V[:rank].T / S[:rank]) @ U[:, :rank].T)
-    rest = U[:, rank:].T
-    return MemberStep(
-        inverse @ c, -(inverse @ J_parent), E @ V[rank:].T, place.get(parent, -1), rest @ J_parent, rest @ c
-    )  # fmt: skip
+def _nearest_path_points(paths: Array, Ra: Array, D: Array) -> Array:
+    """Find the point of each path that is nearest to its joint's point, world axes, (..., n, 3); paths as objects."""
+    points = np.einsum("...ji,...j->...i", Ra, D)
+    for i, path in enumerate(paths):
+        points[..., i, :] = path.evaluate(path.find_nearest(points[..., i, :]))[0]
+    return _apply(Ra, points)
 
 
-@cache
-def _root_step(freedoms: tuple[bool, bool]) -> MemberStep:
-    N = np.eye(6)[:, np.repeat(np.array(freedoms), 3)]
-    return MemberStep(np.zeros(6), np.zeros((6, 6)), N, -1, np.zeros((0, 6)), np.zeros(0))
+def _distance(constraint: JointConstraint, D: Array, n: Array, length: Array) -> Array:
+    along: Array = np.einsum("...i,...i->...", D, n)
+    if constraint.hold == "plane":
+        return np.abs(along)
+    if constraint.hold == "none":
+        return np.zeros(along.shape)
+    if constraint.hold == "line":
+        D = D - along[..., None] * n
+    size: Array = np.sqrt(np.einsum("...i,...i->...", D, D))
+    return np.abs(size - length) if constraint.hold == "distance" else size
 
 
-def least_motion(r: ReducedIsland, displacements: Array, shift_weight: float = 0.0) -> tuple[Array, Array]:
-    """Find z (6m,) with C y = e and least Σ(turns)², then least Σ(shifts)², of z + displacements; and the residual of C
-    y = e.
-
-    shift_weight: both in one least sum, in which a shift counts so many times a turn
-
-    Only motions that are free count.
-    """
-    Q, A = r.orthonormalize()
-    v, N, lack = solve_with_null_space(A, r.e)
-    is_free = np.repeat(np.array(r.free, dtype=bool).reshape(-1, 2), 3, axis=1).ravel()
-    turns = np.arange(is_free.size) % 6 < 3
-    weight = np.where(turns, 1.0, shift_weight or 1.0)
-    for mask in (is_free,) if shift_weight else (is_free & turns, is_free & ~turns):
-        W = weight[mask, None] * Q[mask]
-        step, null, _ = solve_with_null_space(W @ N, -(weight * (r.t + displacements))[mask] - W @ v)
-        v = v + N @ step
-        N = N @ null
-    return r.t + Q @ v, lack
+def _angle(constraint: JointConstraint, Ra: Array, Rb: Array, c: dict[str, Array]) -> Array:
+    if constraint.turn in ("free", "alike"):
+        return np.zeros(Ra.shape[:-2])
+    if constraint.turn == "all":
+        # sin from the skew part, cos from the trace: exact near zero and near half a turn
+        E = np.swapaxes(Ra, -1, -2) @ Rb @ np.swapaxes(c["relative"], -1, -2)
+        skew = np.stack([E[..., 2, 1] - E[..., 1, 2], E[..., 0, 2] - E[..., 2, 0], E[..., 1, 0] - E[..., 0, 1]], -1)
+        return np.asarray(np.arctan2(np.sqrt(np.sum(skew * skew, -1)), np.trace(E, axis1=-2, axis2=-1) - 1.0))
+    n, m = _apply(Ra, c["axis"]), _apply(Rb, c["to_axis"])
+    cos = np.einsum("...i,...i->...", n, m)
+    sine = cross_rows(n, m)
+    sin = np.sqrt(np.einsum("...i,...i->...", sine, sine))
+    return np.asarray(np.abs(np.arctan2(cos, sin)) if constraint.turn == "square" else np.arctan2(sin, cos))

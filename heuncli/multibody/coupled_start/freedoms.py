@@ -109,12 +109,12 @@ class Freedoms:
         full_step[self.answers] = step
         new = np.array(state)
         for body in self.layout.bodies[self.layout.bodies["ball"] == 1]:
-            place, turn = body["attitude_at"], full_step[body["answer_at"] : body["answer_at"] + 3]
+            place, turn = body["attitude_at"], full_step[body["velocity_at"] : body["velocity_at"] + 3]
             if turn.any():
                 new[place : place + 4] = quaternion_product(quaternion_from_vector(turn), new[place : place + 4])
         for freedom in self.layout.tables["freedoms"]:
             if not freedom["driven"]:
-                new[freedom["q_at"]] += full_step[freedom["answer_at"]]
+                new[freedom["q_at"]] += full_step[freedom["velocity_at"]]
         return new
 
     def apply_rate_step(self, state: Array, step: Array) -> Array:
@@ -127,7 +127,7 @@ class Freedoms:
 def _freedom_range(layout: Layout, i: int) -> range:
     body = layout.bodies[i]
     count = 3 * int(body["ball"]) + int(body["end_freedom"] - body["first_freedom"])
-    return range(int(body["answer_at"]), int(body["answer_at"]) + count)
+    return range(int(body["velocity_at"]), int(body["velocity_at"]) + count)
 
 
 def find_coupled_bodies(layout: Layout, rows: Iterable[int]) -> list[int]:

@@ -150,8 +150,8 @@ def body_freedoms(layout: Layout, i: int) -> list[int]:
     """Return the answer indices of a body's freedoms that are not driven."""
     row = layout.bodies[i]
     own = layout.tables["freedoms"][row["first_freedom"] : row["end_freedom"]]
-    ball = range(row["answer_at"], row["answer_at"] + 3) if row["ball"] else ()
-    return [*ball, *own["answer_at"][own["driven"] == 0].tolist()]
+    ball = range(row["velocity_at"], row["velocity_at"] + 3) if row["ball"] else ()
+    return [*ball, *own["velocity_at"][own["driven"] == 0].tolist()]
 
 
 def remove_carried_bodies(layout: Layout, is_held: Mask) -> None:

@@ -8,15 +8,21 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base.joint_kinds import JOINTS, Direction
-from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Assembly, Joint, Mechanism
 from heuncli.multibody.tree.layout import Freedom
-from heuncli.multibody.tree.rows import NO_PROGRAM, BodyRow, FreedomRow, GroupRow, PieceRow, Program, Vector
 from heuncli.multibody.tree.spanning import SpanningTree, TreeLink
 from heuncli.multibody.tree.starts import JointStart, Z, body_state, joint_direction
-from heuncli.multibody.tree.tables import remove_direction_tilt, remove_tilt, to_sym3
+from heuncli.multibody.tree.tables import (
+    NO_PROGRAM,
+    ZERO,
+    Program,
+    Vector,
+    remove_direction_tilt,
+    remove_tilt,
+    to_sym3,
+)
 from heuncli.results.results import Array
 from heuncli.scene.expressions.paths import Path
 from heuncli.scene.shapes.rotations import cross_rows, quaternion_from_matrix
@@ -49,15 +55,15 @@ class TreeRows:
         self.place = {h.body: i for i, h in enumerate(spanning.links)}
         self.size = size
         self.reference = np.array([self._joint_point(h) for h in spanning.links]).reshape(-1, 3)
-        self.body_rows: list[BodyRow] = []
-        self.freedom_rows: list[FreedomRow] = []
-        self.pieces: list[PieceRow] = []
+        self.body_rows: list[kernel.Body] = []
+        self.freedom_rows: list[kernel.Freedom] = []
+        self.pieces: list[kernel.PathPiece] = []
         self.coordinates: dict[tuple[int, str], float] = {}
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
-        self.groups: list[GroupRow] = []
-        self.answer_count = 0
+        self.groups: list[kernel.Group] = []
+        self.velocity_count = 0
         self.add_bodies()
 
     def _joint_point(self, link: TreeLink) -> Array:
@@ -85,15 +91,15 @@ class TreeRows:
             first, group = len(self.freedoms), self._add_state(i, link, ball, freedoms)
             self.groups.append(group)
             self.body_rows.append(
-                BodyRow(
+                kernel.Body(
                     parent=self.in_tree(link.parent),
                     ball=int(ball),
                     attitude_at=group.coordinates,
                     rate_at=group.rates,
                     first_freedom=first,
                     end_freedom=len(self.freedoms),
-                    answer_at=self.answer_count,
-                    framed=int(bool((R_ref != IDENTITY).any())),
+                    velocity_at=self.velocity_count,
+                    has_frame=int(bool((R_ref != IDENTITY).any())),
                     mass=body.mass,
                     first_moment=body.mass * c,
                     inertia=to_sym3(J),
@@ -101,9 +107,9 @@ class TreeRows:
                     frame=R_ref.ravel(),
                 )
             )
-            self.answer_count += 3 * ball + len(freedoms)
+            self.velocity_count += 3 * ball + len(freedoms)
 
-    def _add_state(self, i: int, link: TreeLink, ball: bool, freedoms: list[Scalar]) -> GroupRow:
+    def _add_state(self, i: int, link: TreeLink, ball: bool, freedoms: list[Scalar]) -> kernel.Group:
         """Add a body's part of the state and its freedoms; return its position in the state.
 
         For a ball the attitude comes first, then the coordinates; then the angular velocity and the rates.
@@ -124,17 +130,24 @@ class TreeRows:
                 coordinates.append(x)
                 rates.append(u)
                 scalar_weights.append(1.0 / self.size if kind == kernel.SHIFT else 1.0)
-            answer = self.answer_count + 3 * ball + k
-            driven, program = int(program is not None), program or NO_PROGRAM
-            row = FreedomRow(kind, *places, driven, answer, i, program, direction)
+            row = kernel.Freedom(
+                kind=kind,
+                q_at=places[0],
+                u_at=places[1],
+                driven=int(program is not None),
+                velocity_at=self.velocity_count + 3 * ball + k,
+                body=i,
+                program=program or NO_PROGRAM,
+                direction=direction,
+            )
             self.freedom_rows.append(self._add_path(link, quantity, row))
             self.freedoms.append(Freedom(link.joint, quantity, *places))
             self.coordinates[link.joint, quantity] = x
         self.y += coordinates + rates
         self.weights += [1.0] * (4 * ball) + scalar_weights + weights + scalar_weights
-        return GroupRow(begin, rates_at, len(self.y))
+        return kernel.Group(coordinates=begin, rates=rates_at, end=len(self.y))
 
-    def _add_path(self, link: TreeLink, quantity: str, row: FreedomRow) -> FreedomRow:
+    def _add_path(self, link: TreeLink, quantity: str, row: kernel.Freedom) -> kernel.Freedom:
         """Add the path of a freedom that runs along one to the table of pieces; other freedoms are returned
         unchanged.
         """
@@ -147,8 +160,7 @@ class TreeRows:
             any(stop.high is not None and stop.high <= path.last for stop in stops),
         )
         reach, slope, bend = path.bounds
-        return replace(
-            row,
+        return row.replace(
             path=self.add_pieces(path),
             pieces=len(path.coefficients),
             period=path.period,
@@ -162,8 +174,9 @@ class TreeRows:
     def add_pieces(self, path: Path) -> int:
         """Add the pieces of a path; return the index of the first."""
         first = len(self.pieces)
-        self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
-        self.pieces.append(PieceRow(path.last, *np.zeros((4, 3))))
+        for begin, (c0, c1, c2, c3) in zip(path.knots[:-1].tolist(), path.coefficients, strict=True):
+            self.pieces.append(kernel.PathPiece(begin=begin, c0=c0, c1=c1, c2=c2, c3=c3))
+        self.pieces.append(kernel.PathPiece(begin=path.last, c0=ZERO, c1=ZERO, c2=ZERO, c3=ZERO))
         return first
 
     def _find_drive_program(self, link: TreeLink, quantity: str) -> Program | None:

@@ -11,25 +11,14 @@ from array import array
 from collections.abc import Sequence
 
 from heuncli.base.joint_kinds import JOINTS
-from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.loads import RopeLoad
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.body_rows import TreeRows
 from heuncli.multibody.tree.coupling_rows import add_lift, assembled_length, loaded_bodies, make_part_row, make_sum_row
 from heuncli.multibody.tree.layout import Contact
-from heuncli.multibody.tree.rows import (
-    NO_PROGRAM,
-    ZERO,
-    BodyRow,
-    ClosureIndices,
-    ClosureRow,
-    ContactRow,
-    CounterRow,
-    Program,
-    Vector,
-)
 from heuncli.multibody.tree.starts import Z, bent_direction, joint_direction, point_distance, to_direction
+from heuncli.multibody.tree.tables import NO_PROGRAM, FieldValue
 from heuncli.scene.expressions.paths import Path
 
 
@@ -45,12 +34,12 @@ class ClosureRows:
     def __init__(self, tree: TreeRows) -> None:
         self.tree = tree
         self.row_joint: list[int] = []
-        self.rows: list[ClosureRow] = []
+        self.rows: list[kernel.Closure] = []
         self.paths: list[list[int]] = []
         self.counters: dict[int, int] = {}
         self.contacts: list[Contact] = []
-        self.one_sided: list[ContactRow] = []
-        self.part_rows: list[ClosureRow] = []
+        self.one_sided: list[kernel.Contact] = []
+        self.part_rows: list[kernel.Closure] = []
         self.add_rows()
 
     def add_rows(self) -> None:
@@ -95,7 +84,7 @@ class ClosureRows:
         self._add_row(k, kernel.SUM, weight=self.tree.size, part=first, part_count=len(terms))
         for factor, d, e in terms:
             directions = {"e": joint_direction(joint, d), "g": bent_direction(joint, self.tree.starts[k].R_ref, e)}
-            dot = replace(self.rows[-1], kind=kernel.DOT, weight=1.0, part=0, part_count=0, factor=factor, **directions)
+            dot = self.rows[-1].replace(kind=kernel.DOT, weight=1.0, part=0, part_count=0, factor=factor, **directions)
             self.part_rows.append(dot)
 
     def _add_track_rows(self, k: int, path: Path) -> None:
@@ -108,8 +97,8 @@ class ClosureRows:
             if joint.one_sided and not faced:
                 self._mark_one_sided(k, joint.name, joint.restitution)
             self._add_row(k, kernel.TRACK)
-            self.rows[-1] = replace(
-                self.rows[-1], lift=first, pieces=len(path.coefficients), period=path.period,
+            self.rows[-1] = self.rows[-1].replace(
+                lift=first, pieces=len(path.coefficients), period=path.period,
                 radius=side * path.radius, h=side * h, faced=faced, counter=len(self.counters),
             )  # fmt: skip
         self.counters[k] = -1
@@ -153,7 +142,7 @@ class ClosureRows:
         if restitution is not None:
             self.contacts.append(Contact(name, True, owner, row, 1, restitution))
         opens = len(self.contacts) if restitution is not None else 0
-        self.one_sided.append(ContactRow(row, 1, opens, freedom=-1))
+        self.one_sided.append(kernel.Contact(row=row, sense=1, mode_index=opens, freedom=-1))
 
     def _add_latches(self) -> None:
         """Add the rows of all latches."""
@@ -169,7 +158,9 @@ class ClosureRows:
         self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
         coordinate = (stop.joint, stop.quantity)
         limited = next((i for i, f in enumerate(self.tree.freedoms) if (f.joint, f.quantity) == coordinate), -1)
-        self.one_sided.append(ContactRow(row, sense, len(self.contacts), limited, held_at))
+        self.one_sided.append(
+            kernel.Contact(row=row, sense=sense, mode_index=len(self.contacts), freedom=limited, latch_index=held_at)
+        )
         if stop.quantity == "length":
             self._add_row(stop.joint, kernel.ROD, length=limit)
         elif joint.path is not None:
@@ -182,27 +173,13 @@ class ClosureRows:
         else:
             self._add_row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=limited, weight=self.tree.size)
 
-    def _add_row(
-        self,
-        joint: int,
-        kind: int,
-        *,
-        e: Vector = ZERO,
-        g: Vector = ZERO,
-        length: float = 0.0,
-        program: Program = NO_PROGRAM,
-        freedom: int = 0,
-        weight: float = 1.0,
-        part: int = 0,
-        part_count: int = 0,
-    ) -> None:
-        """Add a closure row of a joint; weight: of its gap [m per unit]."""
+    def _add_row(self, joint: int, kind: int, weight: float = 1.0, **fields: FieldValue) -> None:
+        """Add a closure row of a joint; weight: of its gap [m per unit]; fields: the others that its kind needs."""
         joint_data = self.tree.mechanism.joints[joint]
         a, b = self.tree.in_tree(joint_data.a), self.tree.in_tree(joint_data.b)
         p, q = self.tree.relative(joint_data.a, joint_data.p), self.tree.relative(joint_data.b, joint_data.q)
         self.row_joint.append(joint)
-        row = ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length, part, part_count, factor=1.0)
-        self.rows.append(row)
+        self.rows.append(kernel.Closure(kind=kind, a=a, b=b, p=p, q=q, weight=weight, factor=1.0, **fields))
         self.paths.append(sorted(set(self.tree.path_to_root(a)) | set(self.tree.path_to_root(b)), reverse=True))
 
     @property
@@ -211,58 +188,64 @@ class ClosureRows:
         kinds = {row.kind for row in self.rows}
         return self.tree.mechanism.planar and kinds.isdisjoint((kernel.TRACK, kernel.ALONG))
 
-    def make_counter_rows(self) -> list[CounterRow]:
+    def make_counter_rows(self) -> list[kernel.Counter]:
         """Make the rows of the counted coordinates."""
         joints, owners = self.tree.mechanism.joints, self.row_joint
         return [
-            CounterRow(
-                self.tree.in_tree(joints[k].a), self.tree.in_tree(joints[k].b), at, joints[k].axis,
-                1 + owners.index(k) if joints[k].path is not None else 0,
+            kernel.Counter(
+                a=self.tree.in_tree(joints[k].a),
+                b=self.tree.in_tree(joints[k].b),
+                state_at=at,
+                axis=joints[k].axis,
+                track=1 + owners.index(k) if joints[k].path is not None else 0,
             )
             for k, at in self.counters.items()
-        ]  # fmt: skip
+        ]
 
 
-def index_rows(paths: Sequence[list[int]], bodies: Sequence[BodyRow]) -> tuple[list[ClosureIndices], array[int], int]:
-    """Return, for each closure row by its path, where its indices are; these indices; and the total length of all
-    columns.
+def index_rows(
+    rows: Sequence[kernel.Closure], paths: Sequence[list[int]], bodies: Sequence[kernel.Body]
+) -> tuple[list[kernel.Closure], array[int], int]:
+    """Return the closure rows with the positions of their paths, velocities and couplings; the indices that these point
+    into; and the total length of all columns.
 
-    paths: tree indices, tips first
+    paths: tree indices, tips first, of each row
 
     Rows with the same path share their indices.
     """
     indices = array("i")
-    shared: dict[tuple[int, ...], tuple[int, int, int, int]] = {}
-    places: list[ClosureIndices] = []
+    shared: dict[tuple[int, ...], dict[str, int]] = {}
+    indexed: list[kernel.Closure] = []
     column = 0
-    coupled, filled = find_fill_in(paths)
 
     def append_data(data: Sequence[int]) -> int:
         indices.extend(data)
         return len(indices) - len(data)
 
-    for path, rows, others in zip(paths, coupled, filled, strict=True):
-        key = (*path, -1, *others)
+    for row, path, coupled, filled in zip(rows, paths, *find_fill_in(paths), strict=True):
+        key = (*path, -1, *filled)
         if key not in shared:
-            answers = [n for i in path for n in bodies[i].answers]
-            more = [n for i in others for n in bodies[i].answers]
-            shared[key] = append_data(path), append_data(answers + more), len(answers), len(answers) + len(more)
-        path_at, answers_at, count, filled_count = shared[key]
-        places.append(
-            ClosureIndices(
-                path=path_at,
-                path_count=len(path),
-                column=column,
-                answers=answers_at,
-                answer_count=count,
-                filled_count=filled_count,
-                couplings=append_data(rows),
-                coupling_count=len(rows),
-                rank=-1,
+            velocities = [n for i in path for n in list_velocities(bodies[i])]
+            more = [n for i in filled for n in list_velocities(bodies[i])]
+            shared[key] = {
+                "path": append_data(path),
+                "path_count": len(path),
+                "velocities": append_data(velocities + more),
+                "velocity_count": len(velocities),
+                "filled_count": len(velocities) + len(more),
+            }
+        indexed.append(
+            row.replace(
+                column=column, couplings=append_data(coupled), coupling_count=len(coupled), rank=-1, **shared[key]
             )
         )
-        column += filled_count
-    return places, indices, column
+        column += shared[key]["filled_count"]
+    return indexed, indices, column
+
+
+def list_velocities(body: kernel.Body) -> range:
+    """Return the indices of a body's generalised velocities."""
+    return range(body.velocity_at, body.velocity_at + 3 * body.ball + body.end_freedom - body.first_freedom)
 
 
 def find_fill_in(paths: Sequence[list[int]]) -> tuple[list[list[int]], list[list[int]]]:

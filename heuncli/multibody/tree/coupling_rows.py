@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.multibody.mechanism.model import Assembly
-from heuncli.multibody.tree.rows import ZERO, ClosureRow, Program, Vector
 from heuncli.multibody.tree.starts import body_state
+from heuncli.multibody.tree.tables import ZERO, Program, Vector
 
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
@@ -25,7 +24,7 @@ Relative = Callable[[int, Vector], Vector]  # a body's point from its joint poin
 
 def make_part_row(
     part: CouplingPart, first_part: int, in_tree: TreeIndex, relative: Relative, freedoms: Mapping[tuple[int, str], int]
-) -> ClosureRow:
+) -> kernel.Closure:
     """Make the kernel's row for a condition between two bodies.
 
     first_part: index of the first part of the row that it belongs to
@@ -33,7 +32,7 @@ def make_part_row(
     """
     coordinates = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*coordinates, (0, 0.0), (0, 0.0)][:2]
-    return ClosureRow(
+    return kernel.Closure(
         kind=KINDS[part.kind],
         a=in_tree(part.a),
         b=in_tree(part.b),
@@ -53,13 +52,13 @@ def make_part_row(
     )
 
 
-def add_lift(row: ClosureRow, part: CouplingPart, first: int, relative: Relative) -> ClosureRow:
+def add_lift(row: kernel.Closure, part: CouplingPart, first: int, relative: Relative) -> kernel.Closure:
     """Add the lift to the row of a cam, where its first piece is at `first`; other parts are returned unchanged."""
     cam = part.cam
     if cam is None:
         return row
-    return replace(
-        row, lift=first, pieces=len(cam.lift.coefficients), period=cam.lift.period, swings=int(cam.swings),
+    return row.replace(
+        lift=first, pieces=len(cam.lift.coefficients), period=cam.lift.period, swings=int(cam.swings),
         faced=int(cam.face is not None), radius=cam.radius, pivot=relative(part.c, cam.pivot),
         h=ZERO if cam.face is None else cam.face,
     )  # fmt: skip
@@ -83,14 +82,12 @@ def _part_gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[in
     return float(e @ (Rb @ part.g if part.kind == "dot" else D))
 
 
-def make_sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> ClosureRow:
+def make_sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> kernel.Closure:
     """Make the row that sums its parts, the first of which has index `first`; program: added to its length in time."""
-    return ClosureRow(
+    return kernel.Closure(
         kind=kernel.SUM,
         a=-1,
         b=-1,
-        p=ZERO,
-        q=ZERO,
         weight=row.weight or size,
         length=length,
         program=program,

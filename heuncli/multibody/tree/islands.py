@@ -15,7 +15,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import CoupledRow
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.tree.layout import Island, Layout
-from heuncli.multibody.tree.rows import IslandRow, make_kernel_table
+from heuncli.multibody.tree.tables import make_table
 from heuncli.results.results import Array, Mask
 
 COUPLES = (kernel.DOT, kernel.TURN)  # kinds of closure rows whose load is a couple
@@ -24,19 +24,19 @@ COUPLES = (kernel.DOT, kernel.TURN)  # kinds of closure rows whose load is a cou
 def add_islands(layout: Layout) -> Layout:
     """Add the islands to the layout and to the kernel's tables, where they scale rows and freedoms."""
     islands_found = find_islands(layout)
-    measure = np.zeros(layout.velocity_count)
+    velocity_scale = np.zeros(layout.velocity_count)
     rows = []
     for island in islands_found:
-        measure[island.freedoms] = np.where(island.turns, 1.0 / island.length, 1.0)
-        layout.tables["closures"]["measure"][island.rows] = np.where(island.couples, island.length, 1.0)
+        velocity_scale[island.freedoms] = np.where(island.turns, 1.0 / island.length, 1.0)
+        layout.tables["closures"]["unit_load_size"][island.rows] = np.where(island.couples, island.length, 1.0)
         first_index = len(layout.indices)
         layout.indices.extend(island.rows.tolist() + island.freedoms.tolist())
         n = len(island.rows)
         rows.append(
-            IslandRow(rows=first_index, row_count=n, freedoms=first_index + n, freedom_count=len(island.freedoms))
+            kernel.Island(rows=first_index, row_count=n, freedoms=first_index + n, freedom_count=len(island.freedoms))
         )
-    tables = layout.tables | {"islands": make_kernel_table(kernel.Island, rows)}
-    return replace(layout, islands=tuple(islands_found), measure=measure, tables=tables)
+    tables = layout.tables | {"islands": make_table(kernel.Island, rows)}
+    return replace(layout, islands=tuple(islands_found), velocity_scale=velocity_scale, tables=tables)
 
 
 def find_islands(layout: Layout) -> list[Island]:
@@ -88,11 +88,11 @@ def _make_island(layout: Layout, rows: Array, bodies: list[int], is_couple: Mask
     turns: list[bool] = []
     for body in layout.bodies[bodies]:
         if body["ball"]:
-            freedoms += range(body["answer_at"], body["answer_at"] + 3)
+            freedoms += range(body["velocity_at"], body["velocity_at"] + 3)
             turns += [True] * 3
         own = layout.tables["freedoms"][body["first_freedom"] : body["end_freedom"]]
         own = own[own["driven"] == 0]
-        freedoms += own["answer_at"].tolist()
+        freedoms += own["velocity_at"].tolist()
         turns += (own["kind"] != kernel.SHIFT).tolist()
     length = mean_lever(layout, {layout.rows[r] for r in rows.tolist()})
     return Island(rows, np.array(freedoms, dtype=int), is_couple[rows], np.array(turns, dtype=bool), length)

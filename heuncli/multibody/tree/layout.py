@@ -14,10 +14,9 @@ from heuncli.base.records import fields, record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.tree.rows import VariableRow, make_kernel_table
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart
-from heuncli.multibody.tree.tables import Table
+from heuncli.multibody.tree.tables import Table, make_table
 from heuncli.results.results import Array, Mask
 from heuncli.scene.expressions.programs import Pack
 
@@ -92,7 +91,7 @@ class LayoutFrame:
     work_at: index of the work in the state (-1: it is not computed)
     islands: the groups of closure rows whose loops share bodies
     contacts: the rows that open and close
-    measure (velocity_count,): scale of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0
+    velocity_scale (velocity_count,): of each freedom in its island's J: 1 for a shift, 1 / length for a rotation, 0
     outside
     flat: whether the kernel moves it in the plane (kernel/plane.py), without loads across it
     """
@@ -115,7 +114,7 @@ class LayoutFrame:
     work_at: int
     islands: tuple[Island, ...]
     contacts: tuple[Contact, ...]
-    measure: Array
+    velocity_scale: Array
     flat: bool
 
     def relative(self, body: int, point: Array) -> Array:
@@ -204,14 +203,14 @@ class Layout(LayoutFrame):
 
 
 def rate_indices(layout: Layout) -> Array:
-    """Return the state index of the rate of each freedom, by answers, three for each ball; -1: driven."""
+    """Return the state index of the rate of each freedom, three for each ball; -1: driven."""
     indices = np.full(layout.velocity_count, -1)
     for body in layout.bodies:
         if body["ball"]:
-            indices[body["answer_at"] : body["answer_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)
+            indices[body["velocity_at"] : body["velocity_at"] + 3] = np.arange(body["rate_at"], body["rate_at"] + 3)
     for freedom in layout.tables["freedoms"]:
         if not freedom["driven"]:
-            indices[freedom["answer_at"]] = freedom["u_at"]
+            indices[freedom["velocity_at"]] = freedom["u_at"]
     return indices
 
 
@@ -252,7 +251,7 @@ def empty_load_tables() -> dict[str, Table]:
     them.
     """
     return {
-        "loads": make_kernel_table(kernel.Load, []),
-        "variables": make_kernel_table(kernel.Variable, [VariableRow()]),
-        "watches": make_kernel_table(kernel.Watch, []),
+        "loads": make_table(kernel.Load, []),
+        "variables": make_table(kernel.Variable, [kernel.Variable()]),
+        "watches": make_table(kernel.Watch, []),
     }

@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.loads import (
     GROUND,
@@ -22,17 +19,16 @@ from heuncli.multibody.mechanism.loads import (
     RopeLoad,
     ThreadLoad,
 )
-from heuncli.multibody.mechanism.model import Mechanism, NamedPoint
+from heuncli.multibody.mechanism.model import Joint, Mechanism, NamedPoint
 from heuncli.multibody.stages import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout, LayoutFrame, empty_load_tables, make_layout
-from heuncli.multibody.tree.rows import NO_PROGRAM, ZERO, LoadRow, Program, VariableRow, WatchRow, make_kernel_table
-from heuncli.multibody.tree.tables import Table, flat_dtype
+from heuncli.multibody.tree.tables import NO_PROGRAM, ZERO, FieldValue, Program, Table, flat_dtype, make_table
 from heuncli.scene.expressions.programs import LOADS, Expression, Pack, Variable
 from heuncli.scene.shapes.rotations import perpendicular_pair
 
 PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
 ONE = (1.0, 0.0, 0.0)  # of friction that is proportional to a normal force
-Components = tuple[Program, Program, Program]
+Components = dict[str, Program]  # of a load's vector, by x, y, z
 
 
 class ValuePrograms(NamedTuple):
@@ -106,17 +102,15 @@ def lay_out_loads(
             vector[rows, i] = 0.0 if e.constant is None else e.constant
     tables = empty_load_tables() | {"loads": loads}
     if programs.pack.code:
-        tables["watches"] = make_kernel_table(kernel.Watch, make_watch_rows(mechanism, programs, left_out))
+        tables["watches"] = make_table(kernel.Watch, make_watch_rows(mechanism, programs, left_out))
     if len(programs.pack.variables) > 1:
-        tables["variables"] = make_kernel_table(
-            kernel.Variable, make_variable_rows(frame, mechanism, programs.pack.variables)
-        )
+        tables["variables"] = make_table(kernel.Variable, make_variable_rows(frame, mechanism, programs.pack.variables))
     return make_layout(frame, mechanism, programs.pack, tables)
 
 
 def make_load_table(mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> Table:
     """Make the table of loads without constant values; programs: of each load's values."""
-    return make_kernel_table(kernel.Load, _LoadRowBuilder(mechanism, frame, programs).made)
+    return make_table(kernel.Load, _LoadRowBuilder(mechanism, frame, programs).made)
 
 
 class _LoadRowBuilder:
@@ -124,11 +118,10 @@ class _LoadRowBuilder:
 
     def __init__(self, mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> None:
         self.mechanism, self.frame = mechanism, frame
-        self.made: list[LoadRow] = []
+        self.made: list[kernel.Load] = []
         self.parts = sum(len(row.parts) for coupling in mechanism.couplings for row in coupling.rows)  # before a rope's
         for load, own in zip(mechanism.loads, programs, strict=True):
-            x, y, z = (own + (NO_PROGRAM,) * (3 - len(own)))[:3]
-            values = x, y, z
+            values = name_components(own[:3])
             if isinstance(load, PointLoad):
                 self._add_point_load(load, values)
             elif isinstance(load, PairLoad):
@@ -142,25 +135,33 @@ class _LoadRowBuilder:
             else:
                 self._add_joint_load(load, values)
 
+    def _find_ends(self, pair: PairLoad | BushingLoad | Joint) -> dict[str, FieldValue]:
+        """Return the two bodies of a load or a joint, and its points on them."""
+        a, b = self.frame.in_tree(pair.a), self.frame.in_tree(pair.b)
+        return {"a": a, "b": b, "p": self.frame.relative(pair.a, pair.p), "q": self.frame.relative(pair.b, pair.q)}
+
     def _add_point_load(self, load: PointLoad, values: Components) -> None:
-        q = np.zeros(3) if load.point is None else self.frame.relative(load.body, load.point)
-        kind = law_numbers(load)[0]
-        body, in_body = self.frame.in_tree(load.body), int(load.in_body)
-        self.made.append(LoadRow(kind, GROUND, body, *values, ZERO, in_body=in_body, q=q, factor=load.factor))
+        self.made.append(
+            kernel.Load(
+                kind=law_numbers(load)[0],
+                a=GROUND,
+                b=self.frame.in_tree(load.body),
+                q=ZERO if load.point is None else self.frame.relative(load.body, load.point),
+                in_body=int(load.in_body),
+                factor=load.factor,
+                **values,
+            )
+        )
 
     def _add_pair_load(self, load: PairLoad, values: Components) -> None:
         self.made.append(
-            LoadRow(
-                law_numbers(load)[0],
-                self.frame.in_tree(load.a),
-                self.frame.in_tree(load.b),
-                *values,
-                ZERO,
-                p=self.frame.relative(load.a, load.p),
-                q=self.frame.relative(load.b, load.q),
+            kernel.Load(
+                kind=law_numbers(load)[0],
                 stiffness=load.stiffness,
                 length=load.length,
                 coefficient=load.damping,
+                **self._find_ends(load),
+                **values,
             )
         )
 
@@ -169,63 +170,52 @@ class _LoadRowBuilder:
         parts = (load.shift, programs[:3]), (load.turn, programs[3:])
         for kind, (elastic, part_programs) in zip(law_numbers(load), parts, strict=True):
             self.made.append(
-                LoadRow(
-                    kind,
-                    self.frame.in_tree(load.a),
-                    self.frame.in_tree(load.b),
-                    part_programs[0],
-                    part_programs[1],
-                    part_programs[2],
-                    ZERO,
-                    p=self.frame.relative(load.a, load.p),
-                    q=self.frame.relative(load.b, load.q),
+                kernel.Load(
+                    kind=kind,
                     length=math.pi - tolerances.TURNED_OVER,
                     frame=load.frame.ravel().tolist(),
                     to_frame=load.to_frame.ravel().tolist(),
                     stiffnesses=elastic.stiffness,
                     resistances=elastic.damping,
+                    **self._find_ends(load),
+                    **name_components(part_programs),
                 )
             )
 
     def _add_rope(self, load: RopeLoad, values: Components) -> None:
         """Add an elastic rope, along its parts."""
         self.made.append(
-            LoadRow(
-                law_numbers(load)[0],
-                GROUND,
-                GROUND,
-                *values,
-                ZERO,
+            kernel.Load(
+                kind=law_numbers(load)[0],
+                a=GROUND,
+                b=GROUND,
                 in_body=int(load.only_pulls),
                 stiffness=load.stiffness,
                 length=load.length,
                 coefficient=load.damping,
                 part=self.parts,
                 part_count=len(load.parts),
+                **values,
             )
         )
         self.parts += len(load.parts)
 
     def _add_thread(self, load: ThreadLoad) -> None:
-        row = self.frame.rows.index(len(self.mechanism.joints) + load.coupling)
         self.made.append(
-            LoadRow(
-                law_numbers(load)[0],
-                self.frame.in_tree(load.a),
-                self.frame.in_tree(load.b),
-                NO_PROGRAM,
-                NO_PROGRAM,
-                NO_PROGRAM,
-                ONE,
-                in_body=1,
+            kernel.Load(
+                kind=law_numbers(load)[0],
+                a=self.frame.in_tree(load.a),
+                b=self.frame.in_tree(load.b),
                 q=self.frame.relative(load.b, load.q),
+                vector=ONE,
+                in_body=1,
                 coefficient=load.coefficient,
                 axis=load.axis,
                 speed=load.speed,
                 factor=load.factor,
-                presses=kernel.THRUST_OF_ROW,
-                held_by=GROUND,
-                row=row,
+                normal_force_kind=kernel.THRUST_OF_ROW,
+                joint_body=GROUND,
+                row=self.frame.rows.index(len(self.mechanism.joints) + load.coupling),
                 row_count=1,
             )
         )
@@ -237,18 +227,15 @@ class _LoadRowBuilder:
         parts = dict(zip(("turning", "sliding"), laws, strict=False))
         for motion in kind.motions_for_load(load.kind):
             number, coefficient = parts[motion]
-            row = LoadRow(
-                number,
-                self.frame.in_tree(joint.a),
-                self.frame.in_tree(joint.b),
-                *values,
-                ONE if load.row.is_friction else ZERO,
+            row = kernel.Load(
+                kind=number,
+                vector=ONE if load.row.is_friction else ZERO,
                 in_body=int(kind.has_one_axis),
-                p=self.frame.relative(joint.a, joint.p),
-                q=self.frame.relative(joint.b, joint.q),
                 coefficient=coefficient,
                 axis=joint.axis,
                 speed=load.speed,
+                **self._find_ends(joint),
+                **values,
             )
             if load.row.has_potential:
                 row = self._complete_turn_spring(load, row)
@@ -256,7 +243,7 @@ class _LoadRowBuilder:
                 row = self._complete_joint_friction(load, row)
             self.made.append(row)
 
-    def _complete_joint_friction(self, load: JointLoad, row: LoadRow) -> LoadRow:
+    def _complete_joint_friction(self, load: JointLoad, row: kernel.Load) -> kernel.Load:
         """Add to a friction row where its normal force comes from: the balance of the branch on the joint, or rows of a
         cut joint.
         """
@@ -265,27 +252,31 @@ class _LoadRowBuilder:
         # those of its stops come after
         closure_rows = closure_rows[: JOINTS[self.mechanism.joints[load.joint].kind].row_count]
         presses, first = PRESSES[load.presses or "whole"], closure_rows[0] if closure_rows else 0
-        return replace(
-            row, presses=presses, held_by=tree_index, row=first, row_count=len(closure_rows), reach=load.reach
+        return row.replace(
+            normal_force_kind=presses, joint_body=tree_index, row=first, row_count=len(closure_rows), reach=load.reach
         )
 
-    def _complete_turn_spring(self, load: JointLoad, row: LoadRow) -> LoadRow:
+    def _complete_turn_spring(self, load: JointLoad, row: kernel.Load) -> kernel.Load:
         """Add to a spring's row the index of its angle, or the data to compute the angle where the joint was cut."""
         joint, start = self.mechanism.joints[load.joint], self.frame.starts[load.joint]
         freedoms = enumerate(self.frame.freedoms)
         freedom = next((i for i, f in freedoms if f.joint == load.joint and f.quantity in ("angle", "first")), -1)
         across = perpendicular_pair(joint.axis)[0]
-        return replace(
-            row,
+        return row.replace(
             stiffness=load.stiffness,
             length=load.angle,
             freedom=freedom,
             counter=list(self.frame.counters).index(load.joint) if load.joint in self.frame.counters else -1,
             # a universal's coordinate is counted from the start; without any the angle stays what it is there
             offset=0.0 if freedom >= 0 and self.frame.freedoms[freedom].quantity == "angle" else start.angle,
-            across=across,
-            mark=start.R_ref.T @ across,
+            mark_a=across,
+            mark_b=start.R_ref.T @ across,
         )
+
+
+def name_components(programs: Sequence[Program]) -> Components:
+    """Return the programs of a load's components by the names of the kernel's fields."""
+    return dict(zip("xyz", programs, strict=False))
 
 
 def law_numbers(load: Load) -> tuple[int, ...]:
@@ -295,7 +286,7 @@ def law_numbers(load: Load) -> tuple[int, ...]:
 
 def make_watch_rows(
     mechanism: Mechanism, programs: ValuePrograms, left_out: Sequence[Expression] = ()
-) -> list[WatchRow]:
+) -> list[kernel.Watch]:
     """Make the rows of the watched programs of loads and drives, whose changes between the stages of a step must not be
     missed; left_out: more values that are watched as loads are.
 
@@ -313,8 +304,8 @@ def make_watch_rows(
         for e in part.extra_load
     }
     watched = [
-        WatchRow(
-            programs.by_identity[key],
+        kernel.Watch(
+            program=programs.by_identity[key],
             curved=int(key in law_values),
             condition=int(key in rope_values),
             load=parts.get(key, -1),
@@ -323,15 +314,17 @@ def make_watch_rows(
         if e.constant is None and (e.held_branches or key not in rope_values)
     ]
     conditions = (programs.by_identity[id(condition.value)] for condition in mechanism.conditions)
-    return watched + [WatchRow(program, curved=0, condition=1, load=-1) for program in conditions]
+    return watched + [kernel.Watch(program=program, curved=0, condition=1, load=-1) for program in conditions]
 
 
-def make_variable_rows(frame: LayoutFrame, mechanism: Mechanism, variables: Sequence[Variable]) -> list[VariableRow]:
+def make_variable_rows(
+    frame: LayoutFrame, mechanism: Mechanism, variables: Sequence[Variable]
+) -> list[kernel.Variable]:
     """Make the variables of the programs; the first is the time, which is no coordinate."""
     joints = mechanism.joints
     by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(frame.freedoms) if f.joint >= 0}
     load_rows_by_name = {f"{LOADS}.{load.name}": rows.start for load, rows in mechanism.iter_load_rows()}
-    rows = [VariableRow()]
+    rows = [kernel.Variable()]
     for name, quantity in (use for use in variables if not isinstance(use, str)):
         if name in mechanism.points:
             rows.append(make_point_variable(frame, mechanism.points[name], quantity))
@@ -340,24 +333,26 @@ def make_variable_rows(frame: LayoutFrame, mechanism: Mechanism, variables: Sequ
             rows.append(make_load_variable(load_rows_by_name[name], quantity))
             continue
         base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
-        rows.append(VariableRow(by_name[name, base], int(base != quantity)))
+        rows.append(kernel.Variable(freedom=by_name[name, base], is_rate=int(base != quantity)))
     return rows
 
 
-def make_load_variable(row: int, quantity: str) -> VariableRow:
+def make_load_variable(row: int, quantity: str) -> kernel.Variable:
     """Make the variable that is a deformation of a load; row: the first of its rows."""
     if quantity in ("length", "speed"):
-        return VariableRow(is_rate=int(quantity == "speed"), is_point=kernel.OF_LOAD, load=row, part=kernel.ALONG_LINE)
+        return kernel.Variable(
+            is_rate=int(quantity == "speed"), is_point=kernel.OF_LOAD, load=row, part=kernel.ALONG_LINE
+        )
     if quantity == "drawn":
-        return VariableRow(is_point=kernel.OF_LOAD, load=row, part=kernel.DRAWN)
+        return kernel.Variable(is_point=kernel.OF_LOAD, load=row, part=kernel.DRAWN)
     component, _, axis = quantity.partition("_")
-    return VariableRow(is_point=kernel.OF_LOAD, load=row + int(component == "turn"), part="xyz".index(axis))
+    return kernel.Variable(is_point=kernel.OF_LOAD, load=row + int(component == "turn"), part="xyz".index(axis))
 
 
-def make_point_variable(frame: LayoutFrame, point: NamedPoint, quantity: str) -> VariableRow:
+def make_point_variable(frame: LayoutFrame, point: NamedPoint, quantity: str) -> kernel.Variable:
     """Make the variable that is a point's position or velocity along one of its axes."""
     axis = "xyz".index(quantity[-1])
-    return VariableRow(
+    return kernel.Variable(
         is_rate=int(quantity.startswith("v")),
         is_point=kernel.AT_POINT,
         body=frame.in_tree(point.body),

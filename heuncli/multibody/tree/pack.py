@@ -16,10 +16,9 @@ from heuncli.multibody.tree.closure_rows import ClosureRows, index_rows
 from heuncli.multibody.tree.islands import add_islands
 from heuncli.multibody.tree.layout import Layout, LayoutFrame, make_frame
 from heuncli.multibody.tree.load_rows import find_used_names, lay_out_loads, make_programs
-from heuncli.multibody.tree.rows import GroupRow, Program, make_kernel_table
 from heuncli.multibody.tree.spanning import find_spanning_tree
 from heuncli.multibody.tree.starts import JointStart, PresetTree, compute_joint_start
-from heuncli.multibody.tree.tables import limits_table, moves_in_plane
+from heuncli.multibody.tree.tables import Program, limits_table, make_table, moves_in_plane
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Pack
 
@@ -117,18 +116,18 @@ def assemble_frame(tree: TreeRows, closures: ClosureRows, work: bool) -> LayoutF
         if driven:
             # the drives' work may vary where the motion does not: it has a say in the step
             energy_group = len(tree.groups)
-            tree.groups.append(GroupRow(work_at, work_at, work_at + 1))
-    places, indices, column_count = index_rows(closures.paths, tree.body_rows)
+            tree.groups.append(kernel.Group(coordinates=work_at, rates=work_at, end=work_at + 1))
+    closure_rows, indices, column_count = index_rows(closures.rows, closures.paths, tree.body_rows)
     tables = {
-        "bodies": make_kernel_table(kernel.Body, tree.body_rows),
-        "freedoms": make_kernel_table(kernel.Freedom, tree.freedom_rows),
-        "closures": make_kernel_table(kernel.Closure, closures.rows, places),
-        "pieces": make_kernel_table(kernel.PathPiece, tree.pieces),
-        "parts": make_kernel_table(kernel.Closure, closures.part_rows),
-        "counters": make_kernel_table(kernel.Counter, closures.make_counter_rows()),
-        "contacts": make_kernel_table(kernel.Contact, closures.one_sided),
-        "groups": make_kernel_table(kernel.Group, tree.groups),
-        "lents": make_kernel_table(kernel.ArtificialInertia, []),
+        "bodies": make_table(kernel.Body, tree.body_rows),
+        "freedoms": make_table(kernel.Freedom, tree.freedom_rows),
+        "closures": make_table(kernel.Closure, closure_rows),
+        "pieces": make_table(kernel.PathPiece, tree.pieces),
+        "parts": make_table(kernel.Closure, closures.part_rows),
+        "counters": make_table(kernel.Counter, closures.make_counter_rows()),
+        "contacts": make_table(kernel.Contact, closures.one_sided),
+        "groups": make_table(kernel.Group, tree.groups),
+        "artificial_inertias": make_table(kernel.ArtificialInertia, []),
         "limits": limits_table(tolerances.KERNEL),
     }
     layout = Layout(
@@ -146,13 +145,13 @@ def assemble_frame(tree: TreeRows, closures: ClosureRows, work: bool) -> LayoutF
         weights=np.array(tree.weights),
         tables=tables,
         indices=indices,
-        velocity_count=tree.answer_count,
+        velocity_count=tree.velocity_count,
         column_count=column_count,
         pack=Pack(),
         work_at=work_at,
         islands=(),
         contacts=tuple(closures.contacts),
-        measure=np.zeros(0),
+        velocity_scale=np.zeros(0),
         flat=closures.is_flat and moves_in_plane(tables["bodies"], tables["freedoms"]),
     )
     return make_frame(add_islands(layout))

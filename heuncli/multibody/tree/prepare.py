@@ -18,9 +18,9 @@ from heuncli.multibody.tree.idle_spins import IdleSpin, find_idle_spins, find_ma
 from heuncli.multibody.tree.layout import Layout, LayoutFrame
 from heuncli.multibody.tree.load_rows import find_used_names, lay_out_loads, make_programs
 from heuncli.multibody.tree.pack import build_frame
-from heuncli.multibody.tree.rows import Program
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart, PresetTree
+from heuncli.multibody.tree.tables import Program
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_rows
 

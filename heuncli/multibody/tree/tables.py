@@ -1,13 +1,13 @@
 """The kernel's structs as NumPy types: tables whose rows are its memory, and the parts of its flat solutions.
 
-The types follow from the fields of kernel/scene.py; the order of a solution's parts is that in which kernel/answers.py
+The types follow from the fields of kernel/scene.py. A solution's parts stand in the order in which kernel/solutions.py
 writes them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -22,6 +22,11 @@ from heuncli.results.results import Array
 Table = np.ndarray[Any, np.dtype[np.void]]
 
 NUMBERS = {"int": np.dtype(np.intc), "float": np.dtype(np.float64)}
+Program = tuple[int, int]  # of a value in time: where it starts among the pack's, and how long it is
+NO_PROGRAM: Program = (0, 0)
+ZERO = (0.0, 0.0, 0.0)
+Vector = Array | Sequence[float]
+FieldValue = int | float | Program | Vector
 
 
 @cache
@@ -34,13 +39,14 @@ def struct_dtype(struct: type[structs.Struct]) -> np.dtype[np.void]:
     return np.dtype(fields, align=True)
 
 
-def make_table(record: type[structs.Record], rows: list[dict[str, Any]]) -> Table:
-    """Make a table from rows given by field; fields that a row does not give are zero, or set by the kernel."""
+def make_table(record: type[structs.Record], rows: Sequence[structs.Record]) -> Table:
+    """Make a table of rows; fields that a row does not give are zero, or set by the kernel."""
     made_table: Table = np.zeros(len(rows), struct_dtype(record))
-    for name in dict.fromkeys(name for row in rows for name in row):
-        which = [i for i, row in enumerate(rows) if name in row]
+    given_fields = [row.collect_fields() for row in rows]
+    for name in dict.fromkeys(name for given in given_fields for name in given):
+        which = [i for i, given in enumerate(given_fields) if name in given]
         column = made_table[name].view(flat_dtype(made_table.dtype[name]))
-        column[which if len(which) < len(rows) else slice(None)] = [rows[i][name] for i in which]
+        column[which if len(which) < len(rows) else slice(None)] = [given_fields[i][name] for i in which]
     return made_table
 
 
@@ -105,7 +111,7 @@ def limits_table(values: Mapping[str, float]) -> Table:
 
 @cache
 def _limits(values: tuple[tuple[str, float], ...]) -> Table:
-    made = make_table(scene.Limits, [dict(values)])
+    made = make_table(scene.Limits, [scene.Limits(**dict(values))])
     made.flags.writeable = False
     return made
 

@@ -264,9 +264,9 @@ class Pack:
         """Return least and largest value, and least and largest rate, of one program in time alone over intervals of
         time.
         """
-        columns = [array("d", bytes(8 * len(begins))) for _ in range(4)]
-        enclosure.find_natural_bounds(self.expressions, start, count, array("d", begins), array("d", ends), *columns)
-        return columns
+        bounds = array("d", bytes(8 * 4 * len(begins)))
+        enclosure.find_natural_bounds(self.expressions, start, count, array("d", begins), array("d", ends), bounds)
+        return [bounds[k::4] for k in range(4)]
 
     def bounds(
         self, start: int, count: int, begins: Sequence[float], ends: Sequence[float]

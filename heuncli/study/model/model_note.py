@@ -201,7 +201,7 @@ def describe_self_stresses(layout: Layout, stress: SelfStress) -> list[str]:
             notes.append(f"redundantly constrained: {joint.name} {', '.join(names)}")
     for r, owner in enumerate(layout.rows):
         size = np.where(stress.largest > 0.0, stress.largest, 1.0)
-        unit = stress.length if layout.tables["closures"]["measure"][r] != 1.0 else 1.0
+        unit = stress.length if layout.tables["closures"]["unit_load_size"][r] != 1.0 else 1.0
         share = np.abs(stress.multipliers[:, r] / size).max(initial=0.0) / unit
         if owner >= len(layout.mechanism.joints) and share > tolerances.OPEN_SHARE:
             notes.append(f"redundantly constrained: {layout.mechanism.owner_path(owner)}")

@@ -9,7 +9,7 @@ PART = Part(
     exempt={
         "KERNEL.branch_bend": "lengths of steps in which extremes are looked for: no number depends on it",
         "KERNEL.branch_between": "lengths of steps: where a condition is met, the closures tell to rounding",
-        "KERNEL.branch_beside": "lengths of the check run's steps along a branch, on which no number depends",
+        "KERNEL.branch_next_start": "lengths of the check run's steps along a branch, on which no number depends",
     },
     wanted={
         "KERNEL.branch_step": "lengths of steps along a branch: where they are too long another branch is taken",

@@ -117,6 +117,6 @@ PART = Part(
         "STILL": "whether what rates of rounding ask for is met, where a blow has ended all motion",
         "NO_ACCELERATION": "whether accelerations exist at the start",
         "KERNEL.reopened": "when a row that was left out is taken in again",
-        "KERNEL.lost": "whether closures are lost",
+        "KERNEL.closures_lost": "whether closures are lost",
     },
 )

@@ -142,7 +142,7 @@ PART = Part(
     exempt={
         "NO_MASS": "which joints the tree cuts beside such a body: either way the same (laws/test_weightless_bodies)",
         "SLENDER": "which bodies' moments are looked at at all: those of the others are far above NO_INERTIA",
-        "KERNEL.much_lent": "how much inertia is lent: what it takes is given back",
+        "KERNEL.much_artificial": "how much inertia is lent: what it takes is given back",
         "SPINS_LIGHTLY": "what is integrated: either way the same motion, at other costs",
         "ARTIFICIAL_RADIUS": "an inertia lent to a spin on which nothing depends",
     },

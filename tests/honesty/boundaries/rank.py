@@ -88,7 +88,7 @@ PART = Part(
         "UNSEEN_GAP": "how far states beside a singular pose are moved; UNKNOWN_NEAR_SINGULAR decides what is told",
         "NEAR_PIVOT": "whether a state is recovered again, moved by its rounding; UNKNOWN_NEAR_SINGULAR decides",
         "SUSPECT_PIVOT": "whether a singular pose is looked for in a step",
-        "KERNEL.across": "what a pivot is measured by",
+        "KERNEL.row_across": "what a pivot is measured by",
         "RANK": "which motions of bodies without inertia, and of the assembly, are none; the kernel has its own of it",
         "RANK_OF_GAP": "which rows a gap feigns: what is near to a singular pose closes its gaps by a move",
         "SINGULAR_FALL": "whether a pose is passed through that is everywhere as near to a singular one",

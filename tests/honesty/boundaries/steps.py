@@ -21,8 +21,8 @@ PART = Part(
     ("kernel: steps",),
     rows=(Row("KERNEL.given_end", beyond_its_steps, "10 steps", "11 steps"),),
     exempt={
-        "KERNEL.dodges": "lengths of steps that are tried: the estimate says what was reached",
-        "KERNEL.dodge": "lengths of steps that are tried: the estimate says what was reached",
+        "KERNEL.singular_retries": "lengths of steps that are tried: the estimate says what was reached",
+        "KERNEL.retry_ratio": "lengths of steps that are tried: the estimate says what was reached",
         "KERNEL.pivot_rounding": "lengths of steps that are tried: the estimate says what was reached",
         "KERNEL.pivot_noise": "lengths of steps that are tried: the estimate says what was reached",
         "KERNEL.slow_rate": "lengths of steps of what is slow beside others: the estimate says what they are worth",

@@ -89,7 +89,7 @@ def find_contradiction_in_steps(runner: Runner, run: Trajectory) -> Problem | No
     inner = marks[:-1, None] + np.diff(marks)[:, None] * (np.arange(SAMPLES_PER_STEP) / SAMPLES_PER_STEP)
     times = np.minimum(np.append(inner.ravel(), run.ends[-1]), run.times[-1])
     evaluation = runner.evaluate_run(run, times)
-    is_lost = (evaluation.gap > tolerances.KERNEL["lost"] * runner.size) | (
+    is_lost = (evaluation.gap > tolerances.KERNEL["closures_lost"] * runner.size) | (
         evaluation.residual > evaluation.allowed_residual
     )
     if not is_lost.any():

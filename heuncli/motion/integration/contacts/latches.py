@@ -25,7 +25,7 @@ from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.layout import Contact, Layout
 from heuncli.results.results import Array, Mask
 
-UNWATCHED = -1.0  # a contact that a latch holds at its limit, so that it is not watched (kernel/answers.py)
+UNWATCHED = -1.0  # a contact that a latch holds at its limit, so that it is not watched (kernel/solutions.py)
 
 
 class LatchConditions(NamedTuple):

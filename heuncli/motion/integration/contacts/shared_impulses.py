@@ -63,7 +63,7 @@ def list_bilateral_contacts(layout: Layout) -> list[LoadedContact]:
     contacts = [
         LoadedContact(mechanism.owner_path(layout.rows[row["row"]]).partition(".")[2], int(row["row"]), is_held=True)
         for row in layout.tables["contacts"]
-        if row["opens"] == 0
+        if row["mode_index"] == 0
     ]
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
         if coupling.entry.type == "wheel" and not coupling.entry.held:

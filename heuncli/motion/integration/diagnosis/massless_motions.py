@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -96,7 +95,10 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
         for row in artificial_inertia_rows(scene, body, axes)
     ]
     return replace(
-        scene, layout=replace(layout, tables=layout.tables | {"lents": make_table(kernel.ArtificialInertia, rows)})
+        scene,
+        layout=replace(
+            layout, tables=layout.tables | {"artificial_inertias": make_table(kernel.ArtificialInertia, rows)}
+        ),
     )
 
 
@@ -332,7 +334,7 @@ def find_axes_in_any_pose(scene: PreparedScene, lacking: Mapping[int, Array]) ->
     return {body: span_vectors(np.concatenate(turning)) for body, turning in turnings.items()}
 
 
-def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> list[dict[str, Any]]:
+def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> list[kernel.ArtificialInertia]:
     """Return artificial inertia for a body about some axes, of the order of its mass's own; one row of the kernel's
     table each.
     """
@@ -341,7 +343,7 @@ def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> li
     arms = [p - body.center for j in mechanism.joints for end, p in ((j.a, j.p), (j.b, j.q)) if end == i]
     reach = max([tolerances.ARTIFICIAL_RADIUS * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
     inertia = max(body.mass * reach**2, find_massless_axes(body, scene.layout.size)[1])
-    return [{"body": place, "root": math.sqrt(inertia), "axis": axis} for axis in axes]
+    return [kernel.ArtificialInertia(body=place, root=math.sqrt(inertia), axis=axis) for axis in axes]
 
 
 def independent_rows(rows: Array) -> Array:

@@ -102,7 +102,7 @@ def no_acceleration_error(run_failure: RunFailure, name: str, message: str, hint
     hint = "; ".join(filter(None, [hint, describe_largest_load(mechanism, run_failure.evaluation)]))
     hangs = scene.layout.spanning.links
     massless_bodies = sorted(
-        {f"bodies.{mechanism.bodies[hangs[i].body].name}" for i in scene.layout.tables["lents"]["body"]}
+        {f"bodies.{mechanism.bodies[hangs[i].body].name}" for i in scene.layout.tables["artificial_inertias"]["body"]}
     )
     if massless_bodies and name == "step-collapsed":
         hint += f", or closed loops release the rotation of bodies without inertia: {', '.join(massless_bodies)}"

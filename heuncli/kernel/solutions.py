@@ -2,38 +2,15 @@
 
 from __future__ import annotations
 
-try:
-    import cython
-except ImportError:
-    from heuncli.kernel.shadow import cython
-
-if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, scale_vector
-    from heuncli.kernel.closures import apply_multipliers, measure_rows, row_acceleration, size_of_row_acceleration
-    from heuncli.kernel.columns import largest_relative_residual, measure_row_responses, solve_causes, write_vector
-    from heuncli.kernel.loads import load_potential
-    from heuncli.kernel.orthogonal import estimate_multiplier_doubt
-    from heuncli.kernel.programs import FREE, HELD
-    from heuncli.kernel.response import evaluate, must_choose_rows, project_state
-    from heuncli.kernel.row_choice import choose_rows_again
-    from heuncli.kernel.scene import (
-        APART,
-        CARRIES,
-        LEANS,
-        MESH,
-        SUM,
-        TURN,
-        Body,
-        Closure,
-        Contact,
-        Freedom,
-        Load,
-        Scene,
-    )
-    from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import balance_joints
-    from heuncli.kernel.values import Instants
+from heuncli.kernel.closures import apply_multipliers, measure_rows, row_acceleration, size_of_row_acceleration
+from heuncli.kernel.columns import largest_relative_residual, measure_row_responses, solve_causes
+from heuncli.kernel.declarations import *
+from heuncli.kernel.loads import load_potential
+from heuncli.kernel.orthogonal import estimate_multiplier_doubt
+from heuncli.kernel.response import evaluate, must_choose_rows, project_state
+from heuncli.kernel.row_choice import choose_rows_again
+from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
+from heuncli.kernel.tree import balance_joints
 
 
 def write_matrix(buffer: cython.p_double, offset: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:
@@ -61,15 +38,14 @@ def write_load(
     """Write an applied load in the order of tables.LOAD_SOLUTION; return the offset behind it."""
     offset = write_vector(buffer, offset, load.force)
     offset = write_vector(buffer, offset, load.moment)
-    offset = write_vector(buffer, offset, load.at)
-    offset = write_vector(buffer, offset, load.from_at)
+    offset = write_vector(buffer, offset, load.place)
+    offset = write_vector(buffer, offset, load.place_on_a)
     offset = write_vector(buffer, offset, load.strain)
-    buffer[offset] = load.value
-    buffer[offset + 1] = load.span
-    buffer[offset + 2] = load.rate
-    buffer[offset + 3] = load.power
-    buffer[offset + 4] = load_potential(scene, load)
-    return offset + 5
+    offset = write_number(buffer, offset, load.value)
+    offset = write_number(buffer, offset, load.span)
+    offset = write_number(buffer, offset, load.rate)
+    offset = write_number(buffer, offset, load.power)
+    return write_number(buffer, offset, load_potential(scene, load))
 
 
 def write_row(
@@ -80,15 +56,14 @@ def write_row(
     """
     offset = write_vector(buffer, offset, row.f)
     offset = write_vector(buffer, offset, row.m)
-    buffer[offset] = row.multiplier
-    buffer[offset + 1] = row.doubt
-    buffer[offset + 2] = row.gap
-    buffer[offset + 3] = row.rank >= 0
-    buffer[offset + 4] = row.mode != APART
-    buffer[offset + 5] = row.rate
-    buffer[offset + 6] = row_acceleration(scene, row)
-    buffer[offset + 7] = size_of_row_acceleration(scene, row)
-    return offset + 8
+    offset = write_number(buffer, offset, row.multiplier)
+    offset = write_number(buffer, offset, row.multiplier_error)
+    offset = write_number(buffer, offset, row.gap)
+    offset = write_number(buffer, offset, row.rank >= 0)
+    offset = write_number(buffer, offset, row.mode != APART)
+    offset = write_number(buffer, offset, row.rate)
+    offset = write_number(buffer, offset, row_acceleration(scene, row))
+    return write_number(buffer, offset, size_of_row_acceleration(scene, row))
 
 
 def write_instant(
@@ -105,11 +80,10 @@ def write_instant(
     offset = instant * instants.freedom_width
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        instants.freedoms[offset] = freedom.q
-        instants.freedoms[offset + 1] = freedom.u
-        instants.freedoms[offset + 2] = freedom.udot
-        instants.freedoms[offset + 3] = freedom.drive
-        offset += 4
+        offset = write_number(instants.freedoms, offset, freedom.q)
+        offset = write_number(instants.freedoms, offset, freedom.u)
+        offset = write_number(instants.freedoms, offset, freedom.udot)
+        offset = write_number(instants.freedoms, offset, freedom.drive)
     offset = instant * instants.load_width
     for i in range(scene.load_count):
         offset = write_load(scene, instants.loads, offset, cython.address(scene.loads[i]))
@@ -124,13 +98,12 @@ def write_instant(
         offset = write_vector(instants.parts, offset, part.Q)
         offset = write_vector(instants.parts, offset, part.on_a)
         offset = write_vector(instants.parts, offset, part.on_b)
-        instants.parts[offset] = part.gap
-        offset += 1
+        offset = write_number(instants.parts, offset, part.gap)
     offset = instant * instants.whole_width
-    instants.whole[offset] = scene.gap
-    instants.whole[offset + 1] = idle
-    instants.whole[offset + 2] = scene.pivot_recovered
-    instants.whole[offset + 3] = scene.residual
+    offset = write_number(instants.whole, offset, scene.gap)
+    offset = write_number(instants.whole, offset, idle)
+    offset = write_number(instants.whole, offset, scene.pivot_recovered)
+    offset = write_number(instants.whole, offset, scene.residual)
 
 
 def recover_state(
@@ -152,7 +125,7 @@ def recover_state(
             select_independent_rows(scene, t, y, False)
             scene.gap = project_state(scene, t, y)
     trouble: cython.int = evaluate(scene, t, y, dy)
-    if not scene.driven:
+    if not scene.has_drives:
         apply_multipliers(scene)
         balance_joints(scene, True)
     assess_closures(scene, t)
@@ -197,15 +170,15 @@ def set_contact_modes(scene: cython.pointer[Scene], modes: cython.p_double, offs
     changed: cython.bint = False
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
-        if contact.opens:
-            k = offset + contact.opens - 1
+        if contact.mode_index:
+            k = offset + contact.mode_index - 1
             mode = APART if modes[k] == 0.0 else LEANS
             if modes[k] > 0.0 and modes[k] < 1.5:
                 mode = CARRIES
             changed = changed or scene.closures[contact.row].mode != mode
             scene.closures[contact.row].mode = mode
-            if contact.held_at:
-                k = offset + contact.held_at - 1
+            if contact.latch_index:
+                k = offset + contact.latch_index - 1
                 changed = changed or scene.closures[contact.row].length != modes[k]
                 scene.closures[contact.row].length = modes[k]
     if changed:  # only rows that carry have multipliers; those of the others are 0
@@ -223,11 +196,11 @@ def mark_still_freedoms(scene: cython.pointer[Scene]) -> cython.void:
     """
     i: cython.Py_ssize_t
     for i in range(scene.freedom_count):
-        scene.freedoms[i].still = 0
+        scene.freedoms[i].is_held = 0
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         if contact.freedom >= 0 and scene.closures[contact.row].mode != APART:
-            scene.freedoms[contact.freedom].still = 1
+            scene.freedoms[contact.freedom].is_held = 1
     while mark_coupled_freedom(scene):
         pass
 
@@ -241,7 +214,7 @@ def mark_coupled_freedom(scene: cython.pointer[Scene]) -> cython.bint:
         if row.kind == SUM and row.mode == CARRIES and row.program.count == 0:
             freedom = find_only_moving_freedom(scene, row)
             if freedom >= 0 and not scene.freedoms[freedom].driven:
-                scene.freedoms[freedom].still = 1
+                scene.freedoms[freedom].is_held = 1
                 return True
     return False
 
@@ -260,7 +233,7 @@ def find_only_moving_freedom(scene: cython.pointer[Scene], row: cython.pointer[C
             return -1
         for k in range(1 if part.kind == TURN or part.ratio_b == 0.0 else 2):
             freedom = part.freedom if k == 0 else part.freedom_b
-            if scene.freedoms[freedom].still or freedom == moving:
+            if scene.freedoms[freedom].is_held or freedom == moving:
                 continue
             if moving >= 0:
                 return -1
@@ -278,21 +251,21 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
     n: cython.Py_ssize_t = instants.n
     has_changed: cython.bint = False
     for j in range(instants.count):
-        if instants.opening:
-            has_changed = set_contact_modes(scene, instants.holding, j * instants.opening)
+        if instants.mode_count:
+            has_changed = set_contact_modes(scene, instants.holding, j * instants.mode_count)
         for i in range(n):
             instants.y[i] = instants.states[j * n + i]
-        if instants.held:
+        if instants.has_branches:
             scene.programs.holding = HELD
             for i in range(scene.held_count):
-                scene.programs.held[i] = instants.branches[j * scene.held_count + i]
+                scene.programs.branches[i] = instants.branches[j * scene.held_count + i]
         trouble = recover_state(
-            scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh or has_changed
+            scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.chooses_rows or has_changed
         )
         for i in range(n):
             instants.states[j * n + i] = instants.y[i]
         write_instant(scene, instants, j, trouble)
-        if instants.causes:
+        if instants.has_causes:
             solve_causes(scene, instants.times[j], instants.y, instants.columns, j * instants.column_width)
     scene.programs.holding = FREE
 
@@ -329,6 +302,6 @@ def write_jacobian(scene: cython.pointer[Scene], buffer: cython.p_double) -> cyt
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
         spread_jacobian_row(scene, row)
-        for k in range(row.answer_count):
-            buffer[offset] = scene.spread[scene.indices[row.answers + k]]
+        for k in range(row.velocity_count):
+            buffer[offset] = scene.velocity_vector[scene.indices[row.velocities + k]]
             offset += 1
