@@ -112,7 +112,7 @@ export class NumberTable {
     return line;
   }
 
-  /** The loads of a section: of a series of cuts those of the chosen cut, with the smallest and the largest along it. */
+  /** The loads of a section; of a series of cuts those of the chosen cut, with the smallest and largest along it. */
   addSection(section, number) {
     const body = made("tbody", "", { "data-kind": "sections" });
     if (number === 0) headed(body, this.data.cutting.heading, "heading", this.data.cutting.note);
