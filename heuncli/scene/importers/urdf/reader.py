@@ -44,6 +44,7 @@ from heuncli.scene.importers.urdf.document import Robot, read_robot
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.urdf.masses import (
     LinkMass,
+    find_size,
     has_supported_shapes,
     make_repaired_mass,
     make_shapes,
@@ -197,6 +198,8 @@ def _header_lines(validated_robot: ValidatedRobot, fields: UrdfFields) -> Iterat
     if fields.nearly_right_angled:
         what = "read as right angles (--repair right-angles)" if fields.repair_right_angles else "kept unchanged"
         yield f"Nearly right angles, such as 1.5708, are {what}: {list_words(fields.nearly_right_angled)}."
+    if fields.turned_axes:
+        yield f"Axes turned by their own rpy, which some programs pass over: {list_words(fields.turned_axes)}."
     for link in fields.links_without_inertia:
         yield f'Repaired (massless): the link "{link}" has mass 0; its inertia is left out.'
     if validated_robot.robot.ignored_tags:
@@ -222,7 +225,8 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
     fields = UrdfFields(file, "right-angles" in options.repair)
     robot = read_robot(root, fields)
     tree = build_tree(robot, fields)
-    masses = {name: validate_mass(link, options.repair, fields) for name, link in robot.links.items()}
+    size = find_size(robot)
+    masses = {name: validate_mass(link, options, size, fields) for name, link in robot.links.items()}
     link_masses = {name: mass for name, mass in masses.items() if mass is not None}
     validated_robot = None if tree is None or fields.problems else _validate(robot, tree, link_masses, options, fields)
     if validated_robot is None or fields.problems:
