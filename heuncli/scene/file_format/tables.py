@@ -323,5 +323,5 @@ def report_gaps(found: ReadColumns, path: str, problems: list[TableProblem]) -> 
     parts = [f"{count - filled} left out"] if count > filled else []
     parts += [f"{filled} filled on a straight line"] if filled else []
     message = f"{count} of {whole} rows {'has' if count == 1 else 'have'} a gap: {', '.join(parts)}"
-    finding = Finding(GAPS_CODE, message, "fill the gaps in the file; without gaps: they are refused")
+    finding = Finding(GAPS_CODE, message, "fill them in the file")
     problems.append(TableProblem(("gaps",), finding, SourceLocation(path, line, 1), is_warning=True))
