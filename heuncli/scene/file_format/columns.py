@@ -104,12 +104,12 @@ def read_columns(text: str, *keys: object, skip: int = 0, gaps: str = "refuse") 
     return found if gaps == "refuse" else close_gaps(found, text, fills=gaps == "linear")
 
 
-def close_gaps(found: ReadColumns, text: str, fills: bool) -> ReadColumns:
+def close_gaps(columns: ReadColumns, text: str, fills: bool) -> ReadColumns:
     """Leave out the rows with a gap (NaN) in a column, or fill the last column on a straight line where it can be."""
-    values = np.array([np.frombuffer(column) if column else np.empty(0) for column in found.numbers])
+    values = np.array([np.frombuffer(column) if column else np.empty(0) for column in columns.numbers])
     has_gap = np.isnan(values).any(axis=0)
     if not has_gap.any():
-        return found
+        return columns
     y, is_point = values[-1], ~has_gap
     known = np.flatnonzero(is_point)
     if fills and len(known) > 1:
@@ -119,9 +119,9 @@ def close_gaps(found: ReadColumns, text: str, fills: bool) -> ReadColumns:
         is_point |= fillable
     rows = np.flatnonzero(is_point)
     gap_count, filled_count = int(has_gap.sum()), int((is_point & has_gap).sum())
-    first_line = found.find_line(text, int(has_gap.argmax()))
+    first_line = columns.find_line(text, int(has_gap.argmax()))
     numbers = [array("d", column[rows].tobytes()) for column in values]
-    return found._replace(
+    return columns._replace(
         numbers=numbers, rows=array("q", rows.astype(np.int64).tobytes()), gaps=(gap_count, filled_count, first_line)
     )
 

@@ -314,12 +314,12 @@ def read_file_columns(
     return FileColumns(found.numbers, units, lambda i: SourceLocation(path, found.find_line(text, i), 1))
 
 
-def report_gaps(found: ReadColumns, path: str, problems: list[TableProblem]) -> None:
+def report_gaps(columns: ReadColumns, path: str, problems: list[TableProblem]) -> None:
     """Say how many rows of a file have a gap, and what became of them."""
-    count, filled, line = found.gaps
+    count, filled, line = columns.gaps
     if not count:
         return
-    whole = count - filled + len(found.numbers[0])
+    whole = count - filled + len(columns.numbers[0])
     parts = [f"{count - filled} left out"] if count > filled else []
     parts += [f"{filled} filled on a straight line"] if filled else []
     message = f"{count} of {whole} rows {'has' if count == 1 else 'have'} a gap: {', '.join(parts)}"
