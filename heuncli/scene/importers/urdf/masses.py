@@ -72,13 +72,13 @@ def find_size(robot: Robot) -> float:
     return max((math.hypot(*place) for place in places), default=0.0) or 1.0
 
 
-def validate_mass(link: UrdfLink, options: ImportOptions, size: float, fields: UrdfFields) -> LinkMass | None:
+def validate_mass(link: UrdfLink, repair: frozenset[str], size: float, fields: UrdfFields) -> LinkMass | None:
     """Return the validated mass properties of a link; None if it has none, or if they are wrong, which is then a
     problem.
 
     size: of the robot [m]
     """
-    inertial, repair = link.inertial, options.repair
+    inertial = link.inertial
     if inertial is not None and inertial.moments is not None:
         least = tolerances.NO_MOMENT * abs(inertial.mass) * size * size
         moments = tuple(0.0 if abs(moment) <= least else moment for moment in inertial.moments)
@@ -96,7 +96,7 @@ def validate_mass(link: UrdfLink, options: ImportOptions, size: float, fields: U
         fields.report("import-mass", inertial.element, link.path, message, hint)
         return None
     if inertial.moments is None:
-        return _add_inertia(link, inertial, options, fields)
+        return _make_point_mass(link, inertial, repair, fields)
     validation = _InertiaValidation(link, inertial, inertial.moments, repair, fields)
     validation.check_zero()
     validation.check_negative()
@@ -104,18 +104,25 @@ def validate_mass(link: UrdfLink, options: ImportOptions, size: float, fields: U
     return LinkMass(inertial.mass, inertial.pose.xyz, inertial.pose.rpy, validation.inertia, validation.notes)
 
 
-def _add_inertia(link: UrdfLink, inertial: Inertial, options: ImportOptions, fields: UrdfFields) -> LinkMass | None:
-    """Make the mass properties of a link with a mass and no inertia, as the options ask."""
-    center, notes = inertial.pose.xyz, {"inertia": "repaired (point): a point mass; the file has no inertia"}
-    if "point" in options.repair:
-        return LinkMass(inertial.mass, center, ZERO, (ZERO, ZERO, ZERO), notes)
-    has_geometry = any(link.element.find_all(tag) for tag in GEOMETRY_TAGS)
-    if has_geometry and ("shape" in options.repair or options.density is not None):
-        from heuncli.scene.importers.urdf.shape_inertia import compute_shape_mass  # imports NumPy
+def takes_inertia_of_shapes(link: UrdfLink, options: ImportOptions) -> bool:
+    """Return whether a link has a mass without inertia that the options take from its shapes."""
+    inertial, is_asked = link.inertial, "shape" in options.repair or options.density is not None
+    if inertial is None or inertial.moments is not None or inertial.mass <= 0.0 or "point" in options.repair:
+        return False
+    return is_asked and _has_geometry(link)
 
-        return compute_shape_mass(link, inertial, fields)
+
+def _has_geometry(link: UrdfLink) -> bool:
+    return any(link.element.find_all(tag) for tag in GEOMETRY_TAGS)
+
+
+def _make_point_mass(link: UrdfLink, inertial: Inertial, repair: frozenset[str], fields: UrdfFields) -> LinkMass | None:
+    """Make a link with a mass and no inertia a point mass, if that repair is asked for; else it is a problem."""
+    if "point" in repair:
+        notes = {"inertia": "repaired (point): a point mass; the file has no inertia"}
+        return LinkMass(inertial.mass, inertial.pose.xyz, ZERO, (ZERO, ZERO, ZERO), notes)
     hint = "add it, or repair it: --repair point makes a point mass at the origin of <inertial>"
-    if has_geometry:
+    if _has_geometry(link):
         hint += "; --repair shape (or --density) scales its shapes to the mass"
     fields.report("import-missing", inertial.element, link.path, "<inertial> has no <inertia>", hint)
     return None
