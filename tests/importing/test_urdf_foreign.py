@@ -49,7 +49,8 @@ PASSED = {  # what stands beside the links, in the joint, in the link; how it is
                                   "1 a:drawing, 1 a:property, 1 a:enforce, 1 a:forceTorqueSensor"),
     "in a joint": ({"inner": "<safety_controller/><drake:color/>"},
                    "1 safety_controller in joints, 1 drake:color in joints"),
-    "in a link": ({"part": "<contact/><drake:looks/>"}, "1 contact in links, 1 drake:looks in links"),
+    "in a link": ({"part": "<contact/><drake:looks/><origin/>"},
+                  "1 contact in links, 1 drake:looks in links, 1 origin in links"),
 }  # fmt: skip
 
 

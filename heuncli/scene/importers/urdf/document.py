@@ -20,6 +20,7 @@ ROTARY_TYPES, SLIDING_TYPES = ("revolute", "continuous"), ("prismatic",)
 X_AXIS: Vec = (1.0, 0.0, 0.0)
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 LINK_PARTS = ("inertial", "visual", "collision")
+PLACES_IN_LINKS = ("origin", "pose", "frame", "axis")  # a link has none: its joint places it
 INERTIAL_PARTS = ("origin", "mass", "inertia")
 JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration")
 OLD_DYNAMICS = "joint_properties"  # the name of <dynamics> before ROS Fuerte
@@ -191,7 +192,7 @@ def _read_link(element: XmlElement, fields: UrdfFields, ignored_tags: Counter[st
         if part.tag in suggestions:
             message = f"<link> has an unknown part <{part.tag}>"
             fields.report("import-part", part, f"link {name}", message, f"did you mean {suggestions[part.tag]}?")
-        elif part.tag not in LINK_PARTS and find_mechanical_hint(part.tag) is not None:
+        elif part.tag not in (*LINK_PARTS, *PLACES_IN_LINKS) and find_mechanical_hint(part.tag) is not None:
             leave_out_part(part, f"link {name}", LINK_PARTS, fields, ignored_tags, " in links")
         elif part.tag not in LINK_PARTS:
             ignored_tags[f"{part.tag} in links"] += 1
