@@ -40,6 +40,8 @@ from heuncli.scene.file_format.column_layout import (
 MOST_ROWS = 2_000_000
 PLAIN_CHARACTERS = b"0123456789+-.eE \t\r\n"
 GROUPED_DIGITS = re.compile(r"[-+]?[1-9][0-9]{0,2}(?:,[0-9]{3})+\Z")  # 1,234: a thousand, or decimals
+QUOTED_COMMA = re.compile(r'"\s*[-+]?[0-9]*,[0-9]')
+COMMA_AT_DIGIT = re.compile(r"[0-9],|,[0-9]")
 # hints
 FEWER_ROWS_HINT = "keep only the points needed: the table interpolates between them"
 ONE_MARK_HINT = "use one decimal mark in the whole file, and no thousands separators"
@@ -97,7 +99,7 @@ def read_columns(text: str, *keys: object, skip: int = 0, gaps: str = "refuse") 
             raise CsvError(
                 1, 1, Finding("too-large", f"more than {MOST_ROWS} rows, the maximum that is read", FEWER_ROWS_HINT)
             )
-    if "," in text and (layout.separator != "," or '"' in text) and ("." in text or layout.separator != ";"):
+    if may_have_decimal_commas(text, layout.separator):
         check_decimal_marks(text, layout, indices)
     headings = [Heading(layout.names[i], layout.names_line, i + 1) if layout.names else None for i in indices]
     found = ReadColumns(columns, headings, layout)
@@ -124,6 +126,13 @@ def close_gaps(columns: ReadColumns, text: str, fills: bool) -> ReadColumns:
     return columns._replace(
         numbers=numbers, rows=array("q", rows.astype(np.int64).tobytes()), gaps=(gap_count, filled_count, first_line)
     )
+
+
+def may_have_decimal_commas(text: str, separator: str | None) -> bool:
+    """Whether cells may have commas whose meaning is to be checked; quick, as the check itself is not."""
+    if separator == ";":
+        return "," in text and "." in text
+    return (QUOTED_COMMA if separator == "," else COMMA_AT_DIGIT).search(text) is not None
 
 
 def check_decimal_marks(text: str, layout: ColumnLayout, indices: Sequence[int]) -> None:
