@@ -126,6 +126,8 @@ REFUSED = {  # a file, the keys; the code, the line in the data file (0: in the 
     "thousands, quotes": ('time,force\n0,"1,234"\n1,"2,345"\n', NAMED, "table-file", 2, "thousands"),
     "bare decimal commas": ("time,force\n0,0,1,0\n1,5,3,0\n", NAMED, "table-file", 2, "decimal marks"),
     "another name": ("time, force ,flag,note\n0,1,a,\n1,2,b,7\n", "x: time, y: Forse", "table-file", 0, "time, force"),
+    "a name beside a footer": (LONG + "end,of,file\n", "x: time, y: Forse", "table-file", 0, "columns: time, force"),
+    "a name, open rows": ("time,force\n0,1,\n1,2,\n", "x: time, y: F", "table-file", 0, "columns: time, force"),
     "names with gaps": ("time,force\n0,\n1,2\n", "x: time, y: f", "table-file", 0, "columns: time, force"),
     "no text": (b"PK\x03\x04\x14\x00\x06\x00", NUMBERED, "table-file", 0, "not a text"),
     "UTF-16 cut off": (b"\xff\xfe" + "0,1\n".encode("utf-16-le")[:-1], NUMBERED, "table-file", 0, "not UTF-16"),

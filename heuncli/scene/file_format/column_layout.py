@@ -23,6 +23,7 @@ from heuncli.scene.file_format.headings import name_in_heading
 PIECE = 1 << 20  # characters: large enough to make NumPy's overhead negligible, small enough to save memory
 MAX_EXAMINED_ROWS = 1000  # rows examined before a message may quote a file's headings
 MAX_HEADER_LINE = 1000  # lines searched for the headings that a spec names
+NUMERIC_SHARE = 0.9  # of the cells of a column whose heading may be quoted; a footer or an overload is no number
 MIN_NUMERIC_COLUMNS = 2  # a file with fewer is no table, and its headings may be private
 MAX_NUMBER_LENGTH = 24  # characters; a double needs 24 at most
 MAX_TEXT_SAMPLE = 4096  # bytes examined for control characters
@@ -322,19 +323,19 @@ def find_name_line(key: str, text: str) -> int:
 
 
 def find_numeric_columns(layout: ColumnLayout, text: str) -> list[str]:
-    """Return the headings of the columns that hold numbers in all examined rows, or gaps in some.
+    """Return the headings of the columns that hold numbers in nearly all examined rows; gaps do not count.
 
     With fewer than two such columns the result is empty: the file may be any file, and messages must not reveal its
     content.
     """
-    rows = [
-        split_cells(n, line, layout.separator)
-        for n, line in islice(iter_rows(text, layout.header_lines), MAX_EXAMINED_ROWS)
-    ]
-    if not rows or not all(len(row) == layout.width for row in rows):
-        return []
-    columns = zip(layout.names, zip(*rows, strict=True), strict=False)
-    names = [name for name, cells in columns if holds_only_numbers(cells)]
+    counts = [[0, 0] for _ in layout.names]  # numbers and all cells of each column
+    for n, line in islice(iter_rows(text, layout.header_lines), MAX_EXAMINED_ROWS):
+        for count, cell in zip(counts, split_cells(n, line, layout.separator), strict=False):
+            is_number = parse_number(cell) is not None
+            count[0] += is_number
+            count[1] += is_number or not is_gap(cell)
+    named = zip(layout.names, counts, strict=True)
+    names = [name for name, (numbers, cells) in named if numbers and numbers >= NUMERIC_SHARE * cells]
     if len(names) < MIN_NUMERIC_COLUMNS:
         return []
     return [name for name in names if name and len(name) <= MAX_WORD_LENGTH]
