@@ -92,7 +92,7 @@ PART = Part(
         Row("INERTIA_REFUSED", principal, "warned: inertia-rounded", "refused: inertia-not-physical"),
         Row("INERTIA_TYPED", principal, "fine", "warned: inertia-rounded"),
         Row("INERTIA_TYPED", unsymmetric, "fine", "refused: inertia-form"),
-        Row("NO_MOMENT", moment, "all moments of inertia are 0,", "a principal moment of inertia is negative"),
+        Row("NO_IMPORTED_MOMENT", moment, "all moments of inertia are 0,", "a principal moment of inertia is negative"),
         Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),
         Row("LEAST_STRENGTH", strength, "warned: strength-small", "fine"),
         Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),

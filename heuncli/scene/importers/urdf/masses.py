@@ -80,7 +80,7 @@ def validate_mass(link: UrdfLink, repair: frozenset[str], size: float, fields: U
     """
     inertial = link.inertial
     if inertial is not None and inertial.moments is not None:
-        least = tolerances.NO_MOMENT * abs(inertial.mass) * size * size
+        least = tolerances.NO_IMPORTED_MOMENT * abs(inertial.mass) * size * size
         moments = tuple(0.0 if abs(moment) <= least else moment for moment in inertial.moments)
         inertial = inertial._replace(moments=moments)
     if inertial is None or (inertial.mass == 0.0 and not any(inertial.moments or ())):
