@@ -370,6 +370,9 @@ INERTIA_REFUSED = 1e-3  # relative to the largest moment of inertia: limit on a 
 # relative to the largest moment of inertia: moments typed with ten digits keep triangle inequality and symmetry this
 # well
 INERTIA_TYPED = 1e-9
+# relative to mass * size^2 of a robot: smaller moments of inertia in its file are rounding of a CAD program, which
+# cancels lengths known to EPS: (1e-16)^2 is far below, and no part of a robot is 1e-10 of its size
+NO_IMPORTED_MOMENT = 1e-20
 AT_LIMIT = 1e-9  # relative to the size, or rad: a start past a limit by less is at the limit, given ten typed digits
 LEAST_STRENGTH = 1e6  # [Pa] below what bars are made of (foams aside): a strength in MPa was written without its unit
 TABLE_ENDS = 1e-6  # relative to the span: a table's period and its end values are printed with seven digits

@@ -108,5 +108,5 @@ def test_products_beyond_what_is_computed_with_are_told(heun):
     far = ARM.replace('<mass value="4"/>', '<mass value="1e40"/>').replace(
         '<origin xyz="0 0 0.1"/>', '<origin xyz="0 0 1e20"/>'
     )
-    done = heun("import", "-", text=far)
+    done = heun("import", "-", "--repair", "zero", text=far)
     assert done.returncode == 2 and "[magnitude]" in done.stderr

@@ -30,7 +30,7 @@ MAPPINGS = (
 )  # fmt: skip
 WORDS_ONLY = frozenset({  # keys of values that name nothing of the scene
     "type", "frame", "title", "space", "side", "sequence", "method", "interpolation", "outside", "file", "units",
-    "contact", "x_unit", "y_unit", "unit",
+    "contact", "x_unit", "y_unit", "unit", "gaps",
 })  # fmt: skip
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 TOKEN = re.compile(rf"{NUMBER}(?:\s*[A-Za-z°µ%]\w*(?:[/·^]\w+)*)?|(?P<name>[A-Za-z]\w*)")

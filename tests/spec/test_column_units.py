@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.scene.file_format.columns import CsvError, read_column_numbers
+from heuncli.scene.file_format.column_layout import CsvError
+from heuncli.scene.file_format.columns import read_column_numbers
 from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec

@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.scene.file_format import columns
-from heuncli.scene.file_format.columns import CsvError, MissingColumnError, read_column_numbers
+from heuncli.scene.file_format import column_layout, columns
+from heuncli.scene.file_format.column_layout import CsvError, MissingColumnError
+from heuncli.scene.file_format.columns import read_column_numbers
 from heuncli.scene.file_format.load import load
 
 BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n"
@@ -47,7 +48,7 @@ def random_text(draw: random.Random) -> str:
 def test_numpy_reads_what_is_read_cell_by_cell(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     draw = random.Random(seed)
     texts = [random_text(draw) for _ in range(500)]
-    monkeypatch.setattr(columns, "PIECE", 8)  # several pieces in a few lines
+    monkeypatch.setattr(column_layout, "PIECE", 8)  # several pieces in a few lines
     found = [outcome(text) for text in texts]
     assert sum(isinstance(result, list) for result in found) > 50
     monkeypatch.setattr(columns, "read_plain", lambda *_: False)

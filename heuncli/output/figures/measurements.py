@@ -16,13 +16,14 @@ from heuncli.base.units import Dimension, are_in_range, describe, parse_unit, ra
 from heuncli.output.figures.curve_points import MeasuredPoints
 from heuncli.results.results import Array
 from heuncli.results.results_schema import parse_index
-from heuncli.scene.file_format.columns import (
+from heuncli.scene.file_format.column_layout import (
     CsvError,
     MissingColumnError,
+    decode_text,
     detect_layout,
     iter_rows,
-    read_column_numbers,
 )
+from heuncli.scene.file_format.columns import read_column_numbers
 from heuncli.scene.file_format.headings import split_heading
 from heuncli.scene.file_format.reading import read_bytes
 
@@ -63,12 +64,10 @@ def read_points(query: PointsQuery, x_unit: str, units: Sequence[str]) -> Measur
     Raises SpecError with the location.
     """
     try:
-        text = bytes(read_bytes(query.file, MAX_BYTES)).decode("utf-8-sig")
+        text = decode_text(read_bytes(query.file, MAX_BYTES))
         column_names = detect_layout(text).names
         columns = [_find_column(query, word, column_names) for word in (query.x, query.y)]
         x, y = (np.frombuffer(column) for column in read_column_numbers(text, *(column.key for column in columns)))
-    except UnicodeDecodeError:
-        raise _make_error(query, Finding("table-file", "it is not UTF-8", "save it as CSV in UTF-8")) from None
     except Finding as finding:
         raise _make_error(query, finding) from None
     except MissingColumnError as error:

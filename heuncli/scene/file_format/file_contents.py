@@ -17,12 +17,12 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding, SourceLocation
 from heuncli.base.records import replace
 from heuncli.base.units import Dimension, are_in_range, describe, is_in_range, range_error
-from heuncli.scene.file_format.columns import Columns, iter_rows
+from heuncli.scene.file_format.column_layout import Columns, iter_rows
 from heuncli.scene.file_format.format import ExpectEntry
 from heuncli.scene.file_format.format_shapes import MeshShape
 from heuncli.scene.file_format.models import Curve, Logo
 from heuncli.scene.file_format.named_files import RELATIVE_PATH_HINT, NamedFiles
-from heuncli.scene.file_format.tables import ColumnUnit, TableProblem, has_error, read_file_columns
+from heuncli.scene.file_format.tables import FileColumns, TableProblem, has_error, read_file_columns
 from heuncli.scene.meshes.model import TriangleMesh
 from heuncli.scene.meshes.reading import read_closed_mesh
 
@@ -47,7 +47,8 @@ def build_curve(
     """
     assert item.curve is not None
     problems: list[TableProblem] = []
-    columns, units = read_curve_columns(item, x_of, files, problems)
+    found = read_curve_columns(item, x_of, files, problems)
+    units = found.units if found is not None else []
     file = str(files.path(item.curve))
     for unit, dimensions in zip(units, column_dimensions, strict=False):
         if unit.heading is not None and unit.dimension is not None and dimensions and unit.dimension not in dimensions:
@@ -56,9 +57,9 @@ def build_curve(
             message = f"column {unit.heading.number} is {kind} according to its heading, expected {expected}"
             finding = Finding("wrong-dimension", message, "choose another column, or give its unit: x_unit, y_unit")
             problems.append(TableProblem((), finding, SourceLocation(file, unit.heading.line, 1)))
-    if columns is None or has_error(problems):
+    if found is None or has_error(problems):
         return None, problems
-    sizes = [unit.size for unit in units]
+    columns, sizes = found.numbers, [unit.size for unit in units]
     lines = find_point_lines(files.read_text(item.curve), len(columns[0]))
     first_error = next(check_curve_points(columns, sizes, None if x_of is not None else run), None)
     if first_error is not None:
@@ -70,7 +71,7 @@ def build_curve(
 
 def read_curve_columns(
     item: ExpectEntry, x_of: str | None, files: NamedFiles, problems: list[TableProblem]
-) -> tuple[Columns | None, list[ColumnUnit]]:
+) -> FileColumns | None:
     """Read the columns in SI, with their units. If x is a path, it is the column of that name, or else the first
     one.
     """
@@ -79,14 +80,14 @@ def read_curve_columns(
     y_column = item.y if item.y is not None else 2
     file_problems: list[TableProblem] = []
     units = (item.x_unit, item.y_unit)
-    columns, read_units = read_file_columns((x_column, y_column), units, item.curve, files, file_problems)
+    found = read_file_columns((x_column, y_column), units, item.curve, files, file_problems)
     if x_of is not None and any(problem.keys == ("x",) for problem in file_problems):
         file_problems = []
-        columns, read_units = read_file_columns((1, y_column), units, item.curve, files, file_problems)
+        found = read_file_columns((1, y_column), units, item.curve, files, file_problems)
     problems += [
         replace(problem, keys=("curve",)) if problem.keys == ("file",) else problem for problem in file_problems
     ]
-    return columns, read_units
+    return found
 
 
 def find_point_lines(text: str, points: int) -> array[int]:

@@ -223,6 +223,8 @@ Column = Annotated[Annotated[list[Any], Tag("list")] | Annotated[str | int, Tag(
 
 class TableEntry(Entry):
     file: str | None = None
+    skip: Count | None = None
+    gaps: Literal["refuse", "skip", "linear"] = "refuse"
     x: Column | None = None
     y: Column | None = None
     x_unit: str | None = None

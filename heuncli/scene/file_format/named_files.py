@@ -78,14 +78,19 @@ class NamedFiles:
     def read_text(self, name: str) -> str:
         """Read the text of a file. Raises Finding."""
         try:
-            return self.read_content(name).decode("utf-8-sig")
-        except UnicodeDecodeError:
-            reason, code, hint = "it is not UTF-8", "table-file", "save it as CSV in UTF-8"
+            content = self.read_content(name)
         except Finding as refused:
             is_large = refused.code == "too-large"
             reason, code = refused.message, refused.code if is_large else "table-file"
             hint = "use a table of fewer points, or with these two columns only" if is_large else RELATIVE_PATH_HINT
-        raise Finding(code, f"the file '{self.path(name)}' cannot be read: {reason}", hint)
+            raise Finding(code, f"the file '{self.path(name)}' cannot be read: {reason}", hint) from None
+        from heuncli.scene.file_format.column_layout import decode_text  # with csv 2 ms that meshes do not need
+
+        try:
+            return decode_text(content)
+        except Finding as refused:
+            message = f"the file '{self.path(name)}' cannot be read: {refused.message}"
+            raise Finding(refused.code, message, refused.hint) from None
 
     def get_file(self, name: str) -> NamedFile:
         """Return a file as it is now."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -17,14 +17,14 @@ from heuncli.base.records import record, replace
 from heuncli.base.units import Dimension, are_in_range, parse_unit, range_error
 from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.programs import TableFunction
-from heuncli.scene.file_format.columns import (
+from heuncli.scene.file_format.column_layout import (
     MAX_NUMBER_LENGTH,
     Columns,
     CsvError,
     Heading,
     MissingColumnError,
-    read_columns,
 )
+from heuncli.scene.file_format.columns import ReadColumns, read_columns
 from heuncli.scene.file_format.format import TableEntry
 from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.named_files import NamedFiles
@@ -34,12 +34,16 @@ from heuncli.scene.file_format.quantity import Scope, read_number
 SLOPES_HINT = "keep x and y within about ten powers of ten; x_unit and y_unit set their units"
 CONSTANT_HINT = "use a parameter for a constant value"
 UNIT_CONFLICT_HINT = "give the unit of the heading, or correct the heading"
+NO_FILE_HINT = "leave it out: it is for a file; lists hold their numbers as they are"
 UNIT_KEYS = ("x_unit", "y_unit")
 UNIT_CODE = "column-unit"
+GAPS_CODE = "table-gaps"
 EXAMPLE_UNITS = {  # one meaning of each ambiguous unit
     "g": "m/s^2", "G": "m/s^2", "t": "tonne", "lb": "lbf",
     **dict.fromkeys(("1/min", "min-1", "min^-1", "1/s", "s-1", "s^-1", "Hz"), "rpm"),
 }  # fmt: skip
+
+Locate = Callable[[int], SourceLocation]
 
 
 @record
@@ -60,6 +64,17 @@ class ColumnUnit(NamedTuple):
     heading: Heading | None = None
 
 
+class FileColumns(NamedTuple):
+    """The columns of a CSV file in SI, with their units.
+
+    locate: returns the place of a point in the file
+    """
+
+    numbers: Columns
+    units: list[ColumnUnit]
+    locate: Locate
+
+
 def has_error(problems: list[TableProblem]) -> bool:
     """Whether an entry cannot be used."""
     return any(not one.is_warning for one in problems)
@@ -70,12 +85,12 @@ def build_table(
 ) -> tuple[TableFunction | None, list[TableProblem]]:
     """Build the table of an entry (None if it cannot be used) and list its problems."""
     problems = [TableProblem(("ends",), finding) for finding in check_ends(entry)]
-    columns, units = read_columns_in_si(entry, scope, files, problems)
+    columns, units, locate = read_columns_in_si(entry, scope, files, problems)
     if columns is None or has_error(problems):
         return None, problems
     x, y = columns
-    problems += check_magnitudes(columns, entry)
-    problems += check_points(x, y, entry) if not has_error(problems) else ()
+    problems += check_magnitudes(columns, locate)
+    problems += check_points(x, y, entry, locate) if not has_error(problems) else ()
     if has_error(problems):
         return None, problems
     if entry.period is not None:
@@ -104,26 +119,36 @@ def check_ends(entry: TableEntry) -> Iterator[Finding]:
 
 def read_columns_in_si(
     entry: TableEntry, scope: Scope, files: NamedFiles, problems: list[TableProblem]
-) -> tuple[Columns | None, list[ColumnUnit]]:
-    """Read the columns x and y of an entry in SI, from its file or lists, with their units; append what is wrong."""
+) -> tuple[Columns | None, list[ColumnUnit], Locate | None]:
+    """Read the columns x and y of an entry in SI, from its file or lists, with their units and, of a file, what finds
+    the place of a point; append what is wrong.
+    """
     if entry.file is not None:
         if isinstance(entry.x, list) or isinstance(entry.y, list):
             hint = "with a file, x and y name its columns"
             problems.append(TableProblem((), Finding("table-form", "both a file and lists of numbers are given", hint)))
-            return None, []
+            return None, [], None
+        if entry.skip is not None and entry.skip < 0:
+            problems.append(TableProblem(("skip",), Finding("table-form", f"skip is {entry.skip}", "give 0 or more")))
+            return None, [], None
         column_keys = (entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
-        return read_file_columns(column_keys, (entry.x_unit, entry.y_unit), entry.file, files, problems)
+        units_given = entry.x_unit, entry.y_unit
+        return read_file_columns(
+            column_keys, units_given, entry.file, files, problems, entry.skip or 0, entry.gaps
+        ) or (None, [], None)
+    for key in (("skip",) if entry.skip is not None else ()) + (("gaps",) if entry.gaps != "refuse" else ()):
+        problems.append(TableProblem((key,), Finding("table-form", f"{key} is given without a file", NO_FILE_HINT)))
     units = [parse_given_unit(key, getattr(entry, key), problems) or ColumnUnit(1.0, None) for key in UNIT_KEYS]
     if isinstance(entry.x, list) and isinstance(entry.y, list):
         lists = (("x", entry.x, units[0].size), ("y", entry.y, units[1].size))
         read_items = ([read_list_item(item, size, scope, (key, i), problems) for i, item in enumerate(items)]
                       for key, items, size in lists)  # fmt: skip
-        return [array("d", [value for value in values if value is not None]) for values in read_items], units
+        return [array("d", [value for value in values if value is not None]) for values in read_items], units, None
     hint = "give {file, x, y} with columns by name or number, or the lists {x: [...], y: [...]}"
     problems.append(
         TableProblem((), Finding("table-form", "neither a file nor lists of numbers x and y are given", hint))
     )
-    return None, units
+    return None, units, None
 
 
 def parse_given_unit(key: str, unit: str | None, problems: list[TableProblem]) -> ColumnUnit | None:
@@ -192,19 +217,22 @@ def read_list_item(
     return value if isinstance(item, str) else value * size
 
 
-def check_magnitudes(columns: Columns, entry: TableEntry) -> Iterator[TableProblem]:
+def check_magnitudes(columns: Columns, locate: Locate | None) -> Iterator[TableProblem]:
     """Yield a problem for the first number of each column that is outside the range of computation."""
     for key, column in zip(("x", "y"), columns, strict=True):
         is_outside = ~are_in_range(np.frombuffer(column))
         if is_outside.any():
             i = int(is_outside.argmax())
-            in_file = entry.file is not None
-            yield TableProblem(
-                ("file",) if in_file else (key, i), range_error(column[i], f"number {i + 1} of {key} (SI)")
-            )
+            finding = range_error(column[i], f"number {i + 1} of {key} (SI)")
+            yield make_point_problem(key, i, finding, locate)
 
 
-def check_points(x: array[float], y: array[float], entry: TableEntry) -> Iterator[TableProblem]:
+def make_point_problem(key: str, i: int, finding: Finding, locate: Locate | None) -> TableProblem:
+    """Make the problem of one point: at its place in the list, or in the file."""
+    return TableProblem((key, i), finding) if locate is None else TableProblem(("file",), finding, locate(i))
+
+
+def check_points(x: array[float], y: array[float], entry: TableEntry, locate: Locate | None) -> Iterator[TableProblem]:
     """Yield what prevents the points from forming a function."""
     file_path = () if entry.file is None else ("file",)
     if len(x) != len(y):
@@ -220,9 +248,8 @@ def check_points(x: array[float], y: array[float], entry: TableEntry) -> Iterato
     if is_falling.any():
         i = int(is_falling.argmax()) + 1
         message = f"x must increase, but {x[i]:.9g} follows {x[i - 1]:.9g} (SI)"
-        keys = ("x", i) if entry.file is None else file_path
         hint = "for a jump increase x slightly" if x[i] == x[i - 1] else "sort the points by x"
-        yield TableProblem(keys, Finding("table-shape", message, hint))
+        yield make_point_problem("x", i, Finding("table-shape", message, hint), locate)
         return
     if entry.period is None:
         return
@@ -252,33 +279,52 @@ def read_file_columns(
     file: str,
     files: NamedFiles,
     problems: list[TableProblem],
-) -> tuple[Columns | None, list[ColumnUnit]]:
+    skip: int = 0,
+    gaps: str = "refuse",
+) -> FileColumns | None:
     """Read the columns x and y of a CSV file in SI, with their units.
 
     column_keys: names or numbers of the columns
     given_units: the units that the entry gives
+    skip, gaps: as `read_columns` takes them
 
-    What is wrong is appended to `problems`.
+    What is wrong is appended to `problems`; None if that prevents reading.
     """
     try:
         text = files.read_text(file)
     except Finding as finding:
         problems.append(TableProblem(("file",), finding))
-        return None, []
+        return None
     path = str(files.path(file))
     try:
-        columns, headings = read_columns(text, *column_keys)
+        found = read_columns(text, *column_keys, skip=skip, gaps=gaps)
     except MissingColumnError as error:
         key = ("x", "y")[error.number]
         missing = error.finding
         problems.append(TableProblem((key,), Finding(missing.code, f"{missing.message} in '{path}'", missing.hint)))
-        return None, []
+        return None
     except CsvError as error:
         problems.append(TableProblem(("file",), error.finding, SourceLocation(path, error.line, error.column)))
-        return None, []
-    units = [choose_column_unit(*one, path, problems) for one in zip(UNIT_KEYS, given_units, headings, strict=True)]
-    for column, unit in zip(columns, units, strict=True):
+        return None
+    report_gaps(found, path, problems)
+    units = [
+        choose_column_unit(*one, path, problems) for one in zip(UNIT_KEYS, given_units, found.headings, strict=True)
+    ]
+    for column, unit in zip(found.numbers, units, strict=True):
         values = np.frombuffer(column)  # the same memory
         with np.errstate(over="ignore"):  # the caller checks the range and knows the location
             values *= unit.size
-    return columns, units
+    return FileColumns(found.numbers, units, lambda i: SourceLocation(path, found.find_line(text, i), 1))
+
+
+def report_gaps(columns: ReadColumns, path: str, problems: list[TableProblem]) -> None:
+    """Say how many rows of a file have a gap, and what became of them."""
+    count, filled, line = columns.gaps
+    if not count:
+        return
+    whole = count - filled + len(columns.numbers[0])
+    parts = [f"{count - filled} left out"] if count > filled else []
+    parts += [f"{filled} filled on a straight line"] if filled else []
+    message = f"{count} of {whole} rows {'has' if count == 1 else 'have'} a gap: {', '.join(parts)}"
+    finding = Finding(GAPS_CODE, message, "fill them in the file")
+    problems.append(TableProblem(("gaps",), finding, SourceLocation(path, line, 1), is_warning=True))

@@ -14,7 +14,7 @@ from heuncli.base.errors import Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar
 from heuncli.scene.importers.description import DescribedMachine, ImportOptions
-from heuncli.scene.importers.xml_elements import ROOT_HINT, XACRO_HINT, XmlElement
+from heuncli.scene.importers.xml_elements import ROOT_HINT, XmlElement, make_xacro_hint
 
 
 class ModelReader(NamedTuple):
@@ -47,7 +47,7 @@ READERS = (
         "URDF",
         "urdf.reader",
         frozenset({"free", "base_free", "limits", "density", "repair"}),
-        ("massless", "negative", "right-angles", "triangle", "zero"),
+        ("massless", "negative", "point", "right-angles", "shape", "triangle", "zero"),
     ),
     ModelReader("mujoco", "MJCF", "mjcf.reader", frozenset({"free", "limits", "keyframe"})),
 )
@@ -71,7 +71,7 @@ def find_reader(root: XmlElement, file: str) -> ModelReader:
     suggestion = find_similar(root.tag, known)
     hint = UNREAD_FORMATS.get(root.tag) or (f"did you mean <{suggestion}>?" if suggestion else ROOT_HINT)
     if root.tag.startswith("xacro:"):
-        hint = XACRO_HINT
+        hint = make_xacro_hint(file)
     forms = " or ".join(f"<{reader.root}> ({reader.form})" for reader in READERS)
     message = f"the root element is <{root.tag}>; readable are {forms}"
     raise SpecError(Problem("import-format", message, place, hint))

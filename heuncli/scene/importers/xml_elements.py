@@ -6,6 +6,8 @@ anything larger than the limits below. So one line of text cannot become gigabyt
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import PurePath
 from typing import Any
 from xml.parsers import expat
 
@@ -18,6 +20,8 @@ MAX_DEPTH = 5000  # levels: URDF has six, a chain of bodies in MJCF one each
 MAX_ATTRIBUTE_LENGTH = 100_000  # characters of an attribute: the points of a mesh in MJCF
 ENCODING_ERRORS = frozenset({expat.errors.codes[expat.errors.XML_ERROR_UNKNOWN_ENCODING]})
 ENCODING_HINT = "save it as UTF-8; UTF-16, ISO-8859-1 and US-ASCII are accepted if the first line declares them"
+MISPLACED_DECLARATION = frozenset({expat.errors.codes[expat.errors.XML_ERROR_MISPLACED_XML_PI]})
+DECLARATION_HINT = "delete all text before <?xml ...?>, blank lines too, or the declaration itself"
 LFS_POINTER = b"version https://git-lfs"
 BROKEN_HINT = "the file is truncated, or was damaged by hand editing near this place"
 XACRO_HINT = "expand the macros first: xacro robot.urdf.xacro > robot.urdf"
@@ -35,9 +39,29 @@ class XmlElement:
     line: int
     column: int
 
+    def iter_all(self) -> Iterator[XmlElement]:
+        """Yield the element and all elements in it, in the order of the file."""
+        waiting = [self]
+        while waiting:
+            element = waiting.pop()
+            yield element
+            waiting += reversed(element.children)
+
     def find_all(self, tag: str) -> list[XmlElement]:
         """Return the child elements with this tag."""
         return [element for element in self.children if element.tag == tag]
+
+
+def make_xacro_hint(file: str) -> str:
+    """Return the command that expands the macros of a file."""
+    if file == "-":
+        return XACRO_HINT
+    import shlex  # only such a file needs it
+
+    path = PurePath(file)
+    name = path.name.removesuffix(".xacro").removesuffix(".urdf") or "robot"
+    target = path.with_name(f"{name}.urdf" if path.name.endswith(".xacro") else f"{name}_expanded.urdf")
+    return f"expand the macros first: xacro {shlex.quote(file)} > {shlex.quote(str(target))}"
 
 
 def parse_xml(content: bytes, file: str) -> XmlElement:
@@ -75,7 +99,9 @@ class _XmlParser:
         except expat.ExpatError as error:
             reason = expat.errors.messages.get(error.code, "not well-formed")
             hint = ENCODING_HINT if error.code in ENCODING_ERRORS or not _is_utf8(content) else BROKEN_HINT
-            if b"<" not in content[: error.offset + 1]:
+            if error.code in MISPLACED_DECLARATION:
+                reason, hint = "the declaration <?xml ...?> is not at the very beginning", DECLARATION_HINT
+            elif b"<" not in content[: error.offset + 1]:
                 hint = ROOT_HINT
             if content.startswith(LFS_POINTER):
                 hint = "this is a Git LFS pointer: fetch the file with git lfs pull"

@@ -14,6 +14,7 @@ from heuncli.scene.file_format.rotations import rotation_from_matrix
 from heuncli.study.queries.expectations import compare
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read
+from tests.shared.imported import imported
 from tests.shared.scenes import near, study
 
 
@@ -51,6 +52,18 @@ def periodic(x: float) -> str:
     return read(bar(tail=f"tables: {{w: {{x: [0, 1, 2], y: [0, 1, 0], period: {2 * (1 + x)!r}}}}}"))
 
 
+def moment(x: float) -> str:
+    """A link of a robot of 1 m and 1 kg with one product of inertia of x."""
+    names = ("ixx", "iyy", "izz", "ixy", "iyz")
+    zeros = " ".join(f'{name}="0"' for name in names)
+    inertial = f'<inertial><origin xyz="0 0 1"/><mass value="1"/><inertia {zeros} ixz="{x!r}"/></inertial>'
+    try:
+        imported(f'<robot name="r"><link name="a">{inertial}</link></robot>')
+    except HeunError as error:
+        return error.problems[0].message.partition(" but")[0].partition(":")[0]
+    return "fine"
+
+
 def strength(x: float) -> str:
     cut = (
         "{body: bar, at: [0, 0, -0.4], normal: [0, 0, -1], piece: {mass: 0.6, center: [0, 0, -0.7], inertia: [1, 1, 1]}"
@@ -79,6 +92,7 @@ PART = Part(
         Row("INERTIA_REFUSED", principal, "warned: inertia-rounded", "refused: inertia-not-physical"),
         Row("INERTIA_TYPED", principal, "fine", "warned: inertia-rounded"),
         Row("INERTIA_TYPED", unsymmetric, "fine", "refused: inertia-form"),
+        Row("NO_IMPORTED_MOMENT", moment, "all moments of inertia are 0,", "a principal moment of inertia is negative"),
         Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),
         Row("LEAST_STRENGTH", strength, "warned: strength-small", "fine"),
         Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),

@@ -16,7 +16,7 @@ from heuncli.app.commands.sweep.axis_arguments import AxisArgument, AxisColumn
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
-from heuncli.scene.file_format.columns import iter_rows
+from heuncli.scene.file_format.column_layout import iter_rows
 from heuncli.scene.file_format.headings import split_heading
 from heuncli.scene.file_format.quantity import parse_number_with_unit
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes

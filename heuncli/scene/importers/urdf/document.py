@@ -7,22 +7,23 @@ from collections import Counter
 from heuncli.base.errors import SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
-from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Vec
+from heuncli.scene.importers.attitudes import rotate_vector, rotation_from_roll_pitch_yaw
 from heuncli.scene.importers.description import LEFT_OUT_CODE
 from heuncli.scene.importers.urdf.fields import UrdfFields, find_misspelt
-from heuncli.scene.importers.xml_elements import XACRO_HINT, XmlElement
+from heuncli.scene.importers.urdf.foreign_parts import find_mechanical_hint, leave_out_part
+from heuncli.scene.importers.xml_elements import XmlElement, make_xacro_hint
 
 MAX_LINKS = 100_000
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 ROTARY_TYPES, SLIDING_TYPES = ("revolute", "continuous"), ("prismatic",)
 X_AXIS: Vec = (1.0, 0.0, 0.0)
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-# elements of a robot, link or joint without mechanical meaning
-NON_MECHANICAL_TAGS = ("material", "gazebo", "transmission", "sensor", "plugin", "ros2_control", "safety_controller")
 LINK_PARTS = ("inertial", "visual", "collision")
+PLACES_IN_LINKS = ("origin", "pose", "frame", "axis")  # a link has none: its joint places it
 INERTIAL_PARTS = ("origin", "mass", "inertia")
 JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration")
+OLD_DYNAMICS = "joint_properties"  # the name of <dynamics> before ROS Fuerte
 JOINT_TYPE_HINT = (
     "known: " + ", ".join(JOINT_TYPES) + "; for a ball joint use three revolute joints with links between them"
 )
@@ -38,13 +39,15 @@ class LinkPose(NamedTuple):
 class Inertial(NamedTuple):
     """mass: [kg]
     pose: of the axes of the inertia, whose origin is the centre of mass
-    moments: ixx, iyy, izz, ixy, ixz, iyz [kg m^2]
+    moments: ixx, iyy, izz, ixy, ixz, iyz [kg m^2]; None if the file has none
+    has_center: whether the file gives the centre of mass, which otherwise is the link's origin
     """
 
     element: XmlElement
     mass: float
     pose: LinkPose
-    moments: tuple[float, ...]
+    moments: tuple[float, ...] | None
+    has_center: bool
 
 
 @record
@@ -109,7 +112,7 @@ class UrdfJoint:
 class Robot:
     """All links and joints of a file, in order.
 
-    ignored_tags: how often each tag without mechanical meaning occurs
+    ignored_tags: how often each tag without mechanical meaning occurs, in the order of the file
     is_complete: whether no link or joint was dropped for an error, so that whatever is missing is missing in the file
     """
 
@@ -127,22 +130,20 @@ def read_robot(root: XmlElement, fields: UrdfFields) -> Robot:
     links: dict[str, UrdfLink] = {}
     joints: dict[str, UrdfJoint] = {}
     ignored_tags: Counter[str] = Counter()
+    path = f"robot {root.attributes.get('name', '')}".strip()
+    left_out_count = 0
     for element in root.children:
         if element.tag == "link":
             link = _read_link(element, fields, ignored_tags)
             if link is not None and _check_is_new(link, links, fields):
                 links[link.name] = link
         elif element.tag == "joint":
-            joint = _read_joint(element, fields)
+            joint = _read_joint(element, fields, ignored_tags)
             if joint is not None and _check_is_new(joint, joints, fields):
                 joints[joint.name] = joint
-        elif element.tag in NON_MECHANICAL_TAGS:
-            ignored_tags[element.tag] += 1
-        else:
-            message = f"<{element.tag}> is not a known part of a robot"
-            hint = suggest(element.tag, ("link", "joint", *sorted(NON_MECHANICAL_TAGS)), "parts")
-            fields.report("import-part", element, f"robot {root.attributes.get('name', '')}".strip(), message, hint)
-    is_complete = len(links) + len(joints) + sum(ignored_tags[tag] for tag in NON_MECHANICAL_TAGS) == len(root.children)
+        elif leave_out_part(element, path, ("link", "joint"), fields, ignored_tags, ""):
+            left_out_count += 1
+    is_complete = len(links) + len(joints) + left_out_count == len(root.children)
     return Robot(
         root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(ignored_tags), is_complete
     )
@@ -150,13 +151,26 @@ def read_robot(root: XmlElement, fields: UrdfFields) -> Robot:
 
 def _require_readable(root: XmlElement, fields: UrdfFields) -> None:
     """Raise SpecError for macros that are not expanded, and for files that are too large."""
-    macro = next((element for element in root.children if element.tag.startswith("xacro:")), None)
-    if macro is not None:
-        raise SpecError(fields.make_problem("import-xacro", macro, "", f"<{macro.tag}> is a xacro macro", XACRO_HINT))
+    prefixes = _find_macro_prefixes(root)
+    is_macro_file = any(f"xmlns:{prefix}" in root.attributes for prefix in prefixes)
+    for element in root.iter_all():
+        if element.tag.partition(":")[0] in prefixes and ":" in element.tag:
+            message = f"<{element.tag}> is a xacro macro"
+        elif is_macro_file and any("${" in text or "$(" in text for text in element.attributes.values()):
+            message = f"an attribute of <{element.tag}> is a xacro expression"
+        else:
+            continue
+        raise SpecError(fields.make_problem("import-xacro", element, "", message, make_xacro_hint(fields.file)))
     links = len(root.find_all("link"))
     if links > MAX_LINKS:
         message = f"{links:,} links; at most {MAX_LINKS:,} are allowed"
         raise SpecError(fields.make_problem("too-large", root, "", message, "split the robot"))
+
+
+def _find_macro_prefixes(root: XmlElement) -> set[str]:
+    """Find the prefixes that stand for xacro: its own, and those that the root declares for its address."""
+    declared = {name.partition(":")[2] for name, text in root.attributes.items() if "xacro" in text}
+    return {"xacro", *declared} - {""}
 
 
 def _check_is_new(
@@ -173,13 +187,15 @@ def _read_link(element: XmlElement, fields: UrdfFields, ignored_tags: Counter[st
     name = fields.read_word(element, "name", "link")
     if name is None:
         return None
-    others = [part.tag for part in element.children if part.tag not in LINK_PARTS]
     suggestions = dict(find_misspelt(dict.fromkeys([part.tag for part in element.children]), LINK_PARTS))
     for part in element.children:
         if part.tag in suggestions:
             message = f"<link> has an unknown part <{part.tag}>"
             fields.report("import-part", part, f"link {name}", message, f"did you mean {suggestions[part.tag]}?")
-    ignored_tags.update(f"{tag} in links" for tag in others if tag not in suggestions)
+        elif part.tag not in (*LINK_PARTS, *PLACES_IN_LINKS) and find_mechanical_hint(part.tag) is not None:
+            leave_out_part(part, f"link {name}", LINK_PARTS, fields, ignored_tags, " in links")
+        elif part.tag not in LINK_PARTS:
+            ignored_tags[f"{part.tag} in links"] += 1
     inertial = fields.find_child(element, "inertial", f"link {name}")
     return UrdfLink(name, element, None if inertial is None else _read_inertial(inertial, f"link {name}", fields))
 
@@ -188,21 +204,22 @@ def _read_inertial(element: XmlElement, path: str, fields: UrdfFields) -> Inerti
     """Read the inertial element. None if something in it is wrong, which is then a problem."""
     fields.report_unknown_parts(element, path, *INERTIAL_PARTS)
     parts = {tag: fields.find_child(element, tag, path) for tag in ("mass", "inertia")}
-    for tag, part in parts.items():
-        if part is None:
-            hint = "give both mass and inertia; leave out <inertial> for a frame without mass"
-            fields.report("import-missing", element, path, f"<inertial> has no <{tag}>", hint)
     pose = read_pose(element, path, fields)
+    has_center = any("xyz" in origin.attributes for origin in element.find_all("origin"))
     mass_part, inertia_part = parts["mass"], parts["inertia"]
-    if mass_part is None or inertia_part is None:
+    if mass_part is None:
+        hint = "give both mass and inertia; leave out <inertial> for a frame without mass"
+        fields.report("import-missing", element, path, "<inertial> has no <mass>", hint)
         return None
     fields.report_unknown_attributes(mass_part, path, "value")
-    fields.report_unknown_attributes(inertia_part, path, *MOMENTS)
     mass = fields.read_number(mass_part, "value", path)
-    moments = [fields.read_number(inertia_part, name, path) for name in MOMENTS]
+    if inertia_part is None:
+        return None if mass is None or pose is None else Inertial(element, mass, pose, None, has_center)
+    fields.report_unknown_attributes(inertia_part, path, *MOMENTS)
+    moments = [fields.read_moment(inertia_part, name, path) for name in MOMENTS]
     if mass is None or pose is None or None in moments:
         return None
-    return Inertial(inertia_part, mass, pose, tuple(value for value in moments if value is not None))
+    return Inertial(inertia_part, mass, pose, tuple(value for value in moments if value is not None), has_center)
 
 
 def read_pose(element: XmlElement, path: str, fields: UrdfFields) -> LinkPose | None:
@@ -214,30 +231,42 @@ def read_pose(element: XmlElement, path: str, fields: UrdfFields) -> LinkPose | 
     return None if xyz is None or rpy is None else LinkPose(xyz, fields.read_angles(rpy, path))
 
 
-def _read_joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
+def _read_joint(element: XmlElement, fields: UrdfFields, ignored_tags: Counter[str]) -> UrdfJoint | None:
     name = fields.read_word(element, "name", "joint")
     path = f"joint {name}" if name is not None else "joint"
-    fields.report_unknown_parts(element, path, *JOINT_PARTS, *NON_MECHANICAL_TAGS)
+    for part in element.children:
+        if part.tag not in (*JOINT_PARTS, OLD_DYNAMICS):
+            leave_out_part(part, path, JOINT_PARTS, fields, ignored_tags, " in joints")
     kind = fields.read_word(element, "type", path)
     if kind is not None and kind not in JOINT_TYPES:
         fields.report("import-joint", element, path, f"'{kind}' is not a type of joint in URDF", JOINT_TYPE_HINT)
         kind = None
     ends = [_read_end(element, tag, path, fields) for tag in ("parent", "child")]
     pose = read_pose(element, path, fields)
-    axis_part = fields.find_child(element, "axis", path)
-    if axis_part is not None:
-        fields.report_unknown_attributes(axis_part, path, "xyz")
-        fields.read_word(axis_part, "xyz", path)
-    axis = fields.read_vector(axis_part, "xyz", path, X_AXIS)
-    if axis == ZERO and kind not in (None, "fixed", "floating"):
-        fields.report("import-joint", axis_part or element, path, "the axis is 0 0 0", "give a direction, e.g. 0 0 1")
+    axis = _read_axis(element, path, fields, kind)
     mimic = _read_mimic(element, path, fields, kind)
     limits, effort = _read_limits(element, path, fields)
-    damping, friction = _read_dynamics(element, path, fields)
+    damping, friction = _read_dynamics(element, path, fields, ignored_tags)
     parent, child = ends
     if name is None or kind is None or parent is None or child is None or pose is None or axis is None:
         return None
     return UrdfJoint(name, element, kind, parent, child, pose, axis, limits, effort, mimic, damping, friction)
+
+
+def _read_axis(element: XmlElement, path: str, fields: UrdfFields, kind: str | None) -> Vec | None:
+    """Read the axis in the joint's frame, turned by its own rpy if it has one; None if it is wrong."""
+    part = fields.find_child(element, "axis", path)
+    if part is None:
+        return X_AXIS
+    fields.report_unknown_attributes(part, path, "xyz", "rpy")
+    fields.read_word(part, "xyz", path)
+    axis, rpy = fields.read_vector(part, "xyz", path, X_AXIS), fields.read_vector(part, "rpy", path, ZERO)
+    if axis == ZERO and kind not in (None, "fixed", "floating"):
+        fields.report("import-joint", part, path, "the axis is 0 0 0", "give a direction, e.g. 0 0 1")
+    if axis is None or rpy is None or rpy == ZERO:
+        return axis
+    fields.turned_axes[path] = None
+    return rotate_vector(rotation_from_roll_pitch_yaw(fields.read_angles(rpy, path)), axis)
 
 
 def _read_end(element: XmlElement, tag: str, path: str, fields: UrdfFields) -> str | None:
@@ -276,10 +305,21 @@ def _read_limits(element: XmlElement, path: str, fields: UrdfFields) -> tuple[tu
     return (None if lower is None or upper is None else (lower, upper)), effort
 
 
-def _read_dynamics(element: XmlElement, path: str, fields: UrdfFields) -> tuple[float, float]:
-    part = fields.find_child(element, "dynamics", path)
-    if part is None:
-        return 0.0, 0.0
+def _read_dynamics(
+    element: XmlElement, path: str, fields: UrdfFields, ignored_tags: Counter[str]
+) -> tuple[float, float]:
+    """Read damping and friction from <dynamics>, or from <joint_properties>, which it was called before."""
+    parts = [part for tag in ("dynamics", OLD_DYNAMICS) if (part := fields.find_child(element, tag, path)) is not None]
+    values = [_read_damping(part, path, fields) for part in parts]
+    if len(values) > 1:
+        if values[0] != values[1] and any(values[1]):
+            message = f"<{OLD_DYNAMICS}> is the old name of <dynamics>, and both have different numbers"
+            fields.report("import-twice", parts[1], path, message, "keep one of them")
+        ignored_tags[f"{OLD_DYNAMICS} beside dynamics"] += 1
+    return values[0] if values else (0.0, 0.0)
+
+
+def _read_damping(part: XmlElement, path: str, fields: UrdfFields) -> tuple[float, float]:
     fields.report_misspelt(part, path, "damping", "friction")
     damping, friction = (fields.read_number(part, name, path, 0.0) for name in ("damping", "friction"))
     for name, value in (("damping", damping), ("friction", friction)):

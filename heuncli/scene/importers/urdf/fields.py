@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 
+from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SourceLocation
 from heuncli.base.spelling import suggest
 from heuncli.base.units import is_in_range, range_error
@@ -32,6 +33,7 @@ class UrdfFields:
         self.problems: list[Problem] = []
         self.left_out: list[Problem] = []  # features without a counterpart in a spec
         self.nearly_right_angled: dict[str, None] = {}  # paths of elements with nearly right angles
+        self.turned_axes: dict[str, None] = {}  # joints whose axis has an rpy other than 0
         self.links_without_inertia: dict[str, None] = {}  # links with mass 0 whose inertia is left out
 
     def read_angles(self, rpy: Vec, path: str) -> Vec:
@@ -98,6 +100,11 @@ class UrdfFields:
         found = self.read_numbers(element, name, path, 1, None if default is None else (default,))
         return None if found is None else found[0]
 
+    def read_moment(self, element: XmlElement, name: str, path: str) -> float | None:
+        """Return a moment of inertia. Anything below LEAST_MAGNITUDE is 0."""
+        found = self.read_numbers(element, name, path, 1, None, self._parse_moment)
+        return None if found is None else found[0]
+
     def read_vector(self, element: XmlElement | None, name: str, path: str, default: Vec) -> Vec | None:
         """Return the three numbers of an attribute; None if they are wrong. Anything below CANCELLATION_ERROR is 0."""
         if element is None:
@@ -149,6 +156,10 @@ class UrdfFields:
     def _parse_length(self, element: XmlElement, name: str, path: str, word: str) -> float | None:
         """Parse a length, an angle or a component of a direction."""
         is_tiny = NUMBER.match(word) is not None and abs(float(word)) < CANCELLATION_ERROR
+        return 0.0 if is_tiny else self.parse_number(element, name, path, word)
+
+    def _parse_moment(self, element: XmlElement, name: str, path: str, word: str) -> float | None:
+        is_tiny = NUMBER.match(word) is not None and abs(float(word)) < tolerances.LEAST_MAGNITUDE
         return 0.0 if is_tiny else self.parse_number(element, name, path, word)
 
 

@@ -9,15 +9,20 @@ Without repair, the moments may violate this by what heun accepts as rounding. A
     negative    moments below 0 become 0
     triangle    A1 and A2 are raised, each by half of A3 - A1 - A2, which minimizes the sum of squares of the changes
     zero        a link with a mass and no moment at all becomes a point mass
+    point       a link with a mass and no <inertia> becomes a point mass
+    shape       a link with a mass and no <inertia> gets the inertia of its shapes, scaled to its mass
     massless    a link without mass that moves gets a point mass of REPAIRED_MASS at its origin; a mass of 0
                 loses its inertia
 
-A link without inertia has shapes of the density of --density. The collision elements are used if all of them are boxes,
+Moments that are rounding beside mass * size^2 count as 0 before they are judged.
+
+A link without mass has shapes of the density of --density. The collision elements are used if all of them are boxes,
 cylinders and spheres, otherwise the visual ones. A URDF cylinder is centred at the origin, with its axis along z.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from heuncli.base import tolerances
@@ -34,9 +39,9 @@ from heuncli.scene.importers.attitudes import (
     round_number,
     round_vector,
 )
-from heuncli.scene.importers.description import DescribedEntry
+from heuncli.scene.importers.description import DescribedEntry, ImportOptions
 from heuncli.scene.importers.spec_text import format_number
-from heuncli.scene.importers.urdf.document import Inertial, UrdfLink, read_pose
+from heuncli.scene.importers.urdf.document import Inertial, Robot, UrdfLink, read_pose
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
@@ -60,12 +65,25 @@ class LinkMass(NamedTuple):
     notes: dict[str, str]
 
 
-def validate_mass(link: UrdfLink, repair: frozenset[str], fields: UrdfFields) -> LinkMass | None:
+def find_size(robot: Robot) -> float:
+    """Return the size of a robot [m]: the longest distance in its joints and centres of mass, or 1 if all are 0."""
+    places = [joint.pose.xyz for joint in robot.joints.values()]
+    places += [link.inertial.pose.xyz for link in robot.links.values() if link.inertial is not None]
+    return max((math.hypot(*place) for place in places), default=0.0) or 1.0
+
+
+def validate_mass(link: UrdfLink, repair: frozenset[str], size: float, fields: UrdfFields) -> LinkMass | None:
     """Return the validated mass properties of a link; None if it has none, or if they are wrong, which is then a
     problem.
+
+    size: of the robot [m]
     """
     inertial = link.inertial
-    if inertial is None or (inertial.mass == 0.0 and not any(inertial.moments)):
+    if inertial is not None and inertial.moments is not None:
+        least = tolerances.NO_IMPORTED_MOMENT * abs(inertial.mass) * size * size
+        moments = tuple(0.0 if abs(moment) <= least else moment for moment in inertial.moments)
+        inertial = inertial._replace(moments=moments)
+    if inertial is None or (inertial.mass == 0.0 and not any(inertial.moments or ())):
         return None  # explicitly without mass
     if inertial.mass == 0.0 and "massless" in repair:
         fields.links_without_inertia[link.name] = None
@@ -77,25 +95,53 @@ def validate_mass(link: UrdfLink, repair: frozenset[str], fields: UrdfFields) ->
             hint += "; --repair massless leaves the inertia out"
         fields.report("import-mass", inertial.element, link.path, message, hint)
         return None
-    validation = _InertiaValidation(link, inertial, repair, fields)
+    if inertial.moments is None:
+        return _make_point_mass(link, inertial, repair, fields)
+    validation = _InertiaValidation(link, inertial, inertial.moments, repair, fields)
     validation.check_zero()
     validation.check_negative()
     validation.check_triangle()
     return LinkMass(inertial.mass, inertial.pose.xyz, inertial.pose.rpy, validation.inertia, validation.notes)
 
 
+def takes_inertia_of_shapes(link: UrdfLink, options: ImportOptions) -> bool:
+    """Return whether a link has a mass without inertia that the options take from its shapes."""
+    inertial, is_asked = link.inertial, "shape" in options.repair or options.density is not None
+    if inertial is None or inertial.moments is not None or inertial.mass <= 0.0 or "point" in options.repair:
+        return False
+    return is_asked and _has_geometry(link)
+
+
+def _has_geometry(link: UrdfLink) -> bool:
+    return any(link.element.find_all(tag) for tag in GEOMETRY_TAGS)
+
+
+def _make_point_mass(link: UrdfLink, inertial: Inertial, repair: frozenset[str], fields: UrdfFields) -> LinkMass | None:
+    """Make a link with a mass and no inertia a point mass, if that repair is asked for; else it is a problem."""
+    if "point" in repair:
+        notes = {"inertia": "repaired (point): a point mass; the file has no inertia"}
+        return LinkMass(inertial.mass, inertial.pose.xyz, ZERO, (ZERO, ZERO, ZERO), notes)
+    hint = "add it, or repair it: --repair point makes a point mass at the origin of <inertial>"
+    if _has_geometry(link):
+        hint += "; --repair shape (or --density) scales its shapes to the mass"
+    fields.report("import-missing", inertial.element, link.path, "<inertial> has no <inertia>", hint)
+    return None
+
+
 class _InertiaValidation:
     """The inertia of one link while it is checked for three faults."""
 
-    def __init__(self, link: UrdfLink, inertial: Inertial, repair: frozenset[str], fields: UrdfFields) -> None:
+    def __init__(
+        self, link: UrdfLink, inertial: Inertial, moments: tuple[float, ...], repair: frozenset[str], fields: UrdfFields
+    ) -> None:
         self.link, self.inertial, self.repair, self.fields = link, inertial, repair, fields
-        self.inertia = _make_tensor(inertial.moments)
+        self.moments, self.inertia = moments, _make_tensor(moments)
         self.repairs_done: list[str] = []
         self.notes: dict[str, str] = {}
 
     def check_zero(self) -> None:
         """Check that some moment is not 0. A moment of 0 about one axis is a thin rod, which is a valid body."""
-        if not any(self.inertial.moments):
+        if not any(self.moments):
             if "zero" in self.repair:
                 self.notes["inertia"] = "repaired (zero): a point mass; all moments are 0 in the file"
             else:
@@ -149,7 +195,7 @@ class _InertiaValidation:
     def replace_moments(self, word: str, moments: Vec) -> None:
         """Set other principal moments, ascending, about the same axes, and note both."""
         self.repairs_done.append(word)
-        old = _format_moments(symmetric_eigenvalues(_make_tensor(self.inertial.moments)))
+        old = _format_moments(symmetric_eigenvalues(_make_tensor(self.moments)))
         words = ", ".join(self.repairs_done)
         self.notes["inertia"] = f"repaired ({words}): principal moments {_format_moments(moments)}; the file has {old}"
         self.inertia = _replace_principal_moments(self.inertia, moments)
@@ -204,7 +250,7 @@ def make_shapes(
     found = {source: link.element.find_all(source) for source in GEOMETRY_TAGS}
     present = [source for source in GEOMETRY_TAGS if found[source]]
     source = next(
-        (source for source in present if all(map(_is_supported, found[source]))), present[0] if present else ""
+        (source for source in present if all(map(is_supported, found[source]))), present[0] if present else ""
     )
     shapes = [_make_shape(element, R, density, link, fields) for element in found.get(source, ())]
     return source, tuple(shape for shape in shapes if shape is not None)
@@ -212,15 +258,15 @@ def make_shapes(
 
 def has_supported_shapes(link: UrdfLink) -> bool:
     """Return whether all visual or all collision elements are boxes, cylinders and spheres."""
-    return any(found and all(map(_is_supported, found)) for found in map(link.element.find_all, GEOMETRY_TAGS))
+    return any(found and all(map(is_supported, found)) for found in map(link.element.find_all, GEOMETRY_TAGS))
 
 
-def _is_supported(element: XmlElement) -> bool:
+def is_supported(element: XmlElement) -> bool:
     """Return whether the element is a box, cylinder or sphere."""
-    return _find_form(element) is not None
+    return find_form(element) is not None
 
 
-def _find_form(element: XmlElement) -> XmlElement | None:
+def find_form(element: XmlElement) -> XmlElement | None:
     parts = [part for geometry in element.find_all("geometry") for part in geometry.children]
     return parts[0] if len(parts) == 1 and parts[0].tag in SIZE_ATTRIBUTES else None
 
@@ -228,7 +274,7 @@ def _find_form(element: XmlElement) -> XmlElement | None:
 def _make_shape(
     element: XmlElement, R: Matrix, density: float, link: UrdfLink, fields: UrdfFields
 ) -> DescribedEntry | None:
-    form, pose = _find_form(element), read_pose(element, link.path, fields)
+    form, pose = find_form(element), read_pose(element, link.path, fields)
     if form is None:
         parts = [part.tag for geometry in element.find_all("geometry") for part in geometry.children]
         geometry_text = f"a {parts[0]}" if parts else "nothing"
@@ -236,7 +282,7 @@ def _make_shape(
         hint = "give it an <inertial>; --density fills boxes, cylinders and spheres, and links made only of meshes"
         fields.report("import-shape", element, link.path, message, hint)
         return None
-    sizes = _read_sizes(form, link, fields)
+    sizes = read_sizes(form, link, fields)
     if sizes is None or pose is None:
         return None
     attitude = compose_rotations(R, rotation_from_roll_pitch_yaw(pose.rpy))
@@ -258,7 +304,7 @@ def _shape_keys(form: str, center: Vec, attitude: Matrix, sizes: tuple[float, ..
     return {"type": "box", "center": center, "size": sizes, "orientation": {"matrix": rows}}
 
 
-def _read_sizes(form: XmlElement, link: UrdfLink, fields: UrdfFields) -> tuple[float, ...] | None:
+def read_sizes(form: XmlElement, link: UrdfLink, fields: UrdfFields) -> tuple[float, ...] | None:
     """Read the sizes [m], all above 0; None if they are wrong."""
     values: list[float] = []
     for name in SIZE_ATTRIBUTES[form.tag]:

@@ -44,7 +44,7 @@ def _find_mesh_element(element: XmlElement) -> XmlElement | None:
 
 def compute_mesh_mass(link: UrdfLink, tag: str, density: float, fields: UrdfFields) -> LinkMass | None:
     """Compute the mass, centre and inertia of a link's meshes; None, and problems, if one is no solid."""
-    parts = [_mesh_pseudo_inertia(element, density, link, fields) for element in link.element.find_all(tag)]
+    parts = [mesh_pseudo_inertia(element, density, link, fields) for element in link.element.find_all(tag)]
     known = [part for part in parts if part is not None]
     if len(known) < len(parts):
         return None
@@ -55,7 +55,7 @@ def compute_mesh_mass(link: UrdfLink, tag: str, density: float, fields: UrdfFiel
     return LinkMass(mass, (x, y, z), ZERO, (a, b, c), {"mass": note})
 
 
-def _mesh_pseudo_inertia(element: XmlElement, density: float, link: UrdfLink, fields: UrdfFields) -> Array | None:
+def mesh_pseudo_inertia(element: XmlElement, density: float, link: UrdfLink, fields: UrdfFields) -> Array | None:
     """Compute the pseudo-inertia (4, 4) of one mesh, in the link's frame."""
     form, pose = _find_mesh_element(element), read_pose(element, link.path, fields)
     assert form is not None

@@ -41,13 +41,15 @@ from heuncli.scene.importers.urdf.carriers import (
     place_links,
 )
 from heuncli.scene.importers.urdf.coordinates import RobotCoordinates
-from heuncli.scene.importers.urdf.document import Robot, read_robot
+from heuncli.scene.importers.urdf.document import Robot, UrdfLink, read_robot
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.urdf.masses import (
     LinkMass,
+    find_size,
     has_supported_shapes,
     make_repaired_mass,
     make_shapes,
+    takes_inertia_of_shapes,
     validate_mass,
 )
 from heuncli.scene.importers.urdf.tree import LinkTree, build_tree
@@ -201,6 +203,8 @@ def _header_lines(validated_robot: ValidatedRobot, fields: UrdfFields) -> Iterat
     if fields.nearly_right_angled:
         what = "read as right angles (--repair right-angles)" if fields.repair_right_angles else "kept unchanged"
         yield f"Nearly right angles, such as 1.5708, are {what}: {list_words(fields.nearly_right_angled)}."
+    if fields.turned_axes:
+        yield f"Axes turned by their own rpy, which some programs pass over: {list_words(fields.turned_axes)}."
     for link in fields.links_without_inertia:
         yield f'Repaired (massless): the link "{link}" has mass 0; its inertia is left out.'
     if validated_robot.robot.ignored_tags:
@@ -226,12 +230,22 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
     fields = UrdfFields(file, "right-angles" in options.repair)
     robot = read_robot(root, fields)
     tree = build_tree(robot, fields)
-    masses = {name: validate_mass(link, options.repair, fields) for name, link in robot.links.items()}
+    size = find_size(robot)
+    masses = {name: _find_link_mass(link, options, size, fields) for name, link in robot.links.items()}
     link_masses = {name: mass for name, mass in masses.items() if mass is not None}
     validated_robot = None if tree is None or fields.problems else _validate(robot, tree, link_masses, options, fields)
     if validated_robot is None or fields.problems:
         raise SpecError(*sorted(fields.problems, key=lambda problem: problem.location[1:3] if problem.location else ()))
     return build_machine(validated_robot, options, fields, sha256)
+
+
+def _find_link_mass(link: UrdfLink, options: ImportOptions, size: float, fields: UrdfFields) -> LinkMass | None:
+    """Return the mass properties of a link as the file gives them, or of its shapes as asked."""
+    if link.inertial is not None and takes_inertia_of_shapes(link, options):
+        from heuncli.scene.importers.urdf.shape_inertia import compute_shape_mass  # imports NumPy
+
+        return compute_shape_mass(link, link.inertial, fields)
+    return validate_mass(link, options.repair, size, fields)
 
 
 def _validate(
