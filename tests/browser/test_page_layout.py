@@ -104,9 +104,8 @@ def test_a_load_case_is_chosen(browser: Chromium, tmp_path: Path) -> None:
         tab.evaluate(
             "(list => (list.value = '1', list.dispatchEvent(new Event('change'))))(document.querySelector('#case'))"
         )
-        tab.until(
-            "!window.isLeft && document.readyState === 'complete' && document.querySelectorAll('#summary tr').length > 3"
-        )
+        loaded = "!window.isLeft && document.readyState === 'complete'"
+        tab.until(f"{loaded} && document.querySelectorAll('#summary tr').length > 3")
         assert tab.evaluate("document.querySelector('#case').value") == "1"
         assert tab.evaluate(SUMMARY) != first
         assert tab.faults == []
