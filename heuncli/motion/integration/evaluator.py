@@ -175,7 +175,8 @@ class Evaluator:
         """
         if not self.layout.rows:
             return residual
-        return np.where(rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL, 0.0, residual)
+        is_still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
+        return np.asarray(np.where(is_still, 0.0, residual))
 
     def _find_opening(self, contact_states: Array, rows: Table, residual: Array, allowed_residual: Array) -> Mask:
         """Mark contacts (n_t, contacts), closed by others, that a drive opens by less than the rounding of gaps: where
