@@ -22,7 +22,7 @@ from tests.shared.variant_scenes import (
     in_bar,
 )
 
-MOST_RUNS = 15  # of one crossing; two of them look into the outermost intervals of the scan
+MOST_RUNS = 12  # of one crossing
 DEG = math.pi / 180.0
 
 

@@ -24,7 +24,7 @@ def test_so_it_is_by_the_whole_command(seed: int) -> None:
     assert verdict.wrong == [], (course, relation)
 
 
-@pytest.mark.parametrize("seed", [1068, 1097, 1104, 1110, 1123, 1240, 1263, 1353, 1595, 1938, 3797])
+@pytest.mark.parametrize("seed", [1068, 1097, 1104, 1110, 1123, 1240, 1263, 1353, 1595, 1938])
 def test_narrow_peaks_flat_touches_and_near_pairs_are_not_passed_over(seed: int) -> None:
     """Each was told as met nowhere, at a place out of its stated ends, or as met throughout."""
     course, relation, verdict = judged(seed, direct=True)

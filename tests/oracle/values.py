@@ -108,7 +108,7 @@ def flow(value: Any) -> str:
         if source is not None and not hasattr(value[1], "source"):
             return json.dumps(source)
     if isinstance(value, str | bool) or value is None:
-        return json.dumps(value)
+        return json.dumps(value, ensure_ascii=False)
     if isinstance(value, list | tuple | np.ndarray):
         return "[" + ", ".join(flow(v) for v in value) + "]"
     return repr(float(value)) if isinstance(value, float | np.floating) else repr(int(value))

@@ -172,8 +172,8 @@ def may_hide_wave(course: MeasureCourse, i: int) -> bool:
     """Return whether two neighbours may hide a wave that meets the value, with a prediction error MAX_DISTRUST times as
     large.
 
-    They may if the curvature changes there. If one of them is the last of its stretch, predictions are one-sided, and
-    agree by accident at times: such an interval is always looked into.
+    They may if the curvature changes there, or if one of them is the last of its stretch: predictions are then
+    one-sided, and agree by accident at times.
     """
     left, right = course.samples[i], course.samples[i + 1]
     if course.is_interrupted(i) or not left.side or left.side != right.side:
@@ -181,9 +181,9 @@ def may_hide_wave(course: MeasureCourse, i: int) -> bool:
     if has_pole(course):  # then no value is far from any other
         return True
     is_one_sided = not (course.find_neighbours(i, -1) and course.find_neighbours(i, 1))
-    if breaks_law(course, i) or is_one_sided:
+    if breaks_law(course, i) or (is_one_sided and course.distrust > FIRST_DISTRUST):
         return True
-    if not changes_curvature(course, i):
+    if not (is_one_sided or changes_curvature(course, i)):
         return False
     prediction = course.predict(i)
     nearest = left.side * prediction.gaps - MAX_DISTRUST / course.distrust * prediction.uncertainty
