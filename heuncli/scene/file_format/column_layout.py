@@ -299,7 +299,7 @@ def known_columns_hint(key: str, layout: ColumnLayout, text: str) -> str:
     by_number = "columns may also be given by number: 1, 2, ..."
     line = find_name_line(key.strip(), text)
     if line > layout.header_lines:
-        return f"line {line} has it: skip: {line - 1} passes over the lines above"
+        return f"line {line} has this name: give skip: {line - 1} to leave out the lines above it"
     names = find_numeric_columns(layout, text)
     if not layout.names:
         return f"the first row contains numbers, not names; {by_number}"
