@@ -114,7 +114,7 @@ REFUSED = {  # a file, the keys; the code, the line in the data file (0: in the 
     "x twice beside gaps": ("time,force\n0,1\n1,\n2,3\n2,4\n", f"{NAMED}, gaps: skip", "table-shape", 5, "increase x"),
     "x twice after skip": ("a\nb\ntime,force\n0,1\n0,4\n", f"{NAMED}, skip: 2", "table-shape", 5, "increase x"),
     "too large": ("time,force\n0,1\n1,1e70\n", NAMED, "magnitude", 3, "number 2 of y"),
-    "preamble": ("Device;17\nRate;100\n\ntime;force\n0;1\n", NAMED, "table-file", 0, "line 4 has this name: give skip: 3"),
+    "preamble": ("Device;17\nRate;100\n\ntime;force\n0;1\n", NAMED, "table-file", 0, "this name: give skip: 3"),
     "preamble and units": ("Device,17\nTime (s),F (N)\n0,1\n1,2\n", "x: Time, y: F", "table-file", 0, "skip: 1"),
     "preamble, by number": ("Device;17\nRate;100\ntime;force\n0;1\n", NUMBERED, "table-file", 2, "skip: N"),
     "preamble of one cell": ("Report\ntime,force\n0,1\n", NUMBERED, "table-file", 0, "skip: N"),
