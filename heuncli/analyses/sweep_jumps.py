@@ -87,7 +87,7 @@ class JumpFinder:
             window.clear()
 
     def _judge(self, from_end: int) -> None:
-        """Judge the interval before a sample, counted from the last one."""
+        """Judge the interval that begins so many samples before the last one."""
         for k, window in enumerate(self._windows):
             samples = list(window) if from_end == 3 else list(window)[-5:]
             place = len(samples) - 1 - from_end

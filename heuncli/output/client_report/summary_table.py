@@ -22,9 +22,9 @@ from heuncli.output.snapshots.tables import SearchedPage
 from heuncli.output.summary.run_document import summarise
 from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases
 from heuncli.output.summary.summary_rows import MIN_TURN, SummaryRow
-from heuncli.output.tables.cut_runs import collect_runs
 from heuncli.results.results import NOWHERE, CutPosition, Extremes
 from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.cut_runs import collect_runs
 
 MORE_NOTE = "{} smaller ones: chapter Loads"
 UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"

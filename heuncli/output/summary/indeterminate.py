@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.tables.cut_runs import collect_runs
 from heuncli.output.tables.extremes_tables import PART
 from heuncli.output.tables.name_ranges import join_ranges
 from heuncli.output.tables.page import Page
@@ -15,6 +14,7 @@ from heuncli.output.tables.plurals import format_count
 from heuncli.results.results_schema import RESULTANTS
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import Channel
+from heuncli.study.quantities.cut_runs import collect_runs
 from heuncli.study.quantities.labels import Labels
 
 ADJECTIVES = ("radial", "axial")  # of the loads of a joint with an axis

@@ -15,7 +15,6 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.output.snapshots.tables import SearchedPage
-from heuncli.output.tables.cut_runs import collect_runs
 from heuncli.output.tables.extremes_tables import DoubtfulInstants
 from heuncli.output.tables.impulse_tables import make_impact_results
 from heuncli.output.tables.page import Page
@@ -27,6 +26,7 @@ from heuncli.results.results_schema import IMPULSES, SECTION_FORCES, SECTION_MOM
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
+from heuncli.study.quantities.cut_runs import collect_runs
 from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import sort_distinct
 

@@ -17,7 +17,6 @@ from heuncli.study.quantities.cut_runs import (
     select_extremes,
     split_into_cuts,
 )
-from heuncli.study.quantities.cut_runs import collect_runs as collect_runs  # for output/summary
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,
