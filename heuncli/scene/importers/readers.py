@@ -49,11 +49,17 @@ READERS = (
         frozenset({"free", "base_free", "limits", "density", "repair"}),
         ("massless", "negative", "point", "right-angles", "shape", "triangle", "zero"),
     ),
+    ModelReader(
+        "sdf",
+        "SDF",
+        "sdf.reader",
+        frozenset({"free", "base_free", "limits", "density", "repair"}),
+        ("massless", "negative", "right-angles", "triangle", "zero"),
+    ),
     ModelReader("mujoco", "MJCF", "mjcf.reader", frozenset({"free", "limits", "keyframe"})),
 )
 UNREAD_FORMATS = {  # root elements of known formats without a reader, and a hint
-    "sdf": "SDF cannot be read: export the model as URDF",
-    "gazebo": "SDF cannot be read: export the model as URDF",
+    "gazebo": "this is SDF 1.0: convert it with gz sdf -p OLD > NEW",
     "COLLADA": "this is a mesh: give the URDF that uses it",
     "collada": "this is a mesh: give the URDF that uses it",
     "OpenSimDocument": "OpenSim models cannot be read",

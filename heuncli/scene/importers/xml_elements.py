@@ -6,7 +6,7 @@ anything larger than the limits below. So one line of text cannot become gigabyt
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 from typing import Any
 from xml.parsers import expat
@@ -25,19 +25,29 @@ DECLARATION_HINT = "delete all text before <?xml ...?>, blank lines too, or the 
 LFS_POINTER = b"version https://git-lfs"
 BROKEN_HINT = "the file is truncated, or was damaged by hand editing near this place"
 XACRO_HINT = "expand the macros first: xacro robot.urdf.xacro > robot.urdf"
-ROOT_HINT = "a URDF file begins with <robot name=...>, a MuJoCo model with <mujoco>"
+ROOT_HINT = "a URDF file begins with <robot name=...>, an SDF file with <sdf version=...>, a MuJoCo model with <mujoco>"
+TEXT_ROOTS = frozenset({"sdf"})  # formats that write values as text of elements
 DOCTYPE_HINT = "delete the DOCTYPE and replace its entities by their text"
 
 
 @record
 class XmlElement:
-    """An element: its tag, attributes and child elements, and where it starts (line and column, from 1)."""
+    """An element: its tag, attributes and child elements, and where it starts (line and column, from 1).
+
+    texts: the pieces of text in it; kept below a root of TEXT_ROOTS only, for other formats write values as attributes
+    """
 
     tag: str
     attributes: dict[str, str]
     children: list[XmlElement]
     line: int
     column: int
+    texts: Sequence[str] = ()
+
+    @property
+    def text(self) -> str:
+        """The text in the element, without outer spaces."""
+        return "".join(self.texts).strip()
 
     def iter_all(self) -> Iterator[XmlElement]:
         """Yield the element and all elements in it, in the order of the file."""
@@ -130,12 +140,20 @@ class _XmlParser:
             if len(value) > MAX_ATTRIBUTE_LENGTH or len(name) > MAX_ATTRIBUTE_LENGTH:
                 message = f"an attribute of {len(value):,} characters; at most {MAX_ATTRIBUTE_LENGTH:,} are allowed"
                 raise self.make_error("too-large", message, "is it the right file?")
-        element = XmlElement(tag, attributes, [], self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
+        if self.root is None and tag in TEXT_ROOTS:
+            self.parser.CharacterDataHandler = self.add_text
+        texts: list[str] | tuple[str, ...] = () if self.parser.CharacterDataHandler is None else []
+        place = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
+        element = XmlElement(tag, attributes, [], *place, texts)
         if self.open_elements:
             self.open_elements[-1].children.append(element)
         else:
             self.root = element
         self.open_elements.append(element)
+
+    def add_text(self, text: str) -> None:
+        if self.open_elements and text.strip():
+            self.open_elements[-1].texts.append(text)  # type: ignore[attr-defined]
 
     def end_element(self, _tag: str) -> None:
         self.open_elements.pop()

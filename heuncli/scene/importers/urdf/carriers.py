@@ -196,6 +196,7 @@ class RobotPoints:
 # Links
 
 TYPES = {"revolute": "pin", "continuous": "pin", "prismatic": "slide"}
+BALL = "ball"  # of SDF
 UNIT_LENGTH_TOLERANCE = 1e-6  # deviation from length 1 of an axis typed with seven digits
 
 
@@ -245,6 +246,9 @@ def _iter_joints(
     end = points.add(placed_link.carrier, "joint", joint.name, placed_link.offset)
     if joint.kind == "fixed":
         yield SpecJoint(joint.name, "weld", start, end, {}, (), joint)
+        return
+    if joint.kind == BALL:
+        yield SpecJoint(joint.name, "ball", start, end, {}, (), joint)
         return
     axis = rotate_vector(placed_link.R, joint.axis)
     remarks = [joint.kind] if joint.kind == "continuous" else []

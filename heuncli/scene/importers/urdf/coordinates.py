@@ -107,6 +107,8 @@ class RobotCoordinates:
         if joint.damping:
             keys = {"type": "damper", "joint": name, "coefficient": joint.damping}
             self.dampers.append(DescribedEntry(self.namer.assign(f"damping_{name}"), keys))
+        if joint.stiffness:
+            self._add_spring(joint, name, quantity)
         if joint.friction:
             self._leave_out_friction(joint, name, quantity)
         if self.options.limits:
@@ -163,6 +165,18 @@ class RobotCoordinates:
             return
         keys = {"joint": name, quantity.key: (lower, upper)}
         self.stops.append(DescribedEntry(self.namer.assign(f"limits_{name}"), keys))
+
+    def _add_spring(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
+        keys: dict[str, Any] = {"type": "turn_spring", "joint": name, "stiffness": joint.stiffness}
+        if quantity.key == "angle":
+            keys |= {"angle": joint.reference} if joint.reference else {}
+        else:
+            travel = f"{name}.travel"
+            if joint.reference:
+                sign = "-" if joint.reference > 0.0 else "+"
+                travel = f"({travel} {sign} {format_number(abs(joint.reference))})"
+            keys = {"type": "torque", "joint": name, "value": f"{format_number(-joint.stiffness)}*{travel}"}
+        self.dampers.append(DescribedEntry(self.namer.assign(f"spring_{name}"), keys))
 
     def _leave_out_friction(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         law = f"{{type: friction, joint: {name}, {quantity.friction}: {format_number(joint.friction)}, speed: 0.01}}"

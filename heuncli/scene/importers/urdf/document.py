@@ -79,6 +79,7 @@ class UrdfJoint:
 
     limits: lower and upper limit [rad or m], or None
     damping: [N m s/rad] or [N s/m]
+    stiffness: of a spring in it [N m/rad] or [N/m], relaxed at the position `reference` [rad] or [m]
     """
 
     name: str
@@ -93,6 +94,8 @@ class UrdfJoint:
     mimic: Mimic | None = None
     damping: float = 0.0
     friction: float = 0.0
+    stiffness: float = 0.0
+    reference: float = 0.0
 
     @property
     def path(self) -> str:

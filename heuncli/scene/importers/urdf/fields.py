@@ -109,7 +109,7 @@ class UrdfFields:
         """Return the three numbers of an attribute; None if they are wrong. Anything below CANCELLATION_ERROR is 0."""
         if element is None:
             return default
-        found = self.read_numbers(element, name, path, 3, default, self._parse_length)
+        found = self.read_numbers(element, name, path, 3, default, self.parse_length)
         return None if found is None else (found[0], found[1], found[2])
 
     def read_numbers(
@@ -153,7 +153,7 @@ class UrdfFields:
             return None
         return value
 
-    def _parse_length(self, element: XmlElement, name: str, path: str, word: str) -> float | None:
+    def parse_length(self, element: XmlElement, name: str, path: str, word: str) -> float | None:
         """Parse a length, an angle or a component of a direction."""
         is_tiny = NUMBER.match(word) is not None and abs(float(word)) < CANCELLATION_ERROR
         return 0.0 if is_tiny else self.parse_number(element, name, path, word)

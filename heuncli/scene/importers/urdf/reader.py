@@ -228,7 +228,13 @@ MASSLESS_HINT = (
 def described(_content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str) -> DescribedMachine:
     """Read the machine that a URDF describes. Raises SpecError with all problems, in the order of their lines."""
     fields = UrdfFields(file, "right-angles" in options.repair)
-    robot = read_robot(root, fields)
+    return translate_robot(read_robot(root, fields), options, fields, sha256)
+
+
+def translate_robot(
+    robot: Robot, options: ImportOptions, fields: UrdfFields, sha256: str, form: str = "URDF"
+) -> DescribedMachine:
+    """Translate a robot that was read to a machine. Raises SpecError with all problems, in the order of their lines."""
     tree = build_tree(robot, fields)
     size = find_size(robot)
     masses = {name: _find_link_mass(link, options, size, fields) for name, link in robot.links.items()}
@@ -236,7 +242,7 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
     validated_robot = None if tree is None or fields.problems else _validate(robot, tree, link_masses, options, fields)
     if validated_robot is None or fields.problems:
         raise SpecError(*sorted(fields.problems, key=lambda problem: problem.location[1:3] if problem.location else ()))
-    return build_machine(validated_robot, options, fields, sha256)
+    return build_machine(validated_robot, options, fields, sha256)._replace(form=form)
 
 
 def _find_link_mass(link: UrdfLink, options: ImportOptions, size: float, fields: UrdfFields) -> LinkMass | None:

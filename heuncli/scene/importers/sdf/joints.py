@@ -1,0 +1,245 @@
+"""Read the joints of an SDF, and make those of URDF from them."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.scene.file_format.models import ZERO, Vec
+from heuncli.scene.importers.attitudes import rotate_vector, rotation_from_roll_pitch_yaw
+from heuncli.scene.importers.description import LEFT_OUT_CODE
+from heuncli.scene.importers.sdf.frames import (
+    MODEL,
+    NO_POSE,
+    WORLD,
+    FrameTree,
+    invert_pose,
+    make_unknown_frame_problem,
+)
+from heuncli.scene.importers.sdf.values import read_child_flag, read_child_number, read_child_word, read_values
+from heuncli.scene.importers.urdf.document import X_AXIS, Mimic, UrdfJoint, UrdfLink
+from heuncli.scene.importers.urdf.fields import UrdfFields
+from heuncli.scene.importers.xml_elements import XmlElement
+
+KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball")
+KIND_HINTS = {
+    "universal": "write two joints of type revolute with a link without mass between",
+    "revolute2": "write two joints of type revolute with a link between",
+    "screw": "write a joint of type prismatic, import, and add a coupling of type screw to the spec",
+    "gearbox": "write a joint of type revolute, import, and add a coupling of type ratio to the spec",
+}
+JOINT_NOISE = frozenset({"sensor", "physics", "plugin"})
+JOINT_PARTS = ("pose", "parent", "child", "axis")
+AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
+LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
+DYNAMICS_PARTS = ("damping", "friction", "spring_stiffness", "spring_reference")
+NO_LIMIT = 1e15  # SDF writes 1e16 for a limit that is none
+UNLIMITED_WORDS = ("inf", "+inf", "-inf", "infinity", "-infinity")
+
+
+class JointAxis(NamedTuple):
+    """What stands in the <axis> of a joint.
+
+    direction: in the axes of the frame whose scoped name is `frame`, of any length
+    limits: lower and upper limit [rad or m], or None
+    damping, friction, stiffness: [N m s/rad, N m, N m/rad] or [N s/m, N, N/m]
+    reference: position where the spring is relaxed [rad or m]
+    """
+
+    direction: Vec
+    frame: str
+    limits: tuple[float, float] | None
+    effort: float | None
+    mimic: Mimic | None
+    damping: float
+    friction: float
+    stiffness: float
+    reference: float
+
+
+class SdfJoint(NamedTuple):
+    """A joint as the file has it. Its ends are scoped names of frames."""
+
+    name: str
+    element: XmlElement
+    kind: str
+    parent: str
+    child: str
+    axis: JointAxis
+
+    @property
+    def path(self) -> str:
+        return f"joint {self.name}"
+
+
+def read_joint(element: XmlElement, scope: str, fields: UrdfFields, ignored_tags: Counter[str]) -> SdfJoint | None:
+    """Read a joint; None, and problems, if something in it is wrong."""
+    name = fields.read_word(element, "name", "joint")
+    path = f"joint {scope}{name}" if name is not None else "joint"
+    kind = fields.read_word(element, "type", path)
+    if kind is not None and kind not in KINDS:
+        hint = KIND_HINTS.get(kind, f"known: {', '.join(KINDS)}")
+        fields.report("import-joint", element, path, f"a joint of type '{kind}' cannot be read", hint)
+        kind = None
+    for part in element.children:
+        if part.tag in JOINT_NOISE or ":" in part.tag:
+            ignored_tags[f"{part.tag} in joints"] += 1
+    fields.report_unknown_parts(element, path, *JOINT_PARTS, *JOINT_NOISE)
+    ends = [read_child_word(element, tag, path, fields) for tag in ("parent", "child")]
+    parent, child = (None if end is None else WORLD if end == WORLD else f"{scope}{end}" for end in ends)
+    axis = fields.find_child(element, "axis", path) if kind not in ("fixed", "ball") else None
+    if axis is None and kind not in (None, "fixed", "ball"):
+        fields.report("import-missing", element, path, "<axis> is missing", "add <axis><xyz>0 0 1</xyz></axis>")
+        kind = None
+    problem_count = len(fields.problems)
+    own = f"{scope}{name}"
+    parts = _read_axis(axis or XmlElement("axis", {}, [], element.line, element.column), scope, own, path, fields)
+    if name is None or kind is None or parent is None or child is None or len(fields.problems) > problem_count:
+        return None
+    if kind == "revolute" and parts.limits is None:
+        kind = "continuous"
+    return SdfJoint(own, element, kind, parent, child, parts)
+
+
+def _read_axis(axis: XmlElement, scope: str, joint: str, path: str, fields: UrdfFields) -> JointAxis:
+    """Read the <axis> of a joint."""
+    fields.report_unknown_parts(axis, path, *AXIS_PARTS)
+    xyz_part, direction = fields.find_child(axis, "xyz", path), (0.0, 0.0, 1.0)
+    frame = joint
+    if xyz_part is not None:
+        fields.report_unknown_attributes(xyz_part, path, "expressed_in")
+        numbers = read_values(xyz_part, path, fields, 3, is_length=True)
+        direction = direction if numbers is None else (numbers[0], numbers[1], numbers[2])
+        expressed_in = xyz_part.attributes.get("expressed_in", "").strip()
+        frame = joint if not expressed_in else WORLD if expressed_in == WORLD else f"{scope}{expressed_in}"
+        if direction == ZERO:
+            fields.report("import-joint", xyz_part, path, "the axis is 0 0 0", "give a direction, e.g. 0 0 1")
+    if read_child_flag(axis, "use_parent_model_frame", path, fields, False):
+        frame = f"{scope}{MODEL}"
+    _leave_out_initial_position(axis, path, fields)
+    limits, effort = _read_limits(axis, path, fields)
+    damping, friction, stiffness, reference = _read_dynamics(axis, path, fields)
+    mimic = _read_mimic(axis, scope, path, fields)
+    return JointAxis(direction, frame, limits, effort, mimic, damping, friction, stiffness, reference)
+
+
+def _leave_out_initial_position(axis: XmlElement, path: str, fields: UrdfFields) -> None:
+    for part in axis.find_all("initial_position"):
+        if read_values(part, path, fields, 1) not in (None, [0.0]):
+            message = "<initial_position> is left out"
+            hint = "set the parameter of the joint in the spec"
+            fields.left_out.append(fields.make_problem(LEFT_OUT_CODE, part, path, message, hint))
+
+
+def _read_limits(axis: XmlElement, path: str, fields: UrdfFields) -> tuple[tuple[float, float] | None, float | None]:
+    """Read the limits, None where neither bounds the motion, and the effort."""
+    part = fields.find_child(axis, "limit", path)
+    if part is None:
+        return None, None
+    fields.report_unknown_parts(part, path, *LIMIT_PARTS)
+    bounds = [_read_bound(part, tag, path, fields) for tag in ("lower", "upper", "effort")]
+    lower, upper, effort = bounds
+    effort = None if effort is None or effort < 0.0 else effort
+    if lower is None and upper is None:
+        return None, effort
+    if lower is None or upper is None:
+        message = "a limit on one side only is left out"
+        fields.left_out.append(fields.make_problem(LEFT_OUT_CODE, part, path, message, "add a stop to the spec"))
+        return None, effort
+    return (lower, upper), effort
+
+
+def _read_bound(part: XmlElement, tag: str, path: str, fields: UrdfFields) -> float | None:
+    found = part.find_all(tag)
+    if len(found) == 1 and found[0].text.lower() in UNLIMITED_WORDS:
+        return None
+    value = read_child_number(part, tag, path, fields, None) if found else None
+    return None if value is None or abs(value) >= NO_LIMIT else value
+
+
+def _read_dynamics(axis: XmlElement, path: str, fields: UrdfFields) -> tuple[float, float, float, float]:
+    """Read the damping, the friction, and the stiffness of a spring with the position where it is relaxed."""
+    part = fields.find_child(axis, "dynamics", path)
+    if part is None:
+        return 0.0, 0.0, 0.0, 0.0
+    fields.report_unknown_parts(part, path, *DYNAMICS_PARTS)
+    values = [read_child_number(part, tag, path, fields, 0.0) for tag in DYNAMICS_PARTS]
+    for tag, value in zip(DYNAMICS_PARTS[:3], values, strict=False):
+        if value is not None and value < 0.0:
+            fields.report("import-joint", part, path, f"{tag} is {value:g}", "give a value of 0 or above")
+    damping, friction, stiffness, reference = (value or 0.0 for value in values)
+    return damping, friction, stiffness, reference
+
+
+def _read_mimic(axis: XmlElement, scope: str, path: str, fields: UrdfFields) -> Mimic | None:
+    """Read what a joint follows: position = multiplier (position of the leader - reference) + offset."""
+    part = fields.find_child(axis, "mimic", path)
+    if part is None:
+        return None
+    fields.report_unknown_parts(part, path, "multiplier", "offset", "reference")
+    joint = fields.read_word(part, "joint", path)
+    if part.attributes.get("axis", "axis") != "axis":
+        fields.report("import-mimic", part, path, "it follows the second axis of a joint", "joints have one axis here")
+    multiplier = read_child_number(part, "multiplier", path, fields, 1.0)
+    offset = read_child_number(part, "offset", path, fields, 0.0)
+    reference = read_child_number(part, "reference", path, fields, 0.0)
+    if joint is None or multiplier is None or offset is None or reference is None:
+        return None
+    return Mimic(part, f"{scope}{joint}", multiplier, offset - multiplier * reference)
+
+
+def make_joints(
+    joints: list[SdfJoint], links: dict[str, UrdfLink], frames: FrameTree, model: XmlElement
+) -> dict[str, UrdfJoint]:
+    """Make the joints of URDF, and add the links without mass that they need to `links`."""
+    fields, made, real_links = frames.fields, dict[str, UrdfJoint](), set(links)
+    for joint in joints:
+        ends = {"parent": joint.parent, "child": joint.child}
+        found = {tag: frames.find_link(name, real_links | {WORLD}) for tag, name in ends.items()}
+        for tag, name in ends.items():
+            if found[tag] is None:
+                fields.problems.append(make_unknown_frame_problem(name, tag, joint.element, joint.path, frames))
+        parent, child = found["parent"], found["child"]
+        if parent is None or child is None:
+            continue
+        if child == WORLD:
+            message, hint = "its child is the world", "exchange <parent> and <child>"
+            fields.report("import-tree", joint.element, joint.path, message, hint)
+            continue
+        if joint.axis.frame not in frames.frames:
+            problem = frames.fields.make_problem
+            message = f"its axis is expressed in '{joint.axis.frame}', which is not there"
+            fields.problems.append(problem("import-tree", joint.element, joint.path, message, "name a frame"))
+            continue
+        if parent == WORLD and WORLD not in links:
+            links[WORLD] = UrdfLink(WORLD, XmlElement("link", {}, [], model.line, model.column), None)
+        _make_joint(joint, parent, child, links, made, frames)
+    return made
+
+
+def _make_joint(
+    joint: SdfJoint, parent: str, child: str, links: dict[str, UrdfLink], made: dict[str, UrdfJoint], frames: FrameTree
+) -> None:
+    """Make one joint, and a second that fixes the child to it where its pose differs from that of the child."""
+    in_child = frames.compute_pose(joint.name, child)
+    is_at_child = in_child == NO_POSE or joint.kind == "fixed"
+    in_parent = frames.compute_pose(child if is_at_child else joint.name, parent)
+    axis = joint.axis.direction
+    turn = frames.compute_pose(joint.axis.frame, joint.name)
+    if turn.rpy != ZERO:
+        axis = rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis)
+    own_child = child
+    if not is_at_child:
+        own_child = f"{joint.name}_frame"
+        while own_child in links:
+            own_child += "_"
+        links[own_child] = UrdfLink(
+            own_child, XmlElement("link", {}, [], joint.element.line, joint.element.column), None
+        )
+        name = f"{joint.name}_mount"
+        made[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
+    part = joint.axis
+    made[joint.name] = UrdfJoint(
+        joint.name, joint.element, joint.kind, parent, own_child, in_parent, axis, part.limits, part.effort,
+        part.mimic, part.damping, part.friction, part.stiffness, part.reference,
+    )  # fmt: skip
