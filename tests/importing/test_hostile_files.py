@@ -35,7 +35,7 @@ REFUSED = {
     "unknown encoding": ('<?xml version="1.0" encoding="klingon"?><robot/>', "not-xml"),
     "no text encoding": ('<?xml version="1.0" encoding="rot13"?><robot/>', "not-xml"),
     "several bytes": ('<?xml version="1.0" encoding="utf-7"?><robot/>', "not-xml"),
-    "sdf": ("<sdf/>", "import-format"),
+    "sdf": ("<sdf/>", "import-tree"),
     "xacro": ('<xacro:robot xmlns:xacro="x"/>', "import-format"),
     "misspelt": ("<Robot/>", "import-format"),
 }

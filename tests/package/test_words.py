@@ -61,6 +61,7 @@ KEPT = {
     "scene/file_format/entries.py": {"Entry.before"},
     "scene/file_format/format.py": {"ExpectEntry.before"},
     "scene/importers/mjcf/reader.py": {"described"},
+    "scene/importers/sdf/reader.py": {"described"},
     "scene/importers/urdf/reader.py": {"described"},
     **{f"output/fe_decks/{name}.py": {"written"} for name in DECKS},
     "study/queries/curves.py": {"CurveComparison.at"},

@@ -7,7 +7,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class ImportRequest(NamedTuple):
-    """Convert a model of another program to a spec: a robot in URDF, or a MuJoCo model (MJCF)."""
+    """Convert a model of another program to a spec: a robot in URDF or SDF, or a MuJoCo model (MJCF)."""
 
     file: Annotated[str, Option((), "Model file; - reads standard input.", "FILE")]
     output: Annotated[str | None, OUTPUT] = None

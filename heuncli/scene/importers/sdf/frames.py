@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 
-from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import list_words, suggest
 from heuncli.scene.file_format.loads import Matrix
@@ -31,7 +30,6 @@ from heuncli.scene.importers.xml_elements import XmlElement
 NO_POSE = LinkPose()
 MODEL = "__model__"  # the frame of the model that contains an element
 WORLD = "world"
-RELATIVE_HINT = "known: the links, joints, frames and models beside it, world, __model__"
 LOCK_LIMIT = 1e-7  # cos(pitch) below this: roll and yaw turn about one axis, and yaw is taken as 0
 
 
@@ -97,9 +95,9 @@ class FrameTree:
             current = None if frame is None else frame.attached_to
         return current if current in links else None
 
-    def compute_pose(self, of: str, in_frame: str) -> LinkPose:
-        """Compute the pose of one frame in another, with all joints at 0."""
-        outward, inward = self._list_bases(of), self._list_bases(in_frame)
+    def compute_pose(self, frame: str, base: str) -> LinkPose:
+        """Compute the pose of a frame in another, `base`, with all joints at 0."""
+        outward, inward = self._list_bases(frame), self._list_bases(base)
         while outward and inward and outward[-1] == inward[-1]:
             outward.pop()
             inward.pop()
@@ -201,9 +199,3 @@ def _from_quaternion(
     angles = compute_roll_pitch_yaw(compose_rotations(IDENTITY, R))
     roll, pitch, yaw = (0.0 if abs(angle) < RIGHT_ANGLE_ERROR else angle for angle in angles)
     return LinkPose(place, (roll, pitch, yaw)), base
-
-
-def make_unknown_frame_problem(name: str, what: str, element: XmlElement, path: str, frames: FrameTree) -> Problem:
-    """Make the problem of a name that is no frame."""
-    hint = suggest(name, frames.frames, "frames")
-    return frames.fields.make_problem("import-tree", element, path, f"its {what} '{name}' is not there", hint)

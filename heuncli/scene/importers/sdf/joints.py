@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Vec
 from heuncli.scene.importers.attitudes import rotate_vector, rotation_from_roll_pitch_yaw
 from heuncli.scene.importers.description import LEFT_OUT_CODE
@@ -14,7 +15,6 @@ from heuncli.scene.importers.sdf.frames import (
     WORLD,
     FrameTree,
     invert_pose,
-    make_unknown_frame_problem,
 )
 from heuncli.scene.importers.sdf.values import read_child_flag, read_child_number, read_child_word, read_values
 from heuncli.scene.importers.urdf.document import X_AXIS, Mimic, UrdfJoint, UrdfLink
@@ -28,7 +28,7 @@ KIND_HINTS = {
     "screw": "write a joint of type prismatic, import, and add a coupling of type screw to the spec",
     "gearbox": "write a joint of type revolute, import, and add a coupling of type ratio to the spec",
 }
-JOINT_NOISE = frozenset({"sensor", "physics", "plugin"})
+JOINT_NOISE = ("sensor", "physics", "plugin")
 JOINT_PARTS = ("pose", "parent", "child", "axis")
 AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
 LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
@@ -70,6 +70,11 @@ class SdfJoint(NamedTuple):
     @property
     def path(self) -> str:
         return f"joint {self.name}"
+
+    @property
+    def ends(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """The two ends, each with its tag."""
+        return (self.parent, "parent"), (self.child, "child")
 
 
 def read_joint(element: XmlElement, scope: str, fields: UrdfFields, ignored_tags: Counter[str]) -> SdfJoint | None:
@@ -191,34 +196,67 @@ def _read_mimic(axis: XmlElement, scope: str, path: str, fields: UrdfFields) -> 
 def make_joints(
     joints: list[SdfJoint], links: dict[str, UrdfLink], frames: FrameTree, model: XmlElement
 ) -> dict[str, UrdfJoint]:
-    """Make the joints of URDF, and add the links without mass that they need to `links`."""
-    fields, made, real_links = frames.fields, dict[str, UrdfJoint](), set(links)
-    for joint in joints:
-        ends = {"parent": joint.parent, "child": joint.child}
-        found = {tag: frames.find_link(name, real_links | {WORLD}) for tag, name in ends.items()}
-        for tag, name in ends.items():
-            if found[tag] is None:
-                fields.problems.append(make_unknown_frame_problem(name, tag, joint.element, joint.path, frames))
-        parent, child = found["parent"], found["child"]
-        if parent is None or child is None:
-            continue
-        if child == WORLD:
-            message, hint = "its child is the world", "exchange <parent> and <child>"
-            fields.report("import-tree", joint.element, joint.path, message, hint)
-            continue
-        if joint.axis.frame not in frames.frames:
-            problem = frames.fields.make_problem
-            message = f"its axis is expressed in '{joint.axis.frame}', which is not there"
-            fields.problems.append(problem("import-tree", joint.element, joint.path, message, "name a frame"))
-            continue
-        if parent == WORLD and WORLD not in links:
-            links[WORLD] = UrdfLink(WORLD, XmlElement("link", {}, [], model.line, model.column), None)
-        _make_joint(joint, parent, child, links, made, frames)
-    return made
+    """Make the joints of URDF in the order of the file, and add the links without mass that they need to `links`: the
+    world, and the frames, which are fixed to what they are attached to, and so become points.
+    """
+    fields, urdf_joints = frames.fields, dict[str, UrdfJoint]()
+    marks = {name for name, frame in frames.frames.items() if frame.element.tag == "frame"}
+    parts = {*links, WORLD}
+    by_name = {joint.name: joint for joint in joints}
+    for name, frame in frames.frames.items():
+        if name in by_name:
+            joint = by_name[name]
+            parent, child = (_find_end(end, tag, parts, marks, joint, frames) for end, tag in joint.ends)
+            if parent is None or child is None:
+                continue
+            if child == WORLD:
+                message, hint = "its child is the world", "exchange <parent> and <child>"
+                fields.report("import-tree", joint.element, joint.path, message, hint)
+            elif joint.axis.frame not in frames.frames:
+                message = f"its axis is expressed in '{joint.axis.frame}', which is not there"
+                fields.report(
+                    "import-tree",
+                    joint.element,
+                    joint.path,
+                    message,
+                    suggest(joint.axis.frame, frames.frames, "frames"),
+                )
+            else:
+                if parent == WORLD and WORLD not in links:
+                    links[WORLD] = make_massless_link(WORLD, model)
+                _make_joint(joint, parent, child, links, urdf_joints, frames)
+        elif name in marks and (link := frames.find_link(name, parts)) not in (None, WORLD):
+            attached_to = frame.attached_to if frame.attached_to in marks else link
+            assert attached_to is not None
+            links[name] = make_massless_link(name, frame.element)
+            pose = frames.compute_pose(name, attached_to)
+            urdf_joints[f"{name}_mount"] = UrdfJoint(
+                f"{name}_mount", frame.element, "fixed", attached_to, name, pose, X_AXIS
+            )
+    return urdf_joints
+
+
+def make_massless_link(name: str, element: XmlElement) -> UrdfLink:
+    """Make a link without mass and shapes that stands at the place of an element of the file."""
+    return UrdfLink(name, XmlElement("link", {}, [], element.line, element.column), None)
+
+
+def _find_end(name: str, tag: str, parts: set[str], marks: set[str], joint: SdfJoint, frames: FrameTree) -> str | None:
+    """Find the link, or for a parent the frame, that an end of a joint names; None, and a problem, if there is none."""
+    link = frames.find_link(name, parts)
+    if link is None:
+        hint = suggest(name, frames.frames, "frames")
+        frames.fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is not there", hint)
+    return name if tag == "parent" and name in marks and link not in (None, WORLD) else link
 
 
 def _make_joint(
-    joint: SdfJoint, parent: str, child: str, links: dict[str, UrdfLink], made: dict[str, UrdfJoint], frames: FrameTree
+    joint: SdfJoint,
+    parent: str,
+    child: str,
+    links: dict[str, UrdfLink],
+    urdf_joints: dict[str, UrdfJoint],
+    frames: FrameTree,
 ) -> None:
     """Make one joint, and a second that fixes the child to it where its pose differs from that of the child."""
     in_child = frames.compute_pose(joint.name, child)
@@ -237,9 +275,9 @@ def _make_joint(
             own_child, XmlElement("link", {}, [], joint.element.line, joint.element.column), None
         )
         name = f"{joint.name}_mount"
-        made[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
+        urdf_joints[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
     part = joint.axis
-    made[joint.name] = UrdfJoint(
+    urdf_joints[joint.name] = UrdfJoint(
         joint.name, joint.element, joint.kind, parent, own_child, in_parent, axis, part.limits, part.effort,
         part.mimic, part.damping, part.friction, part.stiffness, part.reference,
     )  # fmt: skip

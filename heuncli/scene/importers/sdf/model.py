@@ -23,7 +23,7 @@ from heuncli.scene.importers.sdf.frames import (
     FrameTree,
     read_pose,
 )
-from heuncli.scene.importers.sdf.joints import SdfJoint, make_joints, read_joint
+from heuncli.scene.importers.sdf.joints import SdfJoint, make_joints, make_massless_link, read_joint
 from heuncli.scene.importers.sdf.values import (
     as_attribute,
     read_attribute_value,
@@ -37,13 +37,13 @@ from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
 # parts without mechanical meaning
-MODEL_NOISE = frozenset({
+MODEL_NOISE = (
     "plugin", "self_collide", "allow_auto_disable", "enable_wind", "gripper", "static", "model_metadata",
-})  # fmt: skip
-LINK_NOISE = frozenset({
+)  # fmt: skip
+LINK_NOISE = (
     "sensor", "light", "audio_source", "audio_sink", "battery", "particle_emitter", "projector", "plugin",
     "enable_wind", "self_collide", "must_be_base_link", "material",
-})  # fmt: skip
+)  # fmt: skip
 LINK_PARTS = ("pose", "inertial", "collision", "visual", "gravity", "kinematic", "velocity_decay")
 MODEL_PARTS = ("link", "joint", "frame", "model", "pose", "include")
 INERTIAL_PARTS = ("pose", "mass", "inertia", "density", "fluid_added_mass")
@@ -51,7 +51,7 @@ INCLUDE_HINT = "paste that model in its place: gz sdf -p FILE writes it out"
 SHAPE_PARTS = ("size", "radius", "length", "uri", "scale", "submesh")
 
 
-class ModelReader:
+class RobotReader:
     """Reads one model. `links` and `joints` are by scoped names, such as `arm::wrist`."""
 
     def __init__(self, fields: UrdfFields, takes_shapes: bool) -> None:
@@ -79,7 +79,7 @@ class ModelReader:
         joints: dict[str, UrdfJoint] = {}
         if len(self.fields.problems) == problem_count == 0:
             joints = make_joints(self.joints, links, self.frames, model)
-            _hang_in_world(links, joints, self.frames, model, is_free)
+            _place_in_world(links, joints, self.frames, model, is_free)
         is_complete = not self.fields.problems
         return Robot(model, name, links, joints, dict(self.ignored_tags), is_complete)
 
@@ -113,7 +113,7 @@ class ModelReader:
                     self.ignored_tags[tag] += tag != "static"
                 case tag:
                     message = f"<model> has an unknown part <{tag}>"
-                    hint = suggest(tag, (*MODEL_PARTS, *sorted(MODEL_NOISE)), "parts")
+                    hint = suggest(tag, (*MODEL_PARTS, *MODEL_NOISE), "parts")
                     self.fields.report("import-part", part, path, message, hint)
 
     def _add_nested_model(self, part: XmlElement, scope: str) -> None:
@@ -154,7 +154,7 @@ class ModelReader:
             if inner.tag in LINK_NOISE or ":" in inner.tag:
                 self.ignored_tags[f"{inner.tag} in links"] += 1
             elif inner.tag not in LINK_PARTS:
-                hint = suggest(inner.tag, (*LINK_PARTS, *sorted(LINK_NOISE)), "parts")
+                hint = suggest(inner.tag, (*LINK_PARTS, *LINK_NOISE), "parts")
                 message = f"<link> has an unknown part <{inner.tag}>"
                 self.fields.report("import-part", inner, path, message, hint)
         self._leave_out_features(part, path)
@@ -262,7 +262,7 @@ def _translate_form(form: XmlElement, fields: UrdfFields, path: str) -> XmlEleme
     return XmlElement(form.tag, values, [], form.line, form.column)
 
 
-def _hang_in_world(
+def _place_in_world(
     links: dict[str, UrdfLink], joints: dict[str, UrdfJoint], frames: FrameTree, model: XmlElement, is_free: bool
 ) -> None:
     """Join the roots to the world where the model does not stand at its origin, or hangs on it by a joint."""
@@ -273,7 +273,7 @@ def _hang_in_world(
     pose = frames.compute_pose(roots[0], WORLD)
     if pose == NO_POSE:
         return
-    links[WORLD] = UrdfLink(WORLD, XmlElement("link", {}, [], model.line, model.column), None)
+    links[WORLD] = make_massless_link(WORLD, model)
     name = f"{roots[0]}_on_ground"
     joints[name] = UrdfJoint(name, model, "floating" if is_free else "fixed", WORLD, roots[0], pose, (1.0, 0.0, 0.0))
 

@@ -10,16 +10,16 @@ from heuncli.base.spelling import list_words
 from heuncli.scene.file_format.models import Vec
 from heuncli.scene.importers.description import LEFT_OUT_CODE, DescribedMachine, ImportOptions
 from heuncli.scene.importers.sdf.frames import NO_POSE, read_pose
-from heuncli.scene.importers.sdf.model import ModelReader, read_gravity
+from heuncli.scene.importers.sdf.model import RobotReader, read_gravity
 from heuncli.scene.importers.sdf.values import read_child_flag
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.urdf.reader import GRAVITY, translate_robot
 from heuncli.scene.importers.xml_elements import XmlElement
 
-WORLD_NOISE = frozenset({
+WORLD_NOISE = (
     "light", "plugin", "scene", "gui", "physics", "atmosphere", "magnetic_field", "wind", "audio", "road", "actor",
     "spherical_coordinates", "state", "frame",
-})  # fmt: skip
+)  # fmt: skip
 WORLD_PARTS = ("model", "gravity", "include", "joint", "population")
 SCENERY_URIS = ("sun", "ground_plane", "ground plane")  # models that every world has and that do not move
 
@@ -29,7 +29,7 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
     fields = UrdfFields(file, "right-angles" in options.repair)
     model, gravity, ignored_tags = _choose_model(root, fields)
     takes_shapes = options.density is not None
-    reader = ModelReader(fields, takes_shapes)
+    reader = RobotReader(fields, takes_shapes)
     placed = read_pose(model, f"model {model.attributes.get('name', '')}", fields)
     pose = NO_POSE if placed is None else placed[0]
     if placed is not None and placed[1] not in (None, "world"):
@@ -37,10 +37,10 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
         fields.report("import-tree", model, "model", message, "give it relative to the world")
     robot = reader.read_robot(model, pose, options.base_free)
     ignored = {**ignored_tags, **{tag: count for tag, count in robot.ignored_tags.items() if count}}
-    is_hung = any(joint.kind == "floating" for joint in robot.joints.values())
+    is_placed = any(joint.kind == "floating" for joint in robot.joints.values())
     robot = type(robot)(robot.element, robot.title, robot.links, robot.joints, ignored, robot.is_complete)
     machine = translate_robot(
-        robot, options._replace(base_free=False) if is_hung else options, fields, sha256, form="SDF"
+        robot, options._replace(base_free=False) if is_placed else options, fields, sha256, form="SDF"
     )
     remarks = {**machine.remarks, "gravity": "the world's" if gravity is not None else "a model has none; z is up"}
     lines = list(machine.header_lines)

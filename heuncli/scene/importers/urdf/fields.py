@@ -16,7 +16,7 @@ from heuncli.scene.importers.xml_elements import XACRO_HINT, XmlElement
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\Z", re.IGNORECASE)
-COUNT_TEXTS = {1: "a number", 3: "three numbers"}
+COUNT_TEXTS = {1: "a number", 3: "three numbers", 6: "six numbers", 7: "seven numbers"}
 SIMILARITY_THRESHOLD = 0.8  # difflib ratio: uppr is a typo of upper, gear_velocity none of velocity
 CANCELLATION_ERROR = (
     1e-20  # [m, rad] smaller values are rounding of CAD programs; times a mass, their squares would underflow

@@ -1,0 +1,166 @@
+"""SDF: the spec of the same robot in URDF, poses in any form against kinematics of their own, and what is refused."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+import yaml
+
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
+from heuncli.study.model.options import Options
+from heuncli.study.workflow import solve
+from tests.shared.imported import described, imported
+from tests.shared.scenes import near
+from tests.shared.sdf_trees import scattered_sdf_text, sdf_text
+from tests.shared.urdf_trees import (
+    MOVED,
+    center_of,
+    frames_at,
+    holding_efforts,
+    inertia_of,
+    random_robot,
+    turn,
+    urdf_text,
+)
+
+REPORTS = frozenset({"motion", "points", "joints"})
+MASS = "<inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>"
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_robot_gives_the_same_spec_from_both_formats(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    robot = random_robot(rng, 3 + 4 * seed, right=seed % 3 == 2)
+    specs = [yaml.safe_load(imported(text)) for text in (urdf_text(robot), sdf_text(robot))]
+    assert specs[0] == specs[1]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_poses_in_any_form_are_where_kinematics_has_them(seed: int) -> None:
+    rng = np.random.default_rng(100 + seed)
+    robot = random_robot(rng, 3 + 2 * seed, right=seed % 3 == 2)
+    model = np.eye(4)
+    model[:3, 3] = rng.normal(size=3)
+    model[:3, :3] = turn(rng.normal(size=3), float(rng.uniform(-3, 3))) if seed % 2 else np.eye(3)
+    text = imported(scattered_sdf_text(robot, rng, model))
+    q = {part.name: float(rng.uniform(-2, 2)) for part in robot.movable}
+    spec = load("robot.yaml", text, overrides={f"to_{name}": f"{value!r}" for name, value in q.items()})
+    results = solve(spec, Options(requested_reports=REPORTS)).results
+    frames = frames_at(robot, q)
+    size = max(float(np.abs(frame.origin).max()) for frame in frames.values()) + 3.0
+    efforts = holding_efforts(robot, frames)
+    heaviest = max(map(abs, efforts.values()), default=0.0) + 1.0
+    M, t = model[:3, :3], model[:3, 3]
+    for part in (robot.root, *robot.parts):
+        if part.mass is None:
+            (place,) = [block for name, block in results.points.items() if name.endswith(f".{part.name}")]
+            near(place["position"][0], t + M @ frames[part.name].origin, size, 1e-13)
+            continue
+        body, block = spec.bodies[part.name], results.bodies[part.name]
+        near(block["center"][0], t + M @ center_of(part, frames), size, 1e-13)
+        R = block["rotation"][0]
+        near(R @ np.array(body.inertia) @ R.T, M @ inertia_of(part, frames) @ M.T, 0.05, 1e-13)
+        if part.kind in MOVED and part is not robot.root:
+            near(results.joints[part.joint]["drive"][0], efforts[part.name], heaviest, 1e-12)
+
+
+def model(
+    inner: str = "", joint: str = "", axis: str = "<xyz>0 1 0</xyz>", kind: str = "revolute", leg: str = MASS
+) -> str:
+    return f"""<sdf version="1.9"><model name="m">
+<link name="base">{MASS}</link>
+<link name="leg"><pose>0 0 1 0 0 0</pose>{leg}</link>
+<joint name="hip" type="{kind}"><parent>base</parent><child>leg</child>{joint}<axis>{axis}</axis></joint>
+{inner}</model></sdf>"""
+
+
+def test_springs_limits_and_unlimited_joints() -> None:
+    axis = """<xyz>0 1 0</xyz><limit><lower>-1e16</lower><upper>inf</upper><effort>-1</effort></limit>
+<dynamics><damping>0.5</damping><spring_stiffness>3</spring_stiffness><spring_reference>0.2</spring_reference></dynamics>"""
+    text = imported(model(axis=axis))
+    assert "# continuous" in text and "limits" not in text
+    assert yaml.safe_load(text)["forces"] == {
+        "damping_hip": {"type": "damper", "joint": "hip", "coefficient": 0.5},
+        "spring_hip": {"type": "turn_spring", "joint": "hip", "stiffness": 3, "angle": 0.2},
+    }
+    slide = axis.replace("-1e16", "-0.1").replace("inf", "0.2")
+    spec = yaml.safe_load(imported(model(axis=slide, kind="prismatic"), free=True, limits=True))
+    assert spec["forces"]["spring_hip"]["value"] == "-3*(hip.travel - 0.2)"
+    assert spec["stops"]["limits_hip"]["travel"] == [-0.1, 0.2]
+
+
+def test_nested_models_keep_their_names_apart() -> None:
+    inner = f"""<model name="tool"><pose relative_to="leg">0.5 0 0 0 0 0</pose>
+<link name="base">{MASS}</link><link name="jaw"><pose>0.1 0 0 0 0 0</pose>{MASS}</link>
+<joint name="grip" type="prismatic"><parent>base</parent><child>jaw</child><axis><xyz>1 0 0</xyz></axis></joint></model>
+<joint name="mount" type="fixed"><parent>leg</parent><child>tool::base</child></joint>"""
+    machine = described(model(inner))
+    assert [body.name for body in machine.bodies] == ["base", "leg", "tool_base", "tool_jaw"]
+    points = {f"{body.name}.{point.name}": point.place for body in machine.bodies for point in body.points}
+    assert points["leg.mount"] == (0.5, 0, 0) and points["tool_base.tool_grip"] == (0.1, 0, 0)
+
+
+def test_a_link_without_inertial_has_the_mass_of_the_format_or_that_of_its_shape() -> None:
+    box = "<geometry><box><size>0.1 0.2 1</size></box></geometry>"
+    shape = f"<collision name='c'><pose>0 0 0.5 0 0 0</pose>{box}</collision>"
+    machine = described(model(leg=shape))
+    assert machine.bodies[1].mass == 1.0 and "Mass or inertia left out" in "".join(machine.header_lines)
+    filled = described(model(leg=shape), density=1000.0).bodies[1].shapes[0].keys
+    assert filled["size"] == (0.1, 0.2, 1.0) and filled["center"] == (0.0, 0.0, 0.5) and filled["density"] == 1000.0
+
+
+def test_a_ball_joint_stays_one() -> None:
+    assert yaml.safe_load(imported(model(kind="ball", axis="")))["joints"]["hip"]["type"] == "ball"
+
+
+def test_a_world_gives_its_gravity_and_its_one_model_that_moves() -> None:
+    robot = re.sub("</?sdf[^>]*>", "", model())
+    world = f"""<sdf version="1.9"><world name="w"><include><uri>model://sun</uri></include><gravity>0 0 -1.62</gravity>
+<model name="ground"><static>true</static><link name="l"/></model>{robot}</world></sdf>"""
+    machine = described(world)
+    assert machine.gravity == (0.0, 0.0, -1.62) and len(machine.bodies) == 2
+    with pytest.raises(SpecError) as refused:
+        described(world.replace("<static>true</static>", ""))
+    assert refused.value.problems[0].message == "the file has 2 models that move: ground, m"
+
+
+REFUSED = {
+    "no such frame": (model('<frame name="f"><pose relative_to="lag">0 0 0 0 0 0</pose></frame>'),
+                      "import-tree", "leg"),
+    "poses in a circle": (
+        model('<frame name="f"><pose relative_to="g"/></frame><frame name="g"><pose relative_to="f"/></frame>'),
+        "import-tree", "relative to the model",
+    ),
+    "old pose": (model('<frame name="f"><pose frame="leg">0 0 0 0 0 0</pose></frame>'), "import-attribute", "gz sdf"),
+    "not six": (model('<frame name="f"><pose>0 0 0</pose></frame>'), "import-number", "numbers"),
+    "screw": (model(kind="screw"), "import-joint", "screw"),
+    "universal": (model(kind="universal"), "import-joint", "two joints"),
+    "no axis": (model().replace("<axis><xyz>0 1 0</xyz></axis>", ""), "import-missing", "axis"),
+    "unknown part": (model("<jiont/>"), "import-part", "joint"),
+    "another file": (model("<include><uri>model://x</uri></include>"), "import-part", "gz sdf"),
+    "loop": (
+        model('<joint name="b" type="fixed"><parent>base</parent><child>leg</child></joint>'),
+        "import-tree", "cut the loop",
+    ),
+    "no such link": (model('<joint name="b" type="fixed"><parent>base</parent><child>lag</child></joint>'),
+                     "import-tree", "leg"),
+    "two names": (model(f'<link name="leg">{MASS}</link>'), "import-twice", "own name"),
+    "word": (model(leg=MASS.replace(">2<", ">two<")), "import-number", "plain numbers"),
+    "bad moments": (model(leg=MASS.replace("<ixx>0.1", "<ixx>0.3")), "import-inertia", "--repair triangle"),
+    "automatic": (model(leg='<inertial auto="true"/>'), "import-missing", "--density"),
+    "static": ('<sdf version="1.9"><model name="m"><static>1</static></model></sdf>', "import-tree", "one"),
+    "nothing": ("<sdf/>", "import-tree", "one model"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_read_is_refused_with_what_to_do(name: str) -> None:
+    text, code, hint = REFUSED[name]
+    with pytest.raises(SpecError) as refused:
+        imported(text)
+    problem = refused.value.problems[0]
+    assert problem.code == code and hint in problem.hint, problem
+    assert problem.location.line >= 1
