@@ -255,6 +255,7 @@ LINES: Mapping[str, Sequence[str]] = {
         "{urdf} --base free --free --limits -o -",
         "{urdf} --density 1000 --repair zero -o - --time-limit 5 -q",
         "{urdf} --keyframe home --strict -o -",
+        "{urdf} --model arm -o -",
     ),
     "methods": ("", "--format json", "--format table -o {out}/methods.txt"),
     "explain": ("", "format --no-pager", "run -o {out}/explain.txt"),

@@ -125,6 +125,16 @@ def test_a_world_gives_its_gravity_and_its_one_model_that_moves() -> None:
     with pytest.raises(SpecError) as refused:
         described(world.replace("<static>true</static>", ""))
     assert refused.value.problems[0].message == "the file has 2 models that move: ground, m"
+    assert described(world.replace("<static>true</static>", ""), model="m").title == "m"
+    with pytest.raises(SpecError, match="there is no model 'n'"):
+        described(world, model="n")
+
+
+@pytest.mark.parametrize(("version", "axis"), [("1.4", (0.0, 1.0, 0.0)), ("1.5", (0.0, 0.0, 1.0))])
+def test_axes_are_along_the_model_up_to_version_1_4(version: str, axis: tuple[float, ...]) -> None:
+    turned = model().replace("<pose>0 0 1 0 0 0</pose>", "<pose>0 0 1 1.5707963267948966 0 0</pose>")
+    (joint,) = [one for one in described(turned.replace("1.9", version)).joints if one.name == "hip"]
+    assert joint.keys["axis"] == axis
 
 
 REFUSED = {
@@ -152,6 +162,8 @@ REFUSED = {
     "bad moments": (model(leg=MASS.replace("<ixx>0.1", "<ixx>0.3")), "import-inertia", "--repair triangle"),
     "automatic": (model(leg='<inertial auto="true"/>'), "import-missing", "--density"),
     "static": ('<sdf version="1.9"><model name="m"><static>1</static></model></sdf>', "import-tree", "one"),
+    "too old": ('<sdf version="1.2"/>', "import-format", "gz sdf"),
+    "no version": ('<sdf version="new"/>', "import-attribute", "1.9"),
     "nothing": ("<sdf/>", "import-tree", "one model"),
 }  # fmt: skip
 

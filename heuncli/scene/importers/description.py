@@ -135,6 +135,7 @@ class ImportOptions(NamedTuple):
     density: density of the shapes of links without inertia [kg/m^3]
     repair: the faults to repair, names from `ModelReader.repairs`
     keyframe: the pose in the file to start from
+    model: the name of the model in a file with several
     """
 
     free: bool = False
@@ -143,6 +144,7 @@ class ImportOptions(NamedTuple):
     density: float | None = None
     repair: frozenset[str] = frozenset()
     keyframe: str | None = None
+    model: str | None = None
 
 
 # Names

@@ -53,7 +53,7 @@ READERS = (
         "sdf",
         "SDF",
         "sdf.reader",
-        frozenset({"free", "base_free", "limits", "density", "repair"}),
+        frozenset({"free", "base_free", "limits", "density", "repair", "model"}),
         ("massless", "negative", "right-angles", "triangle", "zero"),
     ),
     ModelReader("mujoco", "MJCF", "mjcf.reader", frozenset({"free", "limits", "keyframe"})),

@@ -25,7 +25,7 @@ from heuncli.scene.importers.xml_elements import MAX_SIZE, parse_xml
 BASES = ("fixed", "free")
 OPTION_WORDS = {  # option of each field of ImportAsked
     "free": "--free", "base_free": "--base", "limits": "--limits", "density": "--density", "repair": "--repair",
-    "keyframe": "--keyframe",
+    "keyframe": "--keyframe", "model": "--model",
 }  # fmt: skip
 FAILED = 1
 
@@ -104,7 +104,7 @@ def _parse_options(request: ImportRequest) -> ImportOptions:
     words = [word.strip() for word in request.repair.split(",")] if request.repair is not None else []
     density = _parse_density(request.density) if request.density is not None else None
     return ImportOptions(
-        request.free, request.base == "free", request.limits, density, frozenset(words), request.keyframe
+        request.free, request.base == "free", request.limits, density, frozenset(words), request.keyframe, request.model
     )
 
 

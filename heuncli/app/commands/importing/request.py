@@ -26,6 +26,7 @@ class ImportRequest(NamedTuple):
     keyframe: Annotated[
         str | None, Option(("--keyframe",), "MuJoCo: keyframe that gives the start position.", "NAME")
     ] = None
+    model: Annotated[str | None, Option(("--model",), "SDF: model of a world with several.", "NAME")] = None
     strict: Annotated[bool, Option(("--strict",), "Fail if something has no counterpart.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -77,8 +77,13 @@ class SdfJoint(NamedTuple):
         return (self.parent, "parent"), (self.child, "child")
 
 
-def read_joint(element: XmlElement, scope: str, fields: UrdfFields, ignored_tags: Counter[str]) -> SdfJoint | None:
-    """Read a joint; None, and problems, if something in it is wrong."""
+def read_joint(
+    element: XmlElement, scope: str, has_model_axes: bool, fields: UrdfFields, ignored_tags: Counter[str]
+) -> SdfJoint | None:
+    """Read a joint; None, and problems, if something in it is wrong.
+
+    has_model_axes: whether axes are along the model's frame where nothing else is said, as up to SDF 1.4
+    """
     name = fields.read_word(element, "name", "joint")
     path = f"joint {scope}{name}" if name is not None else "joint"
     kind = fields.read_word(element, "type", path)
@@ -98,7 +103,9 @@ def read_joint(element: XmlElement, scope: str, fields: UrdfFields, ignored_tags
         kind = None
     problem_count = len(fields.problems)
     own = f"{scope}{name}"
-    parts = _read_axis(axis or XmlElement("axis", {}, [], element.line, element.column), scope, own, path, fields)
+    parts = _read_axis(
+        axis or XmlElement("axis", {}, [], element.line, element.column), scope, own, has_model_axes, path, fields
+    )
     if name is None or kind is None or parent is None or child is None or len(fields.problems) > problem_count:
         return None
     if kind == "revolute" and parts.limits is None:
@@ -106,7 +113,9 @@ def read_joint(element: XmlElement, scope: str, fields: UrdfFields, ignored_tags
     return SdfJoint(own, element, kind, parent, child, parts)
 
 
-def _read_axis(axis: XmlElement, scope: str, joint: str, path: str, fields: UrdfFields) -> JointAxis:
+def _read_axis(
+    axis: XmlElement, scope: str, joint: str, has_model_axes: bool, path: str, fields: UrdfFields
+) -> JointAxis:
     """Read the <axis> of a joint."""
     fields.report_unknown_parts(axis, path, *AXIS_PARTS)
     xyz_part, direction = fields.find_child(axis, "xyz", path), (0.0, 0.0, 1.0)
@@ -119,7 +128,7 @@ def _read_axis(axis: XmlElement, scope: str, joint: str, path: str, fields: Urdf
         frame = joint if not expressed_in else WORLD if expressed_in == WORLD else f"{scope}{expressed_in}"
         if direction == ZERO:
             fields.report("import-joint", xyz_part, path, "the axis is 0 0 0", "give a direction, e.g. 0 0 1")
-    if read_child_flag(axis, "use_parent_model_frame", path, fields, False):
+    if read_child_flag(axis, "use_parent_model_frame", path, fields, has_model_axes and frame == joint):
         frame = f"{scope}{MODEL}"
     _leave_out_initial_position(axis, path, fields)
     limits, effort = _read_limits(axis, path, fields)

@@ -54,9 +54,11 @@ SHAPE_PARTS = ("size", "radius", "length", "uri", "scale", "submesh")
 class RobotReader:
     """Reads one model. `links` and `joints` are by scoped names, such as `arm::wrist`."""
 
-    def __init__(self, fields: UrdfFields, takes_shapes: bool) -> None:
-        """takes_shapes: whether links without <inertial> get the mass of their shapes, not the default of SDF"""
-        self.fields, self.takes_shapes = fields, takes_shapes
+    def __init__(self, fields: UrdfFields, takes_shapes: bool, has_model_axes: bool) -> None:
+        """takes_shapes: whether links without <inertial> get the mass of their shapes, not the default of SDF
+        has_model_axes: whether the axes of joints are along the model's frame, as up to SDF 1.4
+        """
+        self.fields, self.takes_shapes, self.has_model_axes = fields, takes_shapes, has_model_axes
         self.frames = FrameTree(fields)
         self.links: dict[str, UrdfLink] = {}
         self.joints: list[SdfJoint] = []
@@ -96,7 +98,7 @@ class RobotReader:
                 case "link":
                     self._add_link(part, scope)
                 case "joint":
-                    joint = read_joint(part, scope, self.fields, self.ignored_tags)
+                    joint = read_joint(part, scope, self.has_model_axes, self.fields, self.ignored_tags)
                     if joint is not None and self._add_frame(part, scope, "joint", joint.child, joint.child):
                         self.joints.append(joint)
                 case "frame":

@@ -6,7 +6,7 @@ The file holds one model, or a world with one model that moves. Static models, s
 from __future__ import annotations
 
 from heuncli.base.errors import SpecError
-from heuncli.base.spelling import list_words
+from heuncli.base.spelling import list_words, suggest
 from heuncli.scene.file_format.models import Vec
 from heuncli.scene.importers.description import LEFT_OUT_CODE, DescribedMachine, ImportOptions
 from heuncli.scene.importers.sdf.frames import NO_POSE, read_pose
@@ -21,15 +21,18 @@ WORLD_NOISE = (
     "spherical_coordinates", "state", "frame",
 )  # fmt: skip
 WORLD_PARTS = ("model", "gravity", "include", "joint", "population")
+FIRST_VERSION = (1, 3)
+LAST_WITH_MODEL_AXES = (1, 4)  # axes of joints are along the model's frame up to there, then along the joint's
 SCENERY_URIS = ("sun", "ground_plane", "ground plane")  # models that every world has and that do not move
 
 
 def described(_content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str) -> DescribedMachine:
     """Read the machine that an SDF describes. Raises SpecError with all problems, in the order of their lines."""
     fields = UrdfFields(file, "right-angles" in options.repair)
-    model, gravity, ignored_tags = _choose_model(root, fields)
+    version = _read_version(root, fields)
+    model, gravity, ignored_tags = _choose_model(root, options.model, fields)
     takes_shapes = options.density is not None
-    reader = RobotReader(fields, takes_shapes)
+    reader = RobotReader(fields, takes_shapes, version <= LAST_WITH_MODEL_AXES)
     placed = read_pose(model, f"model {model.attributes.get('name', '')}", fields)
     pose = NO_POSE if placed is None else placed[0]
     if placed is not None and placed[1] not in (None, "world"):
@@ -50,7 +53,26 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
     return machine._replace(gravity=gravity or GRAVITY, remarks=remarks, header_lines=tuple(lines))
 
 
-def _choose_model(root: XmlElement, fields: UrdfFields) -> tuple[XmlElement, Vec | None, dict[str, int]]:
+def _read_version(root: XmlElement, fields: UrdfFields) -> tuple[int, ...]:
+    """Read the version of the format, such as (1, 9). Raises SpecError for those before 1.3, which have other poses."""
+    text = root.attributes.get("version", "1.12").strip()
+    numbers = text.split(".")
+    if not all(number.isascii() and number.isdigit() for number in numbers):
+        raise SpecError(
+            fields.make_problem("import-attribute", root, "", f'version="{text}"', "write 1.9, for example")
+        )
+    version = tuple(map(int, numbers))
+    if version < FIRST_VERSION:
+        hint = "convert the file: gz sdf -p OLD.sdf > NEW.sdf"
+        raise SpecError(
+            fields.make_problem("import-format", root, "", f"SDF {text} is not read, but 1.3 and later", hint)
+        )
+    return version
+
+
+def _choose_model(
+    root: XmlElement, name: str | None, fields: UrdfFields
+) -> tuple[XmlElement, Vec | None, dict[str, int]]:
     """Find the model, the gravity of its world or None, and count what is left out. Raises SpecError if none is left
     or several are.
     """
@@ -66,6 +88,8 @@ def _choose_model(root: XmlElement, fields: UrdfFields) -> tuple[XmlElement, Vec
         _read_world_parts(world, fields, ignored)
         numbers = read_gravity(world, fields)
         gravity = None if numbers is None else (numbers[0], numbers[1], numbers[2])
+    if name is not None:
+        models = _find_named(models, name, root, fields)
     moving = [model for model in models if not read_child_flag(model, "static", "model", fields, False)]
     if len(models) > len(moving):
         ignored["static model" + "s" * (len(models) - len(moving) > 1)] = len(models) - len(moving)
@@ -73,8 +97,17 @@ def _choose_model(root: XmlElement, fields: UrdfFields) -> tuple[XmlElement, Vec
         names = list_words([model.attributes.get("name", "?") for model in moving])
         message = f"the file has {len(moving)} models that move: {names}" if moving else "no model of the file moves"
         element = moving[1] if moving else root
-        raise SpecError(fields.make_problem("import-tree", element, "", message, "give a file with one of them"))
+        raise SpecError(fields.make_problem("import-tree", element, "", message, "choose one: --model NAME"))
     return moving[0], gravity, ignored
+
+
+def _find_named(models: list[XmlElement], name: str, root: XmlElement, fields: UrdfFields) -> list[XmlElement]:
+    """Return the models of a name. Raises SpecError if there is none."""
+    found = [model for model in models if model.attributes.get("name") == name]
+    if not found:
+        hint = suggest(name, [model.attributes.get("name", "") for model in models], "models")
+        raise SpecError(fields.make_problem("import-tree", root, "", f"there is no model '{name}'", hint))
+    return found
 
 
 def _read_world_parts(world: XmlElement, fields: UrdfFields, ignored: dict[str, int]) -> None:
