@@ -257,6 +257,7 @@ class AnalysisEntry(Entry):
     method: str = "auto"
     step: Time | None = None
     impacts: Literal["simultaneous", "sequential"] = "simultaneous"
+    start: Literal["rest", "steady"] | None = None
     until: ConditionEntry | None = None
     events: dict[str, ConditionEntry] = key(default_factory=dict)
 

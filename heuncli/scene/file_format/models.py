@@ -354,6 +354,7 @@ class Analysis(NamedTuple):
     step: step size of methods with a fixed step [s]
     tolerance_given: whether the user gave the tolerance, or it is the default
     impacts: how an impulse passes through several touching contacts
+    start: whether a motion starts as it is drawn (None), at rest under the loads at t = 0, or steady
     """
 
     type: Literal["motion", "impulse", "state", "rest"]
@@ -365,6 +366,7 @@ class Analysis(NamedTuple):
     conditions: tuple[WatchedCondition, ...] = ()
     tolerance_given: bool = False
     impacts: ImpactModel = SIMULTANEOUS
+    start: Literal["rest", "steady"] | None = None
 
 
 class Foundation(NamedTuple):

@@ -161,6 +161,7 @@ class Resolver:
             (*self.make_conditions(analysis), *(self.iter_entry_conditions() if kind == "motion" else ())),
             analysis.tolerance is not None,
             analysis.impacts,
+            analysis.start,
         )
 
     def point(self, body: str, name: str) -> m.Vec:

@@ -92,6 +92,7 @@ def compose(
             *warn_of_belts(setup, recovery, composed.blocks, impulses),
             *warn_of_threads(setup, impulses),
             *(rest.warnings if rest is not None else ()),
+            *setup.start_warnings,
         ),
     )
     return require_finite(results)

@@ -90,10 +90,16 @@ class Rest:
         return {"code": "completed", "message": f"at rest after {format_count(self.steps, 'step')} from the start"}
 
 
-def start_at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner, Rest]:
-    """Return the scene with its rest pose as the start. Raises SolveError [no-rest-pose]."""
+def start_at_rest(
+    scene: PreparedScene, runner: Runner, *, with_time: bool = False
+) -> tuple[PreparedScene, Runner, Rest]:
+    """Return the scene with its rest pose as the start. Raises SolveError [no-rest-pose].
+
+    with_time: whether loads may depend on time; they are those at t = 0
+    """
     start_time = time.perf_counter()
-    require_constant(scene.mechanism)
+    if not with_time:
+        require_constant(scene.mechanism)
     first = runner.evaluate(np.zeros(1), runner.layout.y0[None, :])
     require_solvable(scene, first, ErrorWording("accelerations at the start"))
     search = RestSearch(scene, runner, 0.0, tolerances.REST_BENT)

@@ -60,6 +60,7 @@ class Setup:
     is_auto: heun chose the method, and may change it during the run
     step: of a method of fixed step [s]
     self_stress: the self-stresses at the start
+    start_warnings: on the pose from which a motion starts, if the analysis asks for one at rest
     """
 
     spec: Spec
@@ -74,6 +75,7 @@ class Setup:
     is_auto: bool = False
     step: float | None = None
     self_stress: CachedStress | None = None
+    start_warnings: tuple[str, ...] = ()
 
     @cached_property
     def moment_point(self) -> Array:
@@ -126,6 +128,10 @@ def set_up(
     if not reduce:  # a scene declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = make_runner(prepared, stages)
+    start_warnings: tuple[str, ...] = ()
+    if spec.analysis.start is not None and find_rest:
+        scene, runner, start_warnings = start_settled(scene, spec, stages)
+        reduce = False  # a smaller scene is derived from the start as drawn
     if scene.mechanism.joint_friction and scene.layout.rows:
         from heuncli.loads.redundancy import indeterminate_components  # few scenes have such friction
 
@@ -155,8 +161,19 @@ def set_up(
     note |= {} if step is None else {"step": step}
     return Setup(
         spec, scene, cuts, runner, chosen, note, reduced, selection,
-        is_auto=auto, step=step, self_stress=redundancies.start_stress,
+        is_auto=auto, step=step, self_stress=redundancies.start_stress, start_warnings=start_warnings,
     )  # fmt: skip
+
+
+def start_settled(scene: PreparedScene, spec: Spec, stages: Stages) -> tuple[PreparedScene, Runner, tuple[str, ...]]:
+    """Return the scene with its start at rest, or steady, a runner that begins there, and warnings."""
+    from heuncli.study.model.settled_start import settle_start  # few scenes need it
+
+    assert spec.analysis.start is not None
+    scene, sentences, warnings = settle_start(scene, spec.analysis.start, stages)
+    motions = (*scene.start.start_motions, *sentences)
+    scene = replace(scene, start=replace(scene.start, start_motions=motions))
+    return scene, Runner(scene.layout), warnings
 
 
 def require_drives(mechanism: Mechanism, t: float) -> None:

@@ -84,29 +84,39 @@ def check_analysis_type(draft: DraftDocument) -> Iterator[Violation]:
     if analysis.type in ("state", "rest") and draft.names.entries["impulses"]:
         hint = "type: impulse for the jump at time 0, a duration for a motion with impulses"
         yield Violation(path, f"type: {analysis.type} takes no impulses, but the spec has impulses", hint)
+    if analysis.start is not None and find_analysis_type(draft.document) != "motion":
+        message = f"start: {analysis.start} is for motions"
+        hint = "add a duration; for the rest pose alone: analysis: {type: rest}"
+        yield Violation(("analysis", "start"), message, hint, key=True)
     if analysis.type == "impulse" and not draft.names.entries["impulses"]:
         yield Violation(path, "type: impulse without impulses", "impulses: {hit: {on: body.point, vector: [1, 0, 0]}}")
 
 
 @rule("rest-start")
 def check_rest_start(draft: DraftDocument) -> Iterator[Violation]:
-    """A search for a rest pose has no start velocities; driven joints take theirs from the drives."""
+    """A search for a rest pose has no start velocities; driven joints take theirs from the drives.
+
+    A steady start goes on at the rates that joints have.
+    """
     document = draft.document
-    if document.analysis.type != "rest":
+    analysis = document.analysis
+    if analysis.type != "rest" and analysis.start is None:
         return
-    hint = "leave it out, or request a motion"
+    name_of_start = "type: rest" if analysis.type == "rest" else f"start: {analysis.start}"
+    hint = "leave it out, or request a motion" if analysis.type == "rest" else "leave it out, or start as drawn"
     driven = {drive.joint for drive in document.drives.values()}
-    for name, joint in document.joints.items():
+    for name, joint in document.joints.items() if analysis.start != "steady" else ():
         initial = getattr(joint, "initial", None)
         for key in ("rate", "speed"):
             if name not in driven and getattr(initial, key, None):
-                yield Violation(("joints", name, "initial", key), f"type: rest takes no initial {key}", hint, key=True)
+                message = f"{name_of_start} takes no initial {key}"
+                yield Violation(("joints", name, "initial", key), message, hint, key=True)
     for name, body in document.bodies.items():
         for key in ("velocity", "angular_velocity"):
             value = getattr(body, key)
             if value is not None and any(getattr(value, "vector", value)):
-                quantity = key.replace("_", " ")
-                yield Violation(("bodies", name, key), f"type: rest takes no initial {quantity}", hint, key=True)
+                message = f"{name_of_start} takes no initial {key.replace('_', ' ')}"
+                yield Violation(("bodies", name, key), message, hint, key=True)
 
 
 @rule("tolerance")
