@@ -24,9 +24,11 @@ from heuncli.scene.expressions.dimensions import (
     literal_dimension,
     power_dimension,
 )
-from heuncli.scene.expressions.names import (
+from heuncli.scene.expressions.programs import OWN, POINTS, Expression
+from heuncli.scene.expressions.scope import (
     ARITY,
     CONSTANTS,
+    COORDINATES_BY_TYPE,
     LAW_HINT,
     LIBRARIES,
     POINT_FORM_HINT,
@@ -34,15 +36,11 @@ from heuncli.scene.expressions.names import (
     RESERVED,
     RESULT_BLOCKS,
     WORDS,
-    resolve_point,
-)
-from heuncli.scene.expressions.programs import OWN, POINTS, Expression
-from heuncli.scene.expressions.scope import (
-    COORDINATES_BY_TYPE,
     DependentError,
     Scope,
     describe_dimensions,
     find_dimension,
+    resolve_point,
     unknown_name_finding,
 )
 from heuncli.scene.expressions.token_reader import TokenReader
