@@ -21,6 +21,7 @@ from heuncli.base.spelling import find_similar, suggest
 from heuncli.base.units import Dimension, describe, si_expression_hint
 from heuncli.results.results_schema import ROWS, SHARED_BLOCKS
 from heuncli.scene.expressions.codegen import MAX_NODES, CalculationCache
+from heuncli.scene.expressions.motion_laws import ARGUMENTS
 from heuncli.scene.expressions.programs import POINTS, TableFunction
 
 # Tokens
@@ -50,6 +51,7 @@ ARITY: dict[str, tuple[int, int]] = {
     "atan2": (2, 2),
     **dict.fromkeys(("min", "max", "hypot"), (2, MAX_NODES)),
     "table": (2, 2),
+    **{name: (count, count) for name, count in ARGUMENTS.items()},
 }
 WORDS = frozenset({"if", "else", "and", "or", "not"})
 RESERVED = frozenset({"t", *CONSTANTS, *ARITY, *WORDS})
