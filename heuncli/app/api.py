@@ -15,8 +15,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from heuncli.base.available_memory import result_memory
 from heuncli.base.errors import Problem, SpecError, UsageError
+from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.base.spelling import find_similar
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES

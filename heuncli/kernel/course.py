@@ -157,8 +157,7 @@ def bound_driven_variable(scene: cython.pointer[Scene], i: cython.Py_ssize_t) ->
     drive: Span = enclose(scene.programs, freedom.program)
     if scene.variables[i].is_rate:
         return Span(drive.rate, drive.second, all_numbers())
-    shifted: Bounds = Bounds(drive.value.low + freedom.offset, drive.value.high + freedom.offset)
-    return Span(shifted, drive.rate, drive.second)
+    return Span(drive.value, drive.rate, drive.second)
 
 
 def bound_derivatives(
@@ -193,6 +192,6 @@ def set_variables(scene: cython.pointer[Scene], course: cython.pointer[Course], 
         if state_component(scene, i) == -1:
             freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[scene.variables[i].freedom])
             drive: Jet = jet(scene.programs, freedom.program, time)
-            scene.programs.variables[i] = drive.rate if scene.variables[i].is_rate else drive.value + freedom.offset
+            scene.programs.variables[i] = drive.rate if scene.variables[i].is_rate else drive.value
         elif state_component(scene, i) >= 0:
             scene.programs.variables[i] = bound_polynomial(course.value[i], course.degree, x, x, course.work).low

@@ -20,7 +20,7 @@ def set_coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if freedom.driven:
             drive: Jet = jet(scene.programs, freedom.program, t)
-            freedom.q = drive.value + freedom.offset
+            freedom.q = drive.value
             freedom.u = drive.rate
             freedom.udot = drive.second
         else:

@@ -342,8 +342,7 @@ def bound_freedom(
     freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
     if freedom.driven:
         drive: Span = enclose(scene.programs, freedom.program)
-        shifted: Bounds = Bounds(drive.value.low + freedom.offset, drive.value.high + freedom.offset)
-        return Jet(magnitude(shifted).high, magnitude(drive.rate).high, magnitude(drive.second).high)
+        return Jet(magnitude(drive.value).high, magnitude(drive.rate).high, magnitude(drive.second).high)
     rate: Jet = bound_component(course, freedom.u_at, x0, x1)
     place: cython.double = 0.0
     if freedom.kind == SHIFT:

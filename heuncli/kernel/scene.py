@@ -88,7 +88,6 @@ class Freedom(Record):
     body: int
     program: Program  # value of the drive
     direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
-    offset: float = ZERO  # coordinate minus the drive's value
     path: int = ZERO  # first piece of the path along which a point runs
     pieces: int = ZERO  # and how many it has; 0: its direction is fixed
     period: float = ZERO  # period of the coordinate on a closed path; else 0

@@ -1,4 +1,4 @@
-"""A cache for the results of stages: each result is stored with the part of its input that the stage has read.
+"""Computations in stages, and a cache of their results, each with the part of its input that the stage has read.
 
 A stage is a function of records without side effects. On its first run it gets its input wrapped in proxies that record
 every field it reads. Given other input in which all of these fields are equal to the bit, its result must be the same
@@ -16,10 +16,26 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import fields
-from heuncli.multibody.stages import Stages
 from heuncli.scene.file_format.sharing import is_same
 
 T = TypeVar("T")
+
+
+class Stages:
+    """Runs stages without a cache."""
+
+    def run(self, stage: Callable[..., T], *inputs: Any, key: str = "", fallback: Callable[[], T] | None = None) -> T:
+        """Return the result of a stage. key: which one, of a stage that is run for several objects by name.
+
+        fallback: computes the same from smaller stages, some of which may be cached when the stage itself is not
+        """
+        return stage(*inputs) if fallback is None else fallback()
+
+
+NO_CACHE = Stages()
+
+
+# The cache
 
 Key = tuple[Callable[..., Any], str]
 

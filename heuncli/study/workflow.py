@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from heuncli.base.errors import SolveError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import replace
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.results.results import Block
 from heuncli.results.results_schema import SHARES
 from heuncli.scene.file_format.models import ResultCondition, Spec, Stop

@@ -12,7 +12,7 @@ import pytest
 
 from heuncli.app.cli.entry import enter
 from heuncli.app.cli.output import encode_text
-from heuncli.base.sentences import wrap_text
+from heuncli.base.spelling import wrap_text
 from heuncli.base.text_safety import escape, escape_all
 from tests.shared.command import HANGING, Heun
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.base import available_memory
+from heuncli.base import process
 from heuncli.motion.integration.run.progress import GrowingRows
 from heuncli.motion.integration.trajectory import StepRecords
 from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES
@@ -30,7 +30,7 @@ def test_what_would_not_fit_is_refused_with_what_would(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
     left, told = (2e6, "1 MB") if "format" in words else (2e7, "10 MB")  # what is exported takes its states alone
-    monkeypatch.setattr(available_memory, "_left", lambda: iter([left]))
+    monkeypatch.setattr(process, "_left", lambda: iter([left]))
     many = (folder / "swinging.yaml").read_text().replace("samples: 11", "samples: 100001")
     (folder / "many.yaml").write_text(many)
     done = heun(*words.split(), "many.yaml")
@@ -53,12 +53,12 @@ def test_steps_that_are_known_before_are_counted(heun: Heun, folder: Path, monke
         "forces: {f: {type: force, on: b.p, vector: ['table(f, t)', 0, 0]}}\nanalysis: {duration: 1, samples: 3}\n"
     )
     (folder / "dense.yaml").write_text(scene)
-    monkeypatch.setattr(available_memory, "_left", lambda: iter([8e6]))
+    monkeypatch.setattr(process, "_left", lambda: iter([8e6]))
     done = heun("run", "dense.yaml")
     assert (done.returncode, done.stdout) == (4, "")
     assert "loads and drives have 10,000 jumps or kinks" in done.stderr and "[too-much-memory]" in done.stderr
     assert "hint: a shorter duration, or tables with fewer points" in done.stderr
-    monkeypatch.setattr(available_memory, "_left", lambda: iter([8e8]))
+    monkeypatch.setattr(process, "_left", lambda: iter([8e8]))
     assert heun("run", "dense.yaml", "--quiet").returncode == 0
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.base.progress_messages import current_listener, progress_listener
+from heuncli.base.process import current_listener, progress_listener
 from heuncli.base.tolerances import MOST_STEPS
 from heuncli.motion.integration.run import supervision
 from heuncli.motion.integration.run.progress import FIRST_LOOK, project_steps

@@ -19,7 +19,7 @@ from heuncli.base.joint_kinds import SYNONYMS, TYPES, JointKind
 from heuncli.base.load_kinds import LOAD_KINDS, LOAD_SYNONYMS
 from heuncli.base.method_rows import METHODS
 from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
-from heuncli.scene.expressions.names import ARITY, CONSTANTS
+from heuncli.scene.expressions.scope import ARITY, CONSTANTS
 from heuncli.scene.file_format import format_joints as fj
 from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs

@@ -12,7 +12,7 @@ from heuncli.app.cli.registry import COMMANDS
 from heuncli.app.commands.explain.pages import PAGES
 from heuncli.base.files import ReaderGoneError
 from heuncli.base.units import UNITS
-from heuncli.scene.expressions.names import ARITY, CONSTANTS
+from heuncli.scene.expressions.scope import ARITY, CONSTANTS
 from heuncli.scene.file_format import format as document
 from heuncli.scene.file_format.entries import Entry, keys_of
 from tests.shared.manual import FENCED, README, ROOT, TEXTS, anchor, file_of, headings, tables_below

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.records import record, replace
-from heuncli.multibody.stage_cache import RecordingStages, ReusingStages
-from heuncli.multibody.stages import Stages
+from heuncli.multibody.stage_cache import RecordingStages, ReusingStages, Stages
 from heuncli.results.results import Array
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.base.sentences import wrap_text
+from heuncli.base.spelling import wrap_text
 from heuncli.output.documents.document import OutputColumn, OutputTable
 from heuncli.output.documents.text_table import format_plain, split_to_width
 

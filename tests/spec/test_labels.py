@@ -15,12 +15,12 @@ from heuncli.analyses.variants.evaluation import Recipe
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.base.errors import SpecError
 from heuncli.output.tables.export import to_csv, to_json
+from heuncli.scene.file_format.incremental_loader import SpecVariants
 from heuncli.scene.file_format.json_schema import make_spec_schema
 from heuncli.scene.file_format.labels import BLOCKS, GROUND
 from heuncli.scene.file_format.load import load, load_with_cases
 from heuncli.scene.file_format.models import Logo, ReportSettings, Spec
 from heuncli.scene.file_format.source import read_source
-from heuncli.scene.file_format.variants import SpecVariants
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.workflow import solve

@@ -14,6 +14,7 @@ from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.format_joints import BallJoint, PinJoint
 from heuncli.scene.file_format.format_loads import ForceEntry
+from heuncli.scene.file_format.incremental_loader import SpecVariants
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.lookups import (
     GIVEN_FIELDS,
@@ -28,7 +29,6 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.parameters import PLAIN_NUMBER, parse_settings
 from heuncli.scene.file_format.sharing import is_same
 from heuncli.scene.file_format.source import parse_source
-from heuncli.scene.file_format.variants import SpecVariants
 from tests.shared.bits import bits
 from tests.shared.folders import ROOT, SPECS
 

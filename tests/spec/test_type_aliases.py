@@ -14,11 +14,11 @@ from heuncli.output.tables.export import to_json
 from heuncli.scene.file_format.entries import keys_of
 from heuncli.scene.file_format.foreign_words import TYPE_ALIASES, TYPES, replace_type_aliases
 from heuncli.scene.file_format.format import ENTRY_BLOCKS
+from heuncli.scene.file_format.incremental_loader import SpecVariants
 from heuncli.scene.file_format.json_schema import make_spec_schema
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.source import read_source
-from heuncli.scene.file_format.variants import SpecVariants
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 

@@ -32,7 +32,7 @@ from heuncli.analyses.motion_diagnostics.stiffness import find_stiffness
 from heuncli.analyses.motion_diagnostics.twists import ConditionNumbers, compute_conditions
 from heuncli.base import tolerances
 from heuncli.base.records import replace
-from heuncli.base.sentences import format_count, list_some
+from heuncli.base.spelling import format_count, list_some
 from heuncli.loads.equilibrium.coordinates import Coordinates, make_coordinates
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options

@@ -4,8 +4,8 @@
     study = solver.solve({"w": "1500 rpm", "r": NumberWithUnit(60.0, "mm")})
 
 A cached stage has the very same bits that the variant would compute: this is decided by what each entry, rule and stage
-has looked up (scene/file_format/variants.py). So a variant equals the result of `heun run --set` to the bit, whatever
-was solved before.
+has looked up (scene/file_format/incremental_loader.py). So a variant equals the result of `heun run --set` to the bit,
+whatever was solved before.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.multibody.stage_cache import RecordingStages, ReusingStages
 from heuncli.results.results_schema import EVENTS, IMPULSES
+from heuncli.scene.file_format.incremental_loader import SpecVariants
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFile, NamedFiles, PreloadedFiles
 from heuncli.scene.file_format.quantity import ParameterValue
-from heuncli.scene.file_format.variants import SpecVariants
 from heuncli.study.model.options import Options, apply_options
 from heuncli.study.model.selection import select_paths
 from heuncli.study.queries.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value

@@ -8,9 +8,9 @@ from heuncli.analyses.variants.evaluation import Recipe
 from heuncli.analyses.variants.parameters import CASE
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.errors import HeunError
+from heuncli.scene.file_format.incremental_loader import SpecVariants
 from heuncli.scene.file_format.named_files import NamedFiles, TrackedFiles
 from heuncli.scene.file_format.parameters import parse_settings
-from heuncli.scene.file_format.variants import SpecVariants
 
 FILE_KEYS = (".file", ".curve")  # endings of the keys whose values are names of files
 

@@ -17,7 +17,7 @@ from heuncli.app.cli.registry import ParsedCommand
 from heuncli.base.errors import HeunError, LimitError, Problem
 from heuncli.base.errors import UsageError as UsageError  # re-exported for the commands
 from heuncli.base.files import ReaderGoneError
-from heuncli.base.progress_messages import progress_listener
+from heuncli.base.process import progress_listener
 from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.reading import forget_files_read
 from heuncli.version import VERSION

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from heuncli.base.available_memory import remaining_address_space
-from heuncli.base.available_memory import result_memory as result_memory  # re-exported for the commands
 from heuncli.base.errors import LimitError, Problem
+from heuncli.base.process import remaining_address_space
+from heuncli.base.process import result_memory as result_memory  # re-exported for the commands
 
 MIN_MEMORY = 160e6  # bytes of address space for the modules of Python, NumPy and the kernel
 UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # messages of system loaders

@@ -18,7 +18,7 @@ from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.response import jacobian
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout, find_speed_rows, remove_loads
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array

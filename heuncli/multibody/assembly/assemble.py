@@ -32,9 +32,8 @@ from heuncli.multibody.assembly.start_choices import (
 )
 from heuncli.multibody.assembly.walk import AssemblyPoses, PlacementTree
 from heuncli.multibody.mechanism.loads import GROUND
-from heuncli.multibody.mechanism.model import Assembly, Body, Mechanism
-from heuncli.multibody.mechanism.size import extent_points, scene_size
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.mechanism.model import Assembly, Body, Mechanism, extent_points, scene_size
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.results.results import Array
 from heuncli.scene.expressions.roller_path import left_normal
 from heuncli.scene.shapes.rotations import cross_rows, vector_from_rotation

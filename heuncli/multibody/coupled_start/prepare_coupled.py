@@ -12,7 +12,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.multibody.mechanism.model import Assembly, Mechanism
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, prepare
 from heuncli.multibody.tree.starts import body_state

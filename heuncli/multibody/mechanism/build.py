@@ -23,7 +23,7 @@ from heuncli.multibody.mechanism.loads import (
     TriangularDistribution,
 )
 from heuncli.multibody.mechanism.model import Blow, Body, Directed, Elastic, Joint, Mechanism, NamedPoint, Stop
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression, is_point_name
 from heuncli.scene.file_format import loads

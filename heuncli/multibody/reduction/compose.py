@@ -17,7 +17,7 @@ from importlib import import_module
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.model import Mechanism
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
 

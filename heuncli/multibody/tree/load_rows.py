@@ -20,7 +20,7 @@ from heuncli.multibody.mechanism.loads import (
     ThreadLoad,
 )
 from heuncli.multibody.mechanism.model import Joint, Mechanism, NamedPoint
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout, LayoutFrame, empty_load_tables, make_layout
 from heuncli.multibody.tree.tables import NO_PROGRAM, ZERO, FieldValue, Program, Table, flat_dtype, make_table
 from heuncli.scene.expressions.programs import LOADS, Expression, Pack, Variable

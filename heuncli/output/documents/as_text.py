@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.sentences import wrap_text
+from heuncli.base.spelling import wrap_text
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.document import (
     Brand,

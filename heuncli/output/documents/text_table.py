@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from heuncli.base.sentences import wrap_text
+from heuncli.base.spelling import wrap_text
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
 

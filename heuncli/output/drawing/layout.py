@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.base.sentences import wrap_text
+from heuncli.base.spelling import wrap_text
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing import style
 from heuncli.output.drawing.figure import Bars, Figure, LegendEntry, Panel, PlaceLabel, Scaling, VerticalMark

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.base.sentences import wrap_text
+from heuncli.base.spelling import wrap_text
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import (

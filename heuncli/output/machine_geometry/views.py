@@ -14,7 +14,7 @@ import numpy as np
 
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.multibody.reduction.plane.departures import iter_departures
+from heuncli.multibody.reduction.plane.step import iter_departures
 from heuncli.multibody.reduction.plane.view import find_neighbours, iter_normals
 from heuncli.multibody.reduction.plane.view import make_view as seen_from_plane
 from heuncli.multibody.tree.prepare import PreparedScene

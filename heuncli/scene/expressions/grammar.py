@@ -24,9 +24,12 @@ from heuncli.scene.expressions.dimensions import (
     literal_dimension,
     power_dimension,
 )
-from heuncli.scene.expressions.names import (
+from heuncli.scene.expressions.motion_laws import ARGUMENTS, TEXTS, make_motion_law
+from heuncli.scene.expressions.programs import OWN, POINTS, Expression
+from heuncli.scene.expressions.scope import (
     ARITY,
     CONSTANTS,
+    COORDINATES_BY_TYPE,
     LAW_HINT,
     LIBRARIES,
     POINT_FORM_HINT,
@@ -34,15 +37,11 @@ from heuncli.scene.expressions.names import (
     RESERVED,
     RESULT_BLOCKS,
     WORDS,
-    resolve_point,
-)
-from heuncli.scene.expressions.programs import OWN, POINTS, Expression
-from heuncli.scene.expressions.scope import (
-    COORDINATES_BY_TYPE,
     DependentError,
     Scope,
     describe_dimensions,
     find_dimension,
+    resolve_point,
     unknown_name_finding,
 )
 from heuncli.scene.expressions.token_reader import TokenReader
@@ -298,11 +297,13 @@ class _Parser(TokenReader):
             count = f"{least}" if least == most else f"{least} or more"
             message = f"{name}() takes {count} argument{'s' if count != '1' else ''}, not {len(parts)}"
             arguments = ", ".join("xyz"[:least]) + (", ..." if most > least else "")
-            hint = decimal or f"write {name}({arguments})"
+            hint = decimal or f"write {TEXTS.get(name, f'{name}({arguments})')}"
             if name == "log":
                 hint = "log is the natural logarithm; for base b write log(x)/log(b)"
             raise Finding("function-arguments", message, hint)
         text = self.text_since(begin)
+        if name in ARGUMENTS:
+            return make_motion_law(self.codegen, name, parts, text)
         part = self.codegen.make_operation(name, *parts[:2], text=text)
         for other in parts[2:]:
             part = self.codegen.make_operation(name, part, other, text=text)

@@ -1,9 +1,15 @@
-"""The names that an expression may use, and the errors of names and of their dimensions."""
+"""The words of an expression: its tokens, the names it may use, and the errors of other names and of dimensions.
+
+Tokens are numbers, names and marks. For names of other programs and of results, others are proposed. A point of a body
+is named points.BODY.POINT.x, or points.POINT.x if only one body has it.
+"""
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -13,9 +19,115 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.base.spelling import find_similar, suggest
 from heuncli.base.units import Dimension, describe, si_expression_hint
-from heuncli.scene.expressions.codegen import CalculationCache
-from heuncli.scene.expressions.names import ARITY, OTHER_NAMES, RESERVED
-from heuncli.scene.expressions.programs import TableFunction
+from heuncli.results.results_schema import ROWS, SHARED_BLOCKS
+from heuncli.scene.expressions.codegen import MAX_NODES, CalculationCache
+from heuncli.scene.expressions.motion_laws import ARGUMENTS
+from heuncli.scene.expressions.programs import POINTS, TableFunction
+
+# Tokens
+
+TOKEN = re.compile(
+    r"\s*+(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
+)
+MAX_CACHED_TEXTS = 1024  # size of the cache: variants of a spec parse the same texts again
+END_PADDING = ("",) * 4  # the parser looks ahead this far
+
+
+@lru_cache(maxsize=MAX_CACHED_TEXTS)
+def tokenize(text: str) -> tuple[tuple[tuple[str, str, int], ...], tuple[str, ...], tuple[str, ...]]:
+    """Split a text into tokens: kind, word and end of each; then kinds and words alone, padded after the last."""
+    found = tuple((one.lastgroup or "", one[one.lastgroup or 0], one.end()) for one in TOKEN.finditer(text))
+    return found, tuple(kind for kind, _, _ in found) + END_PADDING, tuple(word for _, word, _ in found) + END_PADDING
+
+
+# Names
+
+CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
+UNARY_FUNCTIONS = (
+    "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "step",
+)  # fmt: skip
+ARITY: dict[str, tuple[int, int]] = {
+    **dict.fromkeys(UNARY_FUNCTIONS, (1, 1)),
+    "atan2": (2, 2),
+    **dict.fromkeys(("min", "max", "hypot"), (2, MAX_NODES)),
+    "table": (2, 2),
+    **{name: (count, count) for name, count in ARGUMENTS.items()},
+}
+WORDS = frozenset({"if", "else", "and", "or", "not"})
+RESERVED = frozenset({"t", *CONSTANTS, *ARITY, *WORDS})
+LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # prefixes of functions in other programs
+
+OTHER_NAMES = {  # names from other programs, and heun's
+    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "ln": "log", "fabs": "abs", "sgn": "sign",
+    "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
+    "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
+}  # fmt: skip
+RESULT_BLOCKS = SHARED_BLOCKS | {"stops", "couplings"}  # blocks of the results that follow from the motion
+REACTIONS = frozenset(
+    row.path.split(".")[2]
+    for row in ROWS
+    if row.path.startswith(("joints.JOINT.", "stops.STOP.")) and set(row.units) & {"N", "N·m"}
+) - {"shares"}
+LAW_HINT = (
+    "a law may use t, parameters and coordinates such as shaft.angle, shaft.rate, guide.travel, guide.speed; "
+    "a condition may use {of: joints.NAME.force.z, below: 0}"
+)
+
+
+# Point names
+
+GROUND = "ground"
+QUANTITIES = ("x", "y", "z", "vx", "vy", "vz")
+POINT_FORM_HINT = f"a point is {POINTS}.BODY.POINT.x, y, z [m] or .vx, .vy, .vz [m/s], world axes"
+
+Points = Mapping[str, Collection[str]]  # of each body and of the ground
+
+
+def resolve_point(text: str, words: Sequence[str], points: Points) -> tuple[str, str, str]:
+    """Return body, point and quantity of the words after `points`. Raises Finding."""
+    *names, quantity = words
+    if quantity not in QUANTITIES or len(names) not in (1, 2):
+        raise Finding(
+            "unknown-coordinate",
+            f"'{text}' is not a coordinate of a point",
+            suggest_point_form(names, quantity, points),
+        )
+    if len(names) == 1:
+        names = [find_owner(text, names[0], points), names[0]]
+    elif names[0] not in points:
+        hint = suggest(names[0], points, "bodies")
+        raise Finding("unknown-body", f"'{text}': '{names[0]}' is not a body", hint)
+    elif names[1] not in points[names[0]]:
+        hint = suggest(names[1], points[names[0]], f"points of {names[0]}")
+        raise Finding("unknown-point", f"'{text}': {names[0]} has no point '{names[1]}'", hint)
+    return names[0], names[1], quantity
+
+
+def suggest_point_form(names: Sequence[str], quantity: str, points: Points) -> str:
+    """Suggest the valid form: for points.drill.bit.position.x, as in results, points.drill.bit.x."""
+    if len(names) == 3 and names[0] in points and names[2] in ("position", "velocity") and quantity in tuple("xyz"):
+        key = quantity if names[2] == "position" else f"v{quantity}"
+        return f"write {POINTS}.{names[0]}.{names[1]}.{key}"
+    return POINT_FORM_HINT
+
+
+def find_owner(text: str, point: str, points: Points) -> str:
+    """Find the only body that has a point of that name, else the ground. Raises Finding."""
+    owners = [body for body, body_points in points.items() if point in body_points and body != GROUND]
+    if not owners and point in points.get(GROUND, ()):
+        return GROUND
+    if len(owners) == 1:
+        return owners[0]
+    if owners:
+        named = ", ".join(f"{POINTS}.{body}.{point}" for body in owners)
+        raise Finding("unknown-point", f"'{text}': several bodies have a point {point}", f"name one: {named}")
+    if point in points:
+        body_points = [f"{POINTS}.{point}.{name}" for name in points[point]]
+        hint = f"name a point of it: {', '.join(body_points)}" if body_points else f"bodies: {point}: has no points"
+        raise Finding("unknown-point", f"'{text}': {point} is a body", hint)
+    known = [name for body_points in points.values() for name in body_points]
+    raise Finding("unknown-point", f"'{text}': no body has a point '{point}'", suggest(point, known, "points"))
+
 
 COORDINATES_BY_TYPE = {  # by joint type, of the joints with one coordinate
     kind.name: (quantity, RATES[quantity])

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from heuncli.base.errors import Finding
 from heuncli.base.units import si_expression_hint
-from heuncli.scene.expressions.names import RESERVED, WORDS, tokenize
-from heuncli.scene.expressions.scope import Scope
+from heuncli.scene.expressions.scope import RESERVED, WORDS, Scope, tokenize
 
 
 class TokenReader:

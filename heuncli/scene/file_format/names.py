@@ -11,7 +11,7 @@ from typing import Any
 from heuncli.base.joint_kinds import TYPES
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import match_misspelt_keys
-from heuncli.scene.expressions.names import RESERVED
+from heuncli.scene.expressions.scope import RESERVED
 from heuncli.scene.file_format.entries import Entry, keys_of
 from heuncli.scene.file_format.format import BodyEntry, GroundEntry
 from heuncli.scene.file_format.models import Spec

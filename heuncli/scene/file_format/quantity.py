@@ -20,9 +20,8 @@ from heuncli.base.units import (
     si_unit,
 )
 from heuncli.scene.expressions.grammar import compile_expression, require_length
-from heuncli.scene.expressions.names import RESERVED, WORDS
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.expressions.scope import DependentError, Scope, describe_dimensions
+from heuncli.scene.expressions.scope import RESERVED, WORDS, DependentError, Scope, describe_dimensions
 
 # A number followed by something that begins like a unit; "2 if t < 1 else 3" is excluded separately.
 # The 1 of 1/s needs a blank before it: 21/s is not 2 1/s, and 9.81/2 is not 9.8 1/2.

@@ -1,4 +1,4 @@
-"""Load a spec and record what each part of it depends on (variants.py), with the parts themselves.
+"""Load a spec and record what each part of it depends on (incremental_loader.py), with the parts themselves.
 
 Impure: reads the spec's tables.
 """

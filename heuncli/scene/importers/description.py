@@ -27,7 +27,7 @@ from typing import Any
 
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.scene.expressions.names import RESERVED
+from heuncli.scene.expressions.scope import RESERVED
 from heuncli.scene.file_format.labels import LABEL, check_plain_text
 from heuncli.scene.file_format.loads import Matrix
 from heuncli.scene.file_format.models import Vec

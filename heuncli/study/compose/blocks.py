@@ -174,7 +174,7 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
         )
         block[cuts.name] = section_results | ({"open": list_indeterminate_section_names(is_open)} if is_open else {})
         if by_cause:
-            from heuncli.loads.kinetostatics.section_shares import section_shares_block
+            from heuncli.loads.kinetostatics.shares import section_shares_block
 
             block[cuts.name]["shares"] = section_shares_block(cuts, scene.layout, states, recovery.shares, is_open)
     return block

@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli.base.errors import LimitError, SolveError
 from heuncli.base.method_rows import find_method
-from heuncli.base.sentences import format_count
+from heuncli.base.spelling import format_count
 from heuncli.motion.integration.check.runs import Runs, try_fewer_stages
 from heuncli.motion.integration.integrated_scene import find_discontinuities
 from heuncli.motion.integration.methods.method import Method

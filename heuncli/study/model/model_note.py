@@ -15,7 +15,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.method_rows import DEFAULT
-from heuncli.base.sentences import format_count, list_some
+from heuncli.base.spelling import format_count, list_some
 from heuncli.loads.redundancy.count import RedundancyCount
 from heuncli.motion.integration.integrated_scene import find_discontinuities
 from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method, load_method_by_name
@@ -31,6 +31,9 @@ from heuncli.scene.file_format.models import Spec
 
 if TYPE_CHECKING:
     from heuncli.loads.redundancy.self_stress import SelfStress
+from collections.abc import Iterator
+
+from heuncli.scene.file_format.couplings import Screw, ThreadFriction
 
 COUNTED_FROM = {GLOBAL: "relative to the world axes: none can pass 180 deg", RECENTRED: "restarted in each step"}
 
@@ -139,7 +142,7 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     if coupled:
         sentences.append(f"coupled: {list_some(coupled)}")
     if any(isinstance(load, ThreadLoad) for load in mechanism.loads):
-        from heuncli.study.model.thread_note import describe_threads  # few scenes have them
+        from heuncli.study.model.model_note import describe_threads  # few scenes have them
 
         sentences += describe_threads(mechanism)
     driven = [mechanism.owner_path(law.owner).partition(".")[2] for law in mechanism.laws]
@@ -292,3 +295,32 @@ def largest_rate(layout: Layout) -> float:
     rates = [np.abs(y[int(g["rates"]) : int(g["end"])] * layout.weights[int(g["rates"]) : int(g["end"])])
              for k, g in enumerate(layout.tables["groups"]) if k != layout.energy_group]  # fmt: skip
     return max((float(x.max(initial=0.0)) for x in rates), default=0.0)
+
+
+SELF_LOCKING = "self-locking"
+
+
+def describe_threads(mechanism: Mechanism) -> Iterator[str]:
+    """Yield a sentence for each thread with friction."""
+    for coupling in mechanism.couplings:
+        if isinstance(coupling.entry, Screw) and coupling.entry.friction is not None:
+            yield f"{coupling.name}: {describe_thread(coupling.entry.lead, coupling.entry.friction)}"
+
+
+def describe_thread(lead: float, friction: ThreadFriction) -> str:
+    """Describe a thread by its slope, its angle of friction, and its efficiency at full friction.
+
+    eta = tan(lambda) / tan(lambda + rho) of turning into thrust, tan(lambda - rho) / tan(lambda) of thrust into turning
+    """
+    slope, mu = abs(lead) / (math.tau * friction.radius), friction.coefficient
+    a, b = (f"{math.degrees(math.atan(x)):.4g} deg" for x in (slope, mu))
+    angles = f"(slope {a}, angle of friction {b})"
+    if slope * mu >= 1.0:
+        return f"no torque rotates it against a thrust {angles}"
+    efficiency = f"efficiency {slope * (1.0 - slope * mu) / (slope + mu):.3g} from torque to thrust"
+    if slope <= mu:
+        return f"{SELF_LOCKING} {angles}: no thrust rotates it; {efficiency}"
+    return (
+        f"not {SELF_LOCKING} {angles}: {efficiency}, {(slope - mu) / (1.0 + slope * mu) / slope:.3g} "
+        "from thrust to torque"
+    )

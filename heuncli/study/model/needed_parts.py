@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from heuncli.base.records import fields
-from heuncli.base.sentences import list_some
+from heuncli.base.spelling import list_some
 from heuncli.results.results_schema import EVENTS, IMPULSES, SHARES
 from heuncli.scene.expressions.programs import Expression, is_load_name, is_point_name
 from heuncli.scene.file_format.models import Condition, End, Spec

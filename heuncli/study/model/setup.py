@@ -24,7 +24,7 @@ from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.reduction import compose as reduction
 from heuncli.multibody.reduction.compose import ReducedScene
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.couplings import Rope

@@ -139,7 +139,7 @@ def list_section_shares(setup: Setup, states: BodyStates, shares: Shares) -> Kin
     found: KindValues = []
     if not setup.cuts:
         return found
-    from heuncli.loads.kinetostatics.section_shares import section_shares_block  # where there are sections
+    from heuncli.loads.kinetostatics.shares import section_shares_block  # where there are sections
 
     for cuts in setup.cuts:
         block = section_shares_block(cuts, setup.scene.layout, states, shares, {})

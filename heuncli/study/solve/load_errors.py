@@ -11,7 +11,7 @@ terms that cancel has error 0.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property, reduce
 
 import numpy as np
@@ -28,13 +28,19 @@ from heuncli.loads.kinetostatics.actions import (
 )
 from heuncli.loads.kinetostatics.bodies import BodyStates, KernelBodyStates, make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
-from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_coupling_actions, list_rope_actions
+from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
+from heuncli.loads.kinetostatics.couplings import (
+    CouplingLoads,
+    find_coupling_loads,
+    list_coupling_actions,
+    list_rope_actions,
+)
 from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.size import extent_points
+from heuncli.multibody.mechanism.model import Joint, extent_points
 from heuncli.results.path_words import BY_CAUSE, TRAVELS
 from heuncli.results.results import Array, Mask
 from heuncli.scene.shapes.rotations import cross_rows
@@ -49,6 +55,49 @@ from heuncli.study.solve.error_extents import (
     lengths,
     norms,
 )
+
+
+def iter_coupling_results(
+    couplings: Sequence[CouplingLoads], applied_actions: Sequence[Action], joints: Sequence[Joint], states: BodyStates
+) -> Iterator[tuple[str, Array]]:
+    """Yield all compared results of couplings, which are more than their loads on the bodies.
+
+    A rope turns its drum by a moment about its centre, though no strand exerts one where it leaves the drum. The
+    contact point of a wheel moves over its rim. In a sum of wheel speeds with factors of a tenth, the coupling carries
+    ten times the torque.
+
+    applied_actions: loads, some of which belong to couplings, as the pretension of belts does
+    """
+    for coupling in couplings:
+        own_loads = [
+            action for action in applied_actions if coupling.coupling.has_load and action.name == coupling.coupling.name
+        ]
+        body_loads = coupling.body_loads(own_loads).values()
+        for name, values in zip(("place", "force", "moment"), zip(*body_loads, strict=True), strict=True):
+            yield name, np.stack(values, axis=1)
+        for name, parts in find_coupling_numbers(coupling, joints, states).items():
+            yield name, np.stack(parts, axis=1)[..., None]
+
+
+def find_coupling_numbers(loads: CouplingLoads, joints: Sequence[Joint], states: BodyStates) -> dict[str, list[Array]]:
+    """Return the numbers shown for a coupling, by the names of their quantities."""
+    numbers_by_quantity: dict[str, list[Array]] = {}
+    for number in list_numbers(loads):
+        numbers_by_quantity.setdefault("moment" if number.is_moment else "force", []).append(number.values)
+    spec_coupling = loads.coupling.entry
+    if spec_coupling.type in ("gear", "screw", "belt"):
+        from heuncli.loads.kinetostatics.coupling_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
+
+        for name, values in DRIVE_ELEMENT_NUMBERS[spec_coupling.type](
+            spec_coupling, loads.carried_load, is_impulse=False
+        ).items():
+            numbers_by_quantity.setdefault("moment" if name == "torque" else "force", []).append(values)
+    if spec_coupling.type == "cam":
+        from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
+
+        numbers_by_quantity["angle"] = [pressure_angle(loads, joints, states)]
+    return numbers_by_quantity
+
 
 ROW_CHANGE = 1e-6  # of the largest multiplier: indeterminate loads change by more when other rows are chosen
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
@@ -141,7 +190,7 @@ class LoadErrors(ErrorEstimates):
         if "reactions" in self.compared:
             coupling_results: Sequence[Quantity] = ()
             if couplings:
-                from heuncli.study.solve.coupling_errors import iter_coupling_results  # few scenes have them
+                from heuncli.study.solve.load_errors import iter_coupling_results  # few scenes have them
 
                 coupling_results = [
                     *iter_coupling_results(couplings, applied, self.setup.scene.mechanism.joints, states)

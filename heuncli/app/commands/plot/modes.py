@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.mode_motions import BodyModes, find_body_modes
-from heuncli.analyses.modes import exclude_entries
+from heuncli.analyses.modes import BodyModes, exclude_entries, find_body_modes
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import print_warnings
 from heuncli.app.cli.without_option import find_excluded

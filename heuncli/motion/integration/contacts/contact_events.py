@@ -1,7 +1,7 @@
 """Handle contact events: what is struck at an instant of a run, by which impulses, and what is held from then on.
 
 touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses, resting.py
-the contacts that stay closed, contact_problem.py the errors, contact_notes.py the sentences.
+the contacts that stay closed, contact_problem.py the errors and sentences.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import replace
-from heuncli.motion.integration.contacts.contact_notes import ContactNotes
 from heuncli.motion.integration.contacts.contact_problem import (
+    ContactNotes,
     ContactOutcome,
     ContactProblem,
     UnrefinedImpulses,

@@ -36,7 +36,7 @@ from heuncli.motion.integration.run.request import (
 )
 from heuncli.motion.integration.run.stepper import Stepper, begin_run
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.multibody.stages import NO_CACHE, Stages
+from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, find_missing_inertia
 from heuncli.results.results import Array, Indices, Mask

@@ -23,7 +23,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem
-from heuncli.base.progress_messages import current_listener
+from heuncli.base.process import current_listener
 from heuncli.motion.integration.evaluator import estimate_work
 from heuncli.motion.integration.integrated_scene import Segment
 from heuncli.motion.integration.methods.method import Method, load_method_by_name

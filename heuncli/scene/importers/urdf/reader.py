@@ -306,7 +306,7 @@ def _compute_mesh_masses(
     links_without_mass = [link for link in tree.links if link.name not in masses and not has_supported_shapes(link)]
     mesh_masses: dict[str, LinkMass | None] = {}
     for link in links_without_mass:
-        from heuncli.scene.importers.urdf.meshes import (  # imports NumPy, which few models need
+        from heuncli.scene.importers.urdf.shape_inertia import (  # imports NumPy, which few models need
             compute_mesh_mass,
             find_mesh_tag,
         )

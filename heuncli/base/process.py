@@ -1,9 +1,10 @@
-"""How much memory is available for results: half of what the machine and its limits leave. Impure."""
+"""The process that runs heun: the memory left to it, and the listener to which its progress goes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 
 SHARE = 0.5  # of the available memory: sizes are estimated, steps are not, and other processes run
 DEFAULT_AVAILABLE = 4e9  # bytes assumed where the system does not report them
@@ -45,3 +46,21 @@ def _left() -> Iterator[float]:
 def _read_text(name: str) -> str:
     with open(name, encoding="utf-8") as file:  # noqa: PTH123 - pathlib takes 3 ms
         return file.read()
+
+
+_LISTENER: ContextVar[Callable[[str], None] | None] = ContextVar("listener", default=None)
+
+
+@contextmanager
+def progress_listener(write: Callable[[str], None] | None) -> Iterator[None]:
+    """Send progress messages to `write` inside the `with` block; None drops them."""
+    token = _LISTENER.set(write)
+    try:
+        yield
+    finally:
+        _LISTENER.reset(token)
+
+
+def current_listener() -> Callable[[str], None] | None:
+    """Return the function that receives progress messages, or None."""
+    return _LISTENER.get()
