@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from heuncli.output.client_report.accuracy import make_accuracy_parts, make_open_parts
 from heuncli.output.client_report.checks import make_check_parts
 from heuncli.output.client_report.events_section import make_event_parts
 from heuncli.output.client_report.first_page import make_first_page
@@ -13,7 +14,6 @@ from heuncli.output.client_report.machine import make_drawing_parts, make_model_
 from heuncli.output.client_report.polar import make_polar_parts
 from heuncli.output.client_report.report_data import CHAPTER_NAMES, ON_REQUEST, ReportData
 from heuncli.output.client_report.sections import make_section_parts
-from heuncli.output.client_report.trust import make_open_parts, make_trust_parts
 from heuncli.output.documents.document import Brand, Chapter, OutputDocument, Part, Sentence, Verbatim, has_content
 from heuncli.output.documents.sheet import Sheet
 
@@ -28,7 +28,7 @@ CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
     "checks": ("Checks", make_check_parts),
     "open": ("Indeterminate loads", make_open_parts),
     "model": ("The model", make_model_parts),
-    "accuracy": ("How it was computed", make_trust_parts),
+    "accuracy": ("Accuracy of the results", make_accuracy_parts),
     "spec": ("Spec", lambda data: make_spec_parts(data)),
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -32,6 +33,7 @@ MAX_POINTS = 40
 HEADING = "POINTS  position, and load at the greatest force in each case; {}"
 BUSHING_AXES = "bushings in their own axes"
 PLACE_DECIMALS = {"m": 3, "mm": 1}
+KIND_WORDS = {"joints": "joint", "forces": "bushing"}
 
 
 class HardpointLoad(NamedTuple):
@@ -48,17 +50,19 @@ class HardpointLoad(NamedTuple):
 
 def make_hardpoint_table(data: ReportData) -> OutputTable | None:
     """Make the table of the points of joints and bushings; None if there are none, or too many."""
-    names = {f"joints.{name}": name for name in data.runs[0].results.joints}
-    names |= {f"forces.{name}": name for name, force in data.spec.forces.items() if isinstance(force, Bushing)}
-    if not names or len(names) > MAX_POINTS:
+    things = [("joints", name) for name in data.runs[0].results.joints]
+    things += [("forces", name) for name, force in data.spec.forces.items() if isinstance(force, Bushing)]
+    if not things or len(things) > MAX_POINTS:
         return None
-    loads = [load for prefix, name in names.items() for load in _iter_point_loads(data, prefix, name)]
+    captions = Counter(describe_object(kind, name, data.labels) for kind, name in things)
+    loads = [load for kind, name in things for load in _iter_point_loads(data, kind, name, captions)]
     return _make_table(data, loads) if loads else None
 
 
-def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[HardpointLoad]:
-    """Yield the load of a point in each case, or in the governing one of many."""
-    kind = prefix.partition(".")[0]
+def _iter_point_loads(data: ReportData, kind: str, name: str, captions: Counter[str]) -> Iterator[HardpointLoad]:
+    """Yield the load of a point in each case, or in the governing one of many; captions: how often each occurs."""
+    prefix, words = f"{kind}.{name}", describe_object(kind, name, data.labels)
+    words = f"{KIND_WORDS[kind]} {words}" if captions[words] > 1 else words
     found = []
     for run in data.runs:
         ends = find_extremes(run, f"{prefix}.force")
@@ -72,7 +76,6 @@ def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[Hard
         moment_ends = find_extremes(run, f"{prefix}.moment") if has_moment else None
         errors = ends.error, moment_ends.error if moment_ends is not None else 0.0
         place = _locate(run, kind, name, k)
-        words = describe_object(kind, name, data.labels)
         found.append((ends.high.value, HardpointLoad(words, run, time, place, force, moment, errors)))
     if len(data.runs) > MAX_CASES and found:
         found = [max(found, key=lambda pair: pair[0])]

@@ -28,15 +28,18 @@ MAX_CURVES = 4  # cases in one panel; of more, the governing one
 MAX_ALIKE = 4  # names in a title
 ALIKE = 0.01  # of their greatest value: loads whose extremes agree to it share a panel
 MAX_SEARCH_INSTANTS = 400  # of the search's instants in a curve
-HEIGHT = 106.0  # pixels
+HEIGHT = 98.0  # pixels
 MARGIN = 0.12  # above a curve, for its words
 
 
 class SharedPanel(NamedTuple):
-    """A load with a panel, and the names of others whose extremes agree with its own."""
+    """A load with a panel, and the names of others whose extremes agree with its own; kind: before its name, where
+    needed.
+    """
 
     greatest: GreatestOfCases
     names: Sequence[str]
+    kind: str = ""
 
 
 @record
@@ -97,7 +100,7 @@ def _share_panels(lines: Sequence[ReportedLoad]) -> list[SharedPanel]:
             continue
         same = next((k for k, panel in enumerate(panels) if _are_alike(panel.greatest, greatest)), None)
         if same is None:
-            panels.append(SharedPanel(greatest, [line.name, *line.alike]))
+            panels.append(SharedPanel(greatest, [line.name, *line.alike], line.kind))
         else:
             panels[same] = panels[same]._replace(names=[*panels[same].names, line.name, *line.alike])
     return panels
@@ -113,7 +116,7 @@ def _are_alike(first: GreatestOfCases, second: GreatestOfCases) -> bool:
 
 def _make_caption(data: ReportData, panel: SharedPanel) -> str:
     """Make the caption: what is drawn, and what else is alike."""
-    words = describe_load(panel.greatest.path, data.labels)
+    words = f"{panel.kind} {describe_load(panel.greatest.path, data.labels)}".strip()
     names = panel.names[1:]
     if not names:
         return words

@@ -112,15 +112,16 @@ class _ColumnBlock:
     def write_json(self, run: Any) -> str:
         """Write the JSON of a run, and store its columns."""
         time = run.get("time") if isinstance(run, dict) else None
-        instants = time.numbers if isinstance(time, PackedColumn) else None
+        instants = np.asarray(time.numbers, dtype=np.float64) if isinstance(time, PackedColumn) else np.zeros(0)
 
         def place(column: PackedColumn) -> dict[str, list[float]]:
             if column.step == 0.0:
                 planes = _split_planes(column.numbers.astype(f"<f{column.size}"), column.size)
                 return {"packed": [self.store(planes), column.numbers.size, 1, column.size, 0]}
-            is_course = instants is not None and column.numbers.size == column.lag * len(instants)
-            order, across, planes = _encode_steps(column, instants if is_course else None)
-            at = self.store(_split_planes(time.numbers, FLOAT64)) if is_course else -1
+            count = column.numbers.size // column.lag
+            is_course = count == len(instants)
+            order, across, planes = _encode_steps(column, instants if is_course else np.arange(float(count)))
+            at = self.store(_split_planes(instants, FLOAT64)) if is_course else -1
             return {"packed": [self.store(planes), column.numbers.size, column.lag, order, column.step, across, at]}
 
         return json.dumps(run, allow_nan=False, separators=(",", ":"), default=place)
@@ -137,13 +138,13 @@ def _split_planes(values: Array | Indices, size: int) -> bytes:
     return values.view(np.uint8).reshape(-1, size).T.tobytes()
 
 
-def _encode_steps(column: PackedColumn, instants: Array | None) -> tuple[int, int, bytes]:
+def _encode_steps(column: PackedColumn, instants: Array) -> tuple[int, int, bytes]:
     """Encode a column of steps; returns the order of the polynomial, how often differences across the cuts are taken,
     and the bytes of what is left.
     """
-    whole = column.numbers.reshape(-1, column.lag)
+    whole: Indices = column.numbers.astype(np.intp, copy=False).reshape(-1, column.lag)
     count = len(whole)
-    weights = compute_weights(tuple(range(count)) if instants is None else tuple(instants.tolist()))
+    weights = compute_weights(tuple(instants.tolist()))
     begin = max(0, (count - MAX_TRIAL_INSTANTS) // 2)
     trial = slice(begin, begin + MAX_TRIAL_INSTANTS)
     largest_across = MAX_ACROSS if column.lag >= MIN_CUTS else 0
