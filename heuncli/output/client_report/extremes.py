@@ -183,7 +183,7 @@ def format_power(value: float, digits: int = 1) -> str:
     if value == 0.0:
         return "0"
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
-    if -3 <= int(exponent) <= 3:
+    if -3 <= int(exponent) <= max(3, digits - 1):
         return f"{value:.{digits}g}" if int(exponent) < digits else f"{value:.0f}"
     return f"{float(mantissa):g}·10{str(int(exponent)).translate(SUPERSCRIPTS)}".removeprefix("1·")
 
@@ -204,7 +204,8 @@ def describe_place(place: CutPosition | None, units: Units) -> str:
 
 def _format_distance(place: CutPosition, units: Units) -> str:
     unit, size = units.find("m")
-    return f"{round(place.s, PLACE_DECIMALS) * size:.{DECIMALS.get(unit, 4)}f}"
+    text = f"{round(place.s, PLACE_DECIMALS) * size:.{DECIMALS.get(unit, 4)}f}"
+    return text.rstrip("0").rstrip(".")
 
 
 def format_instant(time: float | None, run: ReportedRun) -> str:

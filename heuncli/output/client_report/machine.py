@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.base.load_kinds import LOAD_KINDS
-from heuncli.output.client_report.extremes import DASH, MINUS, format_instant
+from heuncli.output.client_report.extremes import DASH, MINUS, format_instant, format_power
 from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.client_report.summary_table import find_worst_instant
 from heuncli.output.documents.document import (
@@ -34,6 +34,7 @@ from heuncli.study.quantities.reader_numbers import choose_reader_style
 SHEET_WIDTH = 672.0  # pixels: the width of an A4 sheet without its margins
 HALF_WIDTH = 330.0
 MAX_PARAMETERS, MAX_PARAMETER_CASES = 30, 6
+PARAMETER_DIGITS = 5
 MAX_HALF_CASES = 3  # beside the bodies
 RATES = {"angle": "rate", "travel": "speed", "length": "speed"}  # of a drive that prescribes them
 LAW_KEYS = ("value", "vector", "to_vector", "torque", "force")  # of loads
@@ -128,7 +129,7 @@ def _make_parameter_table(data: ReportData) -> OutputTable | None:
     rows = []
     for name, usual in data.spec.parameters.items():
         numbers = [own.get(name, usual) for own in values]
-        texts = [f"{number:.6g}".replace("-", MINUS) for number in numbers]
+        texts = [format_power(number, PARAMETER_DIGITS).replace("-", MINUS) for number in numbers]
         cells = [TextCell(text, number != usual) for text, number in zip(texts, numbers, strict=True)]
         label = data.labels.captions.get(f"parameters.{name}")
         rows.append([TextCell(f"{name} ({label})" if label else name), *cells])

@@ -116,7 +116,7 @@ def make_summary_table(data: ReportData) -> OutputTable | None:
 
 def _list_uncertain(data: ReportData, row: SummaryRow) -> list[str]:
     cases = find_uncertain_cases(data, row.path) if data.has_cases else []
-    return [UNCERTAIN_NOTE.format(f"{row.kind} {_name_thing(row, data)}".strip(), join_names(cases))] if cases else []
+    return [UNCERTAIN_NOTE.format(_name_thing(row, data), join_names(cases))] if cases else []
 
 
 def find_crank(data: ReportData) -> str | None:

@@ -1,9 +1,8 @@
 /** @file Curves over time or an angle: axes, events and impulses, extremes, and a cursor at the frame that is shown. */
 
-import { cleared } from "./canvases.js";
 import { peakOf } from "./courses.js";
 import { roundBelow, short, written } from "./digits.js";
-import { polyline, ring } from "./strokes.js";
+import { cleared, polyline, ring } from "./strokes.js";
 
 const MARGIN = { left: 66, right: 14, top: 24, bottom: 46 };
 const MOST_WORDS = 8;
