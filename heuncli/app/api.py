@@ -27,6 +27,7 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.source import SourceFile
 from heuncli.study.model.options import MemoryBudget, Options, require_choice, require_positive, require_tolerance
+from heuncli.study.quantities.given_captions import set_captions
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve as solve_study
 
@@ -73,6 +74,8 @@ def solve(
     by_cause: bool = False,
     axes: str = "world",
     time_limit: float | None = None,
+    title: str | None = None,
+    labels: Mapping[str, str] | None = None,
     **parameters: object,
 ) -> Solved:
     """Solve a scene as its analysis says; the same as `heun run`.
@@ -92,6 +95,8 @@ def solve(
     axes: axes of joint loads, "world", "from" or "to"
     time_limit: longest solving time [s]; the integration checks the clock, no signal is used, so it works in every
     thread
+    title, labels: words for readers in place of those of the spec, as `--title` and `--label` give them
+    (`{"joints.main": "Main bearing"}`)
 
     Raises SpecError for an invalid spec, UsageError for invalid arguments, SolveError if the scene cannot be solved,
     LimitError if a limit is reached. All are HeunError, whose `problems` have code, message, hint and location. Warns
@@ -101,8 +106,9 @@ def solve(
     from heuncli.app.python.spec_arguments import make_settings, resolve_source
 
     check_arguments(
-        ("case", case, TEXT), *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes)
-    )
+        ("case", case, TEXT), *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes),
+        *_list_captions(title, labels),
+    )  # fmt: skip
     _check_booleans(least_norm=least_norm, reduce=reduce, by_cause=by_cause)
     name, source = resolve_source(spec, text)
     _require_single_case(case)
@@ -111,6 +117,7 @@ def solve(
     start = time.perf_counter()
     with _suggest_options(parameters):
         scene, _ = read(name, make_settings(set or {}, parameters), case, source)
+    scene = set_captions(scene, title, (labels or {}).items())
     options = replace(options, load_seconds=time.perf_counter() - start, time_limit=_check_time_limit(time_limit))
     return _solve_selected(scene, options, selection, by_cause, at)
 
@@ -130,6 +137,8 @@ def solve_cases(
     by_cause: bool = False,
     axes: str = "world",
     time_limit: float | None = None,
+    title: str | None = None,
+    labels: Mapping[str, str] | None = None,
     **parameters: object,
 ) -> dict[str, Solved]:
     """Solve each load case of a scene; returns them by name. Arguments and errors are those of `solve`.
@@ -141,7 +150,9 @@ def solve_cases(
     from heuncli.app.python.arguments import check_arguments
     from heuncli.app.python.spec_arguments import make_settings, resolve_source
 
-    check_arguments(*_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes))
+    check_arguments(
+        *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes), *_list_captions(title, labels)
+    )
     _check_booleans(least_norm=least_norm, reduce=reduce, by_cause=by_cause)
     name, source = resolve_source(spec, text)
     options = _make_options(tolerance, method, step, least_norm, reduce, axes)
@@ -152,6 +163,7 @@ def solve_cases(
     if not cases:
         hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
         raise UsageError(Problem("unknown-case", "solve_cases: the spec has no load cases", hint=hint))
+    cases = {case: set_captions(scene, title, (labels or {}).items()) for case, scene in cases.items()}
     return {case: _solve_selected(scene, options, selection, by_cause, at) for case, scene in cases.items()}
 
 
@@ -201,6 +213,12 @@ def _list_arguments(
         ("tolerance", tolerance, NUMBER), ("method", method, TEXT), ("step", step, NUMBER),
         ("time_limit", time_limit, NUMBER), ("axes", axes, TEXT),
     ]  # fmt: skip
+
+
+def _list_captions(title: object, labels: object) -> list[tuple[str, object, ArgumentKind]]:
+    from heuncli.app.python.arguments import CAPTIONS, TEXT
+
+    return [("title", title, TEXT), ("labels", labels, CAPTIONS)]
 
 
 def _check_booleans(**arguments: object) -> None:

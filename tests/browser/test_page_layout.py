@@ -95,22 +95,6 @@ def test_curves_of_one_unit_are_added_and_taken_away(browser: Chromium, page: Pa
         assert tab.seen("#curve").png != alone  # an angle of the crank is what it begins with
 
 
-def test_a_load_case_is_chosen(browser: Chromium, tmp_path: Path) -> None:
-    target = tmp_path / "x.html"
-    assert enter(("show", str(find_spec("v_engine")), "--case", "all", "-o", str(target), "-q")) == 0
-    with browser.open(target) as tab:
-        first = tab.evaluate(SUMMARY)
-        tab.evaluate("window.isLeft = true")
-        tab.evaluate(
-            "(list => (list.value = '1', list.dispatchEvent(new Event('change'))))(document.querySelector('#case'))"
-        )
-        loaded = "!window.isLeft && document.readyState === 'complete'"
-        tab.until(f"{loaded} && document.querySelectorAll('#summary tr').length > 3")
-        assert tab.evaluate("document.querySelector('#case').value") == "1"
-        assert tab.evaluate(SUMMARY) != first
-        assert tab.faults == []
-
-
 def test_a_picture_and_a_film_are_drawn(browser: Chromium, tmp_path: Path) -> None:
     spec = str(SPECS / "double.yaml")
     for name, words in (("x.png", ()), ("y.png", ("--at", "0.5")), ("x.gif", ())):

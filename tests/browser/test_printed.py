@@ -46,7 +46,7 @@ def test_a_report_is_read_on_any_screen(width: int, dark: bool, browser: Chromiu
         assert seen.colours > 20
         assert tab.faults == []
         selected = tab.evaluate(SELECTED)
-        for words in ("A slewing crane jib", "slew", "root", "SUMMARY", "How it was computed"):
+        for words in ("A slewing crane jib", "slew", "root", "SUMMARY", "Accuracy of the results"):
             assert words in selected, words
 
 

@@ -153,3 +153,43 @@ def test_warnings_are_those_of_the_command(heun: Heun) -> None:
     assert len(study.warnings) > len(before)
     assert {Path(one.filename) for one in caught} == {Path(__file__)}
     assert [line.removeprefix("warning: heun: ") for line in written.splitlines()] == study.warnings
+
+
+WORDS = {"joints.elbow": "Elbow bearing", "joints.elbow.force.x": "side load"}
+CAPTIONED = ("--title", "Two bars", *(word for path, text in WORDS.items() for word in ("--label", f"{path}={text}")))
+
+
+def test_titles_and_labels_are_those_of_the_command(heun: Heun) -> None:
+    spec = SPECS / "double.yaml"
+    study = solved(spec, title="Two bars", labels=WORDS)
+    assert study.title == "Two bars"
+    assert str(study) == heun("run", str(spec), *CAPTIONED).stdout
+    assert "Elbow bearing" in str(study) and "Elbow bearing" not in str(solved(spec))
+
+
+def test_a_diagram_has_its_own_title_and_labels(heun: Heun, folder: Path) -> None:
+    spec, paths = SPECS / "double.yaml", ("joints.elbow.force", "joints.pivot.force")
+    heun("plot", str(spec), *paths, "-q", "-o", str(folder / "x.svg"), *CAPTIONED)
+    study = solved(spec)
+    assert study.plot(*paths, title="Two bars", labels=WORDS).svg == (folder / "x.svg").read_text(encoding="utf-8")
+    assert "Elbow bearing" not in study.plot(*paths).svg  # the study itself keeps the words of its spec
+
+
+def test_labels_of_cases_and_their_titles(folder: Path) -> None:
+    cases = heuncli.solve_cases(SPECS / "axle_loads.yaml", title="Axles", labels={"joints.front": "Front axle"})
+    assert len(cases) > 1 and all(study.title.startswith("Axles") for study in cases.values())
+    assert all("Front axle" in study.tables() for study in cases.values())
+
+
+@pytest.mark.parametrize(
+    "solve",
+    [heuncli.solve, heuncli.solve_cases, lambda spec, **words: solved(spec).plot("joints.elbow.force", **words)],
+)
+def test_wrong_labels_are_told_at_once(solve: Any) -> None:
+    spec = SPECS / ("axle_loads.yaml" if solve is heuncli.solve_cases else "double.yaml")
+    with pytest.raises(heuncli.UsageError) as told:
+        solve(spec, title="a\nb", labels={"joints.elbo": "x", "joints": "y\x1b"})
+    assert [problem.message.partition(":")[0] for problem in told.value.problems][:2] == ["title", "labels joints.elbo"]
+    for labels in ({"joints.elbow": 3}, ["joints.elbow"]):
+        with pytest.raises(heuncli.UsageError, match="labels: expected a mapping of paths to strings"):
+            solve(spec, labels=labels)

@@ -227,8 +227,8 @@ def test_of_many_sections_those_are_drawn_that_govern(heun: Heun, folder: Path) 
     many = "".join(f"  s{n:02}: {run.replace('N', f'{n:02}')}\n" for n in range(14))
     (folder / "many.yaml").write_text(f"{OVERLOADED.partition('sections:')[0]}sections:\n{many}")
     read = PageReader(heun("report", "many.yaml", "-o", "-").stdout)
-    drawn = [text for text in read.by_tag["p"] if text.startswith("Section ")]
-    assert [text.split()[1] for text in drawn] == [f"s{n:02}:" for n in range(12)]  # the nearer to the wall the more
+    drawn = [text for text in read.by_tag["figcaption"] if text.startswith("Section ")]
+    assert [text.split()[1] for text in drawn] == [f"s{n:02};" for n in range(12)]  # the nearer to the wall the more
     assert "2 further sections are not shown" in " ".join(read.by_tag["p"])
 
 

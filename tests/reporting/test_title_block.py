@@ -28,7 +28,7 @@ def test_the_spec_fills_the_title_block_and_options_go_first(heun: Heun, folder:
     assert read.by_tag["span"] == ["Muster & Sons", "Car 12"]
     assert {"4711-02", "B.2", "E. X. Ample", "own.yaml"} <= set(read.by_tag["dd"])
     assert [link for link in read.links if link.startswith("data:image/svg+xml;base64,")]
-    assert [text.partition("\u2002")[2] for text in read.by_tag["h2"]] == ["Loads", "How it was computed"]
+    assert [text.partition("\u2002")[2] for text in read.by_tag["h2"]] == ["Loads", "Accuracy of the results"]
     other = PageReader(heun("report", "own.yaml", "-o", "-", "--revision", "C", "--chapters", "model").stdout)
     assert "C" in other.by_tag["dd"] and "B.2" not in other.by_tag["dd"]
     assert [text.partition("\u2002")[2] for text in other.by_tag["h2"]] == ["The model"]

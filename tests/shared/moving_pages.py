@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import struct
 import zlib
 from html.parser import HTMLParser
@@ -27,19 +28,44 @@ def places(packed: tuple[float, ...]) -> Array:
 
 
 def unpack(columns: bytes, form: list[float]) -> tuple[float, ...]:
-    """The numbers of a column by its form: offset, count, lag, order of the differences, step; see packing.py."""
+    """The numbers of a column by its form: offset, count, lag, order, step, across, instants; see packing.py."""
     offset, count, lag, order = (int(part) for part in form[:4])
-    size = order if form[4] == 0 else 4
-    planes = np.frombuffer(columns, np.uint8, count * size, offset).reshape(size, count)
-    bytes_ = np.ascontiguousarray(planes.T).tobytes()
     if form[4] == 0:
-        return tuple(np.frombuffer(bytes_, f"<f{size}").astype(np.float64).tolist())
-    folded = np.frombuffer(bytes_, "<u4").astype(np.int64)
-    whole = np.where(folded % 2, -(folded + 1) // 2, folded // 2)
-    for _ in range(order):
-        for first in range(min(lag, count)):
-            whole[first::lag] = np.cumsum(whole[first::lag])
-    return tuple((whole * form[4]).tolist())
+        return tuple(read_planes(columns, offset, count, f"<f{order}").astype(np.float64).tolist())
+    across, instants = int(form[5]), int(form[6])
+    folded = read_planes(columns, offset, count, "<u4").astype(np.int64)
+    whole = np.where(folded % 2, -(folded + 1) // 2, folded // 2).reshape(-1, lag)
+    for _ in range(across):
+        whole = np.cumsum(whole, axis=1)
+    n = len(whole)
+    times = list(range(n)) if instants < 0 else read_planes(columns, instants, n, "<f8").tolist()
+    for m in range(1, n):
+        predicted = np.zeros(lag)
+        for k, weight in enumerate(weights_at(times, m, min(order, m))):
+            predicted += weight * whole[m - 1 - k]
+        whole[m] += np.floor(predicted + 0.5).astype(np.int64)
+    return tuple((whole.ravel() * form[4]).tolist())
+
+
+def read_planes(columns: bytes, offset: int, count: int, form: str) -> Array:
+    """Numbers whose bytes stand in planes."""
+    size = int(form[2])
+    planes = np.frombuffer(columns, np.uint8, count * size, offset).reshape(size, count)
+    return np.frombuffer(np.ascontiguousarray(planes.T).tobytes(), form)
+
+
+def weights_at(times: list[float], m: int, order: int) -> list[float]:
+    """The weights of Lagrange's polynomial through the numbers before one, the last first."""
+    for size in range(order, 0, -1):
+        weights = [1.0] * size
+        for j in range(size):
+            for k in range(size):
+                if k != j:
+                    below = times[m - 1 - j] - times[m - 1 - k]
+                    weights[j] *= (times[m] - times[m - 1 - k]) / below if below else math.inf
+        if sum(map(abs, weights)) <= 64.0:
+            return weights
+    return []
 
 
 def no_constant(name: str) -> float:

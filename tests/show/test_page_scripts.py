@@ -136,3 +136,33 @@ def test_a_pose_between_two_frames_is_one_of_a_rigid_body() -> None:
         assert math.atan2(R[1, 0], R[0, 0]) == pytest.approx(0.2 * share)
         np.testing.assert_allclose(smooth["place"], share * np.array([1.0, 2.0, 3.0]))
         np.testing.assert_array_equal(torn["place"], [0.0, 0.0, 0.0])  # it turns too far to be drawn between
+
+
+def test_the_envelope_holds_every_curve_and_reaches_no_farther() -> None:
+    code = """
+      const runs = given.map(([x, values, size], run) => ({
+        axes: [{ label: "angle", values: x }],
+        courses: [{ path: "p", make: () => ({ path: "p", size, low: values, high: values }) }],
+      }));
+      const own = courses_js.madeOf(runs[0].courses[0]);
+      const { values, low, high, greatest, least } = envelope_js.envelopeOf(runs, own, { label: "angle" });
+      return [[...values], [...low], [...high], [greatest.run, greatest.value, least.run, least.value]];
+    """
+    random = np.random.default_rng(11)
+    curves = []
+    for n, end in ((40, 5.0), (31, 7.0), (25, 3.0)):
+        x = np.sort(random.uniform(0.0, end, n))
+        curves.append((x, np.sin(x) * random.uniform(0.5, 2.0) + random.normal(size=n)))
+    falling = (curves[2][0][::-1], curves[2][1][::-1])  # an angle that goes back, and a case told in another unit
+    given = [[x.tolist(), y.tolist(), 1.0] for x, y in curves[:2]] + [
+        [falling[0].tolist(), (1e-3 * falling[1]).tolist(), 1e-3]
+    ]
+    grid, low, high, (worst, most, best, least) = run(code, given)
+    np.testing.assert_array_equal(grid, np.unique(np.concatenate([x for x, _ in curves])))
+    each = np.array([np.interp(grid, x, y, left=np.nan, right=np.nan) for x, y in curves])
+    np.testing.assert_allclose(low, np.nanmin(each, axis=0), rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(high, np.nanmax(each, axis=0), rtol=1e-12, atol=1e-14)
+    greatest = [y.max() for _, y in curves]
+    smallest = [y.min() for _, y in curves]
+    assert (worst, best) == (int(np.argmax(greatest)), int(np.argmin(smallest)))
+    assert (most, least) == pytest.approx((max(greatest), min(smallest)))

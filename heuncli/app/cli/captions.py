@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-from heuncli.base.errors import Finding, Problem, UsageError
-from heuncli.base.spelling import suggest
-from heuncli.scene.file_format.labels import check_plain_text
-from heuncli.scene.file_format.models import Spec, format_case_title
-from heuncli.study.quantities.captions import parse_path
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from heuncli.base.errors import Problem, UsageError
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.quantities.given_captions import OPTIONS, set_captions
 
 EXAMPLE = "for example --label joints.main='Main bearing'"
 
@@ -30,71 +25,21 @@ def apply_captions(spec: Spec, request: CaptionRequest) -> Spec:
     """Return a spec with the title and the labels of the command line. Raises UsageError with all that is wrong."""
     if request.title is None and not request.label:
         return spec
-    title = spec.title
-    if request.title is not None:
-        title = format_case_title(check_text("--title", request.title), spec.case, spec.cases)
-    return spec._replace(title=title, labels={**spec.labels, **_parse_labels(request.label, spec)})
+    problems = [
+        Problem("bad-option", f"--label {word}: expected PATH=TEXT", hint=EXAMPLE)
+        for word in request.label
+        if "=" not in word
+    ]
+    labels = [(path.strip(), text) for path, equals, text in (word.partition("=") for word in request.label) if equals]
+    try:
+        captioned = set_captions(spec, request.title, labels, OPTIONS)
+    except UsageError as error:
+        problems += error.problems
+    if problems:
+        raise UsageError(*problems)
+    return captioned
 
 
 def apply_captions_to_cases(cases: Mapping[str, Spec], request: CaptionRequest) -> dict[str, Spec]:
     """Return load cases with the title and the labels of the command line. Raises UsageError."""
     return {name: apply_captions(spec, request) for name, spec in cases.items()}
-
-
-def check_text(option: str, text: str) -> str:
-    """Return the text of an option as it is shown. Raises UsageError."""
-    try:
-        return check_plain_text(text)
-    except Finding as finding:
-        raise UsageError(Problem("bad-option", f"{option}: {finding.message}", hint=finding.hint)) from None
-
-
-def _parse_labels(words: Sequence[str], spec: Spec) -> dict[str, str]:
-    """Parse the words PATH=TEXT. Raises UsageError with all that is wrong."""
-    labels: dict[str, str] = {}
-    problems: list[Problem] = []
-    for word in words:
-        path, equals, text = word.partition("=")
-        if not equals:
-            problems.append(Problem("bad-option", f"--label {word}: expected PATH=TEXT", hint=EXAMPLE))
-            continue
-        try:
-            labels[_find_label_path(path.strip(), spec)] = check_text(f"--label {path}", text)
-        except UsageError as error:
-            problems += error.problems
-    if problems:
-        raise UsageError(*problems)
-    return labels
-
-
-def _find_label_path(path: str, spec: Spec) -> str:
-    """Return the path under which a label is kept, for a path as users write it. Raises UsageError."""
-    paths = dict(iter_label_paths(spec))
-    found = paths.get(path)
-    if found is not None:
-        return found
-    parts = parse_path(path)
-    if parts is not None and (not parts.names or any(path.startswith(f"{known}.") for known in paths.values())):
-        return path  # of one quantity
-    same_names = [known for known in paths if known.endswith(f".{path}")]
-    hint = f"did you mean {', or '.join(same_names)}?" if same_names else suggest(path, paths, "paths")
-    raise UsageError(Problem("unknown-path", f"--label {path}: nothing in the spec has this name", hint=hint))
-
-
-def iter_label_paths(spec: Spec) -> Iterator[tuple[str, str]]:
-    """Yield everything that has a name: the path as users write it, and the path under which its label is kept.
-
-    Points have two paths, as in the spec and as in the results.
-    """
-    from heuncli.scene.file_format.labels import BLOCKS, EVENTS, GROUND, POINTS
-    from heuncli.scene.file_format.names import collect_scene_names
-
-    names = collect_scene_names(spec)
-    yield GROUND, GROUND
-    for block, kept_block in {**BLOCKS, EVENTS: EVENTS}.items():
-        yield from ((f"{block}.{name}", f"{kept_block}.{name}") for name in names.entries[block])
-    for owner, points in names.points.items():
-        prefix = GROUND if owner == GROUND else f"bodies.{owner}"
-        for point in points:
-            kept = f"{POINTS}.{owner}.{point}"
-            yield from ((kept, kept), (f"{prefix}.{POINTS}.{point}", kept))

@@ -54,6 +54,11 @@ INTEGER = ArgumentKind(lambda value: isinstance(value, Integral) and _is_number(
 NUMBERS = ArgumentKind(_is_number_or_numbers, "a number or an array of numbers", "[0.1, 0.2]")
 NUMBER_OR_TEXT = ArgumentKind(lambda value: isinstance(value, str) or _is_number(value), "a number or a string", "0.5")
 BOOLEAN = ArgumentKind(lambda value: isinstance(value, bool | np.bool_), "True or False", "True")
+CAPTIONS = ArgumentKind(
+    lambda value: isinstance(value, Mapping) and all(isinstance(word, str) for pair in value.items() for word in pair),
+    "a mapping of paths to strings",
+    "{'joints.main': 'Main bearing'}",
+)
 MAPPING = ArgumentKind(lambda value: isinstance(value, Mapping), "a mapping", "{'bodies.rod.mass': 2}")
 FILE = ArgumentKind(lambda value: isinstance(value, str | os.PathLike), "a file name", "'results.json'")
 

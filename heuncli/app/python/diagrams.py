@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from heuncli.app.python.arguments import FILE, check_arguments
 from heuncli.base.errors import Problem, UsageError
+from heuncli.base.records import replace
 from heuncli.output.drawing.drawing_files import encode_drawing, find_form
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.shapes import VectorDrawing, to_svg
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.histories import make_history
 from heuncli.output.snapshots.measure import require_known_paths
+from heuncli.study.quantities.given_captions import set_captions
 from heuncli.study.quantities.table_units import read_display_units
 from heuncli.study.queries.measure import MeasureRequest
 from heuncli.study.queries.study import Study
@@ -45,13 +48,24 @@ class Diagram:
         return f"<heuncli.Diagram {self._picture.title!r}>"
 
 
-def make_diagram(study: Study, paths: Sequence[str], x_path: str | None, units: str | None) -> Diagram:
-    """Draw numbers over time, or over the number at `x_path`. Raises UsageError, NotDrawable, NotOneNumber,
-    SpecError.
+def make_diagram(
+    study: Study,
+    paths: Sequence[str],
+    x_path: str | None,
+    units: str | None,
+    title: str | None = None,
+    labels: Mapping[str, str] = MappingProxyType({}),
+) -> Diagram:
+    """Draw numbers over time, or over the number at `x_path`; labels: of what is drawn, by path. Raises UsageError,
+    NotDrawable, NotOneNumber, SpecError.
     """
     if not paths:
         hint = "for example study.plot('energy.kinetic')"
         raise UsageError(Problem("bad-option", "plot: no path is given", hint=hint))
     requests = [MeasureRequest("", path) for path in (*paths, *([] if x_path is None else [x_path]))]
     require_known_paths(requests, study.spec, "plot")
-    return Diagram(lay_out(make_history([FigureSource("", study)], paths, read_display_units("units", units), x_path)))
+    spec = set_captions(study.spec, title, labels.items())
+    drawn = replace(study, spec=spec) if labels else study
+    figure = make_history([FigureSource("", drawn)], paths, read_display_units("units", units), x_path)
+    study.later_warnings.update(drawn.later_warnings)
+    return Diagram(lay_out(figure if title is None else figure._replace(title=spec.title)))

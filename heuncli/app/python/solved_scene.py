@@ -14,6 +14,7 @@ import numpy as np
 
 from heuncli.app.python.arguments import (
     BOOLEAN,
+    CAPTIONS,
     FILE,
     INTEGER,
     NUMBER,
@@ -260,19 +261,30 @@ class Solved(Mapping[str, "Signal"]):
         check_arguments(("units", units, BOOLEAN), ("paths", paths, TEXTS), optional=False)
         return make_frame(self._run, [self[path] for path in paths or self.paths()], units, is_explicit=bool(paths))
 
-    def plot(self, *paths: str, over: str | None = None, units: str | None = None) -> Diagram:
+    def plot(
+        self,
+        *paths: str,
+        over: str | None = None,
+        units: str | None = None,
+        title: str | None = None,
+        labels: Mapping[str, str] | None = None,
+    ) -> Diagram:
         """Draw numbers over time, or over another number, as `heun plot SPEC PATH...` does; a notebook shows the
         diagram.
 
         units: "kN,mm"
+        title, labels: words in place of those of the spec, `{"joints.main": "Main bearing"}`
 
         Raises HeunError for what cannot be drawn.
         """
         from heuncli.app.python.diagrams import make_diagram
 
-        check_arguments(("paths", paths, TEXTS), ("over", over, TEXT), ("units", units, TEXT))
+        check_arguments(
+            ("paths", paths, TEXTS), ("over", over, TEXT), ("units", units, TEXT), ("title", title, TEXT),
+            ("labels", labels, CAPTIONS),
+        )  # fmt: skip
         with self._run.hold_lock():
-            return make_diagram(self.study, paths, over, units)
+            return make_diagram(self.study, paths, over, units, title, labels or {})
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Write the results into a file, in the format of its ending: .json or .csv. Raises UsageError, OSError."""

@@ -17,7 +17,7 @@ from heuncli.output.client_report.extremes import (
     choose_family,
     find_governing,
     format_instant,
-    format_place_in_unit,
+    format_place,
     iter_run_extremes,
 )
 from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
@@ -246,7 +246,7 @@ def _iter_cells(
 def _iter_position_cells(layout: _Layout, run: ReportedRun, end: CaseExtreme, *, is_blank: bool) -> Iterator[TextCell]:
     """Yield the place and the instant of an extreme, where the table has them."""
     if layout.has_places:
-        yield TextCell("" if is_blank else format_place_in_unit(end.place, layout.data.units, with_unit=False))
+        yield TextCell("" if is_blank else format_place(end.place, layout.data.units))
     if layout.has_instants:
         yield TextCell("" if is_blank else format_instant(end.time, run))
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from heuncli.output.client_report.extremes import format_power
 from heuncli.output.client_report.report_data import AS_IT_STANDS, ReportData
 from heuncli.output.documents.document import OutputColumn, OutputTable, Part, TextCell
 from heuncli.output.snapshots.outcomes import Outcome
@@ -18,7 +19,6 @@ HOLDS, FAILS = "passed", "FAILED"
 HEADS = ("line", "case", "quantity", "unit", "at", "expected", "found", "allowed", "verdict")
 NUMBERS = frozenset({"line", "expected", "found", "allowed"})
 MAX_NUMBERS = 6  # of a list
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def make_check_parts(data: ReportData) -> list[Part]:
@@ -94,8 +94,4 @@ def _format_allowed(style: ReaderStyle, tolerance: float, scale: float) -> str:
     """Format the allowed deviation: relative to the expected number, or absolute where 0 is expected."""
     if tolerance <= 0.0:
         return "0"
-    value, unit = (100.0 * tolerance / scale, " %") if scale else (style.size * tolerance, "")
-    mantissa, _, exponent = f"{value:.1e}".partition("e")
-    if -3 <= int(exponent) <= 3:
-        return f"{value:.2g}{unit}"
-    return f"{float(mantissa):g}·10{str(int(exponent)).translate(SUPERSCRIPTS)}{unit}".removeprefix("1·")
+    return f"{format_power(100.0 * tolerance / scale, 2)} %" if scale else format_power(style.size * tolerance, 2)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
+from heuncli.output.client_report.accuracy import make_accuracy_parts, make_open_parts
 from heuncli.output.client_report.checks import make_check_parts
-from heuncli.output.client_report.events_section import make_event_parts
+from heuncli.output.client_report.diagrams import make_history_parts, make_polar_parts
 from heuncli.output.client_report.first_page import make_first_page
-from heuncli.output.client_report.histories import make_history_parts
-from heuncli.output.client_report.load_table import make_load_parts
+from heuncli.output.client_report.loads import make_load_parts
 from heuncli.output.client_report.machine import make_drawing_parts, make_model_parts
-from heuncli.output.client_report.polar import make_polar_parts
-from heuncli.output.client_report.report_data import CHAPTER_NAMES, ON_REQUEST, ReportData
+from heuncli.output.client_report.report_data import CHAPTER_NAMES, ON_REQUEST, ReportData, ReportedRun
 from heuncli.output.client_report.sections import make_section_parts
-from heuncli.output.client_report.trust import make_open_parts, make_trust_parts
 from heuncli.output.documents.document import Brand, Chapter, OutputDocument, Part, Sentence, Verbatim, has_content
 from heuncli.output.documents.sheet import Sheet
+from heuncli.output.tables.event_table import make_events_table
+from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables
 
 MAX_SPEC_LINES = 2000  # of a spec that is printed
 CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
@@ -24,11 +26,11 @@ CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
     "sections": ("Sections", make_section_parts),
     "histories": ("Time histories", make_history_parts),
     "polar": ("Load directions", make_polar_parts),
-    "events": ("Impulses and events", make_event_parts),
+    "events": ("Impulses and events", lambda data: make_event_parts(data)),
     "checks": ("Checks", make_check_parts),
     "open": ("Indeterminate loads", make_open_parts),
     "model": ("The model", make_model_parts),
-    "accuracy": ("How it was computed", make_trust_parts),
+    "accuracy": ("Accuracy of the results", make_accuracy_parts),
     "spec": ("Spec", lambda data: make_spec_parts(data)),
 }
 
@@ -67,3 +69,25 @@ def make_spec_parts(data: ReportData) -> list[Part]:
     if len(lines) > MAX_SPEC_LINES:
         parts.append(Sentence(f"... and {len(lines) - MAX_SPEC_LINES} more lines, not printed", "unsure"))
     return parts
+
+
+def make_event_parts(data: ReportData) -> list[Part]:
+    """Make the tables of impacts and events of each case."""
+    parts: list[Part] = []
+    for run in data.runs:
+        tables = _make_run_parts(run)
+        if tables and data.has_cases:
+            parts.append(Sentence(f"Case {run.case_label}:"))
+        parts += tables
+    return parts
+
+
+def _make_run_parts(run: ReportedRun) -> list[Part]:
+    page, results = run.page, run.results
+    has_events = any(np.size(event["time"]) for event in results.events.values())
+    tables = [make_events_table(results)] if has_events else []
+    if results.impulses:
+        tables += make_impulse_tables(
+            ImpactReport(page.results, page.labels, page.certain, page.magnitudes, page.impact_extremes, page.details)
+        )
+    return list(tables)

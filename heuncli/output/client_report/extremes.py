@@ -10,7 +10,6 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import append_unit
-from heuncli.output.snapshots.columns import format_place
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot
 from heuncli.results.results import Array, CutPosition
@@ -18,8 +17,10 @@ from heuncli.study.quantities.digits import OPEN, UNKNOWN
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LEAST, GREATEST = "least", "greatest"
 PLACE_DECIMALS = 9  # of places [m]
+DECIMALS = {"m": 3, "mm": 1}  # of places as they are shown; of other units 4
 NOISE = 1e-3  # of the largest of a family: what is below it is a dash
 DASH, MINUS = "–", "−"
 INSTANT_DIGITS = 3  # of an instant, beside the run's length
@@ -36,7 +37,7 @@ class CaseExtreme(NamedTuple):
 
     value: float | str
     time: float | None
-    place: str | None
+    place: CutPosition | None
 
 
 class CaseExtremes(NamedTuple):
@@ -88,7 +89,7 @@ def _add_place(
         return extreme
     cut = int(find_index(values[0]))
     side = section["side"][cut] if section.get("side") else None
-    return extreme._replace(place=format_place(CutPosition(float(section["s"][cut]), side, cut)))
+    return extreme._replace(place=CutPosition(float(section["s"][cut]), side, cut))
 
 
 def _is_open(run: ReportedRun, path: str) -> bool:
@@ -177,15 +178,34 @@ def choose_style_in_unit(
     return ReaderStyle(shown_unit, size, max(style.decimals + shift, 0), size * error)
 
 
-def format_place_in_unit(place: str | None, units: Units, *, with_unit: bool = True) -> str:
-    """Format a place along a series of cuts, which is stored in metres, and the side on which the load there is
-    counted.
+def format_power(value: float, digits: int = 1) -> str:
+    """Format a small or large number for a reader: 3·10⁻⁹, 10⁻⁶, 0.02, 0."""
+    if value == 0.0:
+        return "0"
+    mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
+    if -3 <= int(exponent) <= max(3, digits - 1):
+        return f"{value:.{digits}g}" if int(exponent) < digits else f"{value:.0f}"
+    return f"{float(mantissa):g}·10{str(int(exponent)).translate(SUPERSCRIPTS)}".removeprefix("1·")
+
+
+def format_place(place: CutPosition | None, units: Units) -> str:
+    """Format a place along a series of cuts, and the side on which the load there is counted; in tables, whose heads
+    have the unit.
     """
+    return "" if place is None else " ".join([_format_distance(place, units), *([place.side] if place.side else [])])
+
+
+def describe_place(place: CutPosition | None, units: Units) -> str:
+    """Describe a place along a series of cuts as part of a sentence; empty without one."""
     if place is None:
         return ""
-    distance, _, side = place.partition(" m")
+    return f"{f'just {place.side}' if place.side else 'at'} s = {_format_distance(place, units)} {units.find('m')[0]}"
+
+
+def _format_distance(place: CutPosition, units: Units) -> str:
     unit, size = units.find("m")
-    return f"{round(float(distance), PLACE_DECIMALS) * size:.5g}{f' {unit}' * with_unit}{side}"
+    text = f"{round(place.s, PLACE_DECIMALS) * size:.{DECIMALS.get(unit, 4)}f}"
+    return text.rstrip("0").rstrip(".")
 
 
 def format_instant(time: float | None, run: ReportedRun) -> str:
@@ -195,8 +215,7 @@ def format_instant(time: float | None, run: ReportedRun) -> str:
         return ""
     span = float(np.ptp(times))
     decimals = max(0, INSTANT_DIGITS - math.floor(math.log10(span))) if span > 0.0 else 0
-    text = f"{time:.{decimals}f}"
-    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
+    return f"{time:.{decimals}f}".replace("-", MINUS)
 
 
 class GreatestOfCases(NamedTuple):

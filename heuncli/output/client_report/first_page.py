@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from heuncli.output.client_report.checks import name_check
 from heuncli.output.client_report.extremes import (
     GreatestOfCases,
+    describe_place,
     find_greatest_of_cases,
     find_uncertain_cases,
-    format_place_in_unit,
 )
 from heuncli.output.client_report.machine import make_drawing_parts
 from heuncli.output.client_report.report_data import ReportData
@@ -141,9 +141,8 @@ def _iter_utilisation(data: ReportData) -> Iterator[Sentence]:
 
 def _format_position(data: ReportData, greatest: GreatestOfCases) -> str:
     """Format the place, instant and case of a number, as the end of a sentence."""
-    place = format_place_in_unit(greatest.extreme.place, data.units)
-    words, _, side = place.rpartition(" ") if place.endswith(("before", "beyond")) else (place, "", "")
-    parts = [f"just {side} s = {words}" if side else f"at s = {words}"] if place else []
+    place = describe_place(greatest.extreme.place, data.units)
+    parts = [place] if place else []
     parts += [f"at t = {greatest.instant} s"] if greatest.instant else []
     parts += [f"in case {greatest.run.name}"] if greatest.run.name else []
     return "".join(f", {part}" for part in parts)

@@ -7,22 +7,37 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.base.load_kinds import LOAD_KINDS
-from heuncli.output.client_report.extremes import DASH, MINUS, format_instant
+from heuncli.output.client_report.extremes import DASH, MINUS, format_instant, format_power
 from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.client_report.summary_table import find_worst_instant
-from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable, Part, Sentence, TextCell, append_unit
+from heuncli.output.documents.document import (
+    Drawing,
+    Fill,
+    OutputColumn,
+    OutputTable,
+    Part,
+    Sentence,
+    TextCell,
+    append_unit,
+)
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.scenes import make_scene_figure
 from heuncli.output.machine_geometry.poses import Poses, extract_poses
 from heuncli.output.tables.plurals import format_count
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
+from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format.couplings import End
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 
 SHEET_WIDTH = 672.0  # pixels: the width of an A4 sheet without its margins
 HALF_WIDTH = 330.0
+MAX_PARAMETERS, MAX_PARAMETER_CASES = 30, 6
+PARAMETER_DIGITS = 5
+MAX_HALF_CASES = 3  # beside the bodies
+RATES = {"angle": "rate", "travel": "speed", "length": "speed"}  # of a drive that prescribes them
+LAW_KEYS = ("value", "vector", "to_vector", "torque", "force")  # of loads
 FIRST_HEIGHT = 330.0  # pixels of the machine on the first page
 NO_POSITIONS = "No positions are claimed: all output times are past the horizon."
 BODIES_HEADING = "BODIES  mass and centre of mass at the first instant"
@@ -50,7 +65,10 @@ def make_model_parts(data: ReportData) -> list[Part]:
     """Make the tables of bodies, joints and loads, and the degrees of freedom of the model."""
     run = data.runs[0]
     poses = extract_poses(run.worst_results)
-    tables = [_make_body_table(data, poses), _make_joint_table(data, poses), _make_force_table(data)]
+    bodies, parameters = _make_body_table(data, poses), _make_parameter_table(data)
+    if bodies is not None and parameters is not None and parameters.fill == "half":
+        bodies = bodies._replace(fill="half")
+    tables = [bodies, parameters, _make_joint_table(data, poses), _make_force_table(data)]
     model = run.results.model
     counts = [format_count(int(model["freedoms"]), "degree of freedom")] if "freedoms" in model else []
     redundant = model.get("redundant")
@@ -94,27 +112,61 @@ def _make_joint_table(data: ReportData, poses: Poses) -> OutputTable | None:
 
 
 def _make_force_table(data: ReportData) -> OutputTable | None:
-    """Make the table of forces, drives and parameters with the values that the model gives them."""
+    """Make the table of gravity, forces and drives, with the laws that the model gives them."""
     rows = [[TextCell(text) for text in row] for row in _iter_loads(data)]
-    columns = [OutputColumn(head, "text") for head in ("", "kind", "acts on")]
-    return OutputTable("LOADS AND DRIVES", columns, rows, (), "page") if rows else None
+    columns = [OutputColumn(head, "text") for head in ("", "kind", "acts on", "law, SI units")]
+    kept = [k for k in range(len(columns)) if k < 3 or any(row[k].text for row in rows)]
+    rows = [[row[k] for k in kept] for row in rows]
+    return OutputTable("LOADS AND DRIVES", [columns[k] for k in kept], rows, (), "page") if rows else None
+
+
+def _make_parameter_table(data: ReportData) -> OutputTable | None:
+    """Make the table of the parameters; of several load cases with a column each, bold where a case has its own."""
+    values = [run.study.spec.parameters for run in data.runs]
+    if not values[0] or len(values[0]) > MAX_PARAMETERS or len(values) > MAX_PARAMETER_CASES:
+        return None
+    heads = [run.case_label for run in data.runs] if data.has_cases else ["value"]
+    rows = []
+    for name, usual in data.spec.parameters.items():
+        numbers = [own.get(name, usual) for own in values]
+        texts = [format_power(number, PARAMETER_DIGITS).replace("-", MINUS) for number in numbers]
+        cells = [TextCell(text, number != usual) for text, number in zip(texts, numbers, strict=True)]
+        label = data.labels.captions.get(f"parameters.{name}")
+        rows.append([TextCell(f"{name} ({label})" if label else name), *cells])
+    fill: Fill = "half" if len(heads) <= MAX_HALF_CASES else "page"
+    return OutputTable("PARAMETERS  in SI units", [OutputColumn("", "text"), *map(OutputColumn, heads)], rows, (), fill)
 
 
 def _iter_loads(data: ReportData) -> Iterator[Sequence[str]]:
-    """Yield gravity, the forces and the drives of the model."""
+    """Yield gravity, the forces and the drives of the model: name, kind, place, law."""
     spec = data.spec
     size = float(np.linalg.norm(spec.gravity))
     if size > 0.0:
-        direction = " ".join(f"{part:.4g}".replace("-", MINUS) for part in spec.gravity)
-        yield "gravity", append_unit(direction, "m/s²"), "all bodies"
+        direction = ", ".join(f"{part:.4g}".replace("-", MINUS) for part in spec.gravity)
+        yield "gravity", "acceleration", "all bodies", append_unit(f"({direction})", "m/s²")
     for name, force in spec.forces.items():
         ends = [getattr(force, key, None) for key in ("from_", "to")]
         bodies = [describe_object("bodies", end.body, data.labels) for end in ends if isinstance(end, End)]
         joint, body = getattr(force, "joint", None), getattr(force, "body", None)
         place = " and ".join(bodies) or (joint and f"joint {joint}") or (body if isinstance(body, str) else "")
-        yield describe_object("forces", name, data.labels), LOAD_KINDS[force.type].display_name, str(place)
+        kind = LOAD_KINDS[force.type].display_name
+        yield describe_object("forces", name, data.labels), kind, str(place), _find_law(force)
     for name, drive in spec.drives.items():
-        yield name, "drive", f"joint {describe_object('joints', drive.joint, data.labels)}"
+        quantity = RATES.get(drive.quantity, drive.quantity) if drive.by_rate else drive.quantity
+        place = f"joint {describe_object('joints', drive.joint, data.labels)}"
+        yield describe_object("drives", name, data.labels), "drive", place, f"{quantity} = {drive.value.source}"
+
+
+def _find_law(force: object) -> str:
+    """Return the expressions of a load as the model states them; of a vector its three."""
+    laws = []
+    for key in LAW_KEYS:
+        value = getattr(force, key, None)
+        if isinstance(value, Expression):
+            laws.append(f"{key} = {value.source}")
+        elif isinstance(value, tuple) and value and all(isinstance(part, Expression) for part in value):
+            laws.append(f"{key} = ({', '.join(part.source.removesuffix('.0') for part in value)})")
+    return ", ".join(laws)
 
 
 def _make_place_cells(place: Array, size: float, unit: str) -> list[TextCell]:

@@ -15,7 +15,7 @@ from heuncli.output.client_report.extremes import (
     find_governing,
     find_uncertain_cases,
     format_instant,
-    format_place_in_unit,
+    format_place,
     iter_run_extremes,
 )
 from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
@@ -39,15 +39,16 @@ UNCERTAIN_NOTE = "{}: open or unknown{}, where it may be larger"
 LARGEST_NOTE = "bold: section with the highest utilisation"
 GOVERNING_QUANTITIES = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # in order of priority
 MAX_DIAGRAMS = 12
-PANEL_HEIGHT = 78.0  # pixels
+PANEL_HEIGHT = 66.0  # pixels
 NO_STRENGTH = "not given"
+DIAGRAM_NOTE = "Diagrams: force of the far side on the near side of the cut; N > 0 is tension."
 
 
 def make_section_parts(data: ReportData) -> list[Part]:
     """Make all parts about the sections."""
     names = list(data.runs[0].results.sections)
     return (
-        [*_iter_stress_table(data, names), *_iter_diagrams(data, names), *_iter_extremes(data, names)] if names else []
+        [*_iter_stress_table(data, names), *_iter_extremes(data, names), *_iter_diagrams(data, names)] if names else []
     )
 
 
@@ -55,6 +56,9 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
     """Yield a figure for each series of cuts, of its governing case; of many runs only for the most loaded ones."""
     cut_runs = [name for name in names if "s" in data.runs[0].results.sections[name]]
     governing_cases = {name: _find_governing_case(data, name) for name in cut_runs}
+    if cut_runs:
+        is_moving = any(len(run.results.time) > 1 for run in data.runs)
+        yield Sentence(f"{DIAGRAM_NOTE} {BAND_SENTENCE[0].upper()}{BAND_SENTENCE[1:]}" if is_moving else DIAGRAM_NOTE)
     drawn_runs = sorted(cut_runs, key=lambda name: governing_cases[name].rank, reverse=True)[:MAX_DIAGRAMS]
     for name in (name for name in cut_runs if name in drawn_runs):
         run = governing_cases[name].run
@@ -67,15 +71,10 @@ def _iter_diagrams(data: ReportData, names: list[str]) -> Iterator[Part]:
         figure = figure._replace(title="", words=())
         case = f", load case {run.case_label}" if run.name else ""
         words = describe_object("sections", name, data.labels)
-        band = f". {BAND_SENTENCE[0].upper()}{BAND_SENTENCE[1:]}" if len(run.results.time) > 1 else ""
         axes = data.labels.sections[name].first_axis if name in data.labels.sections else ""
-        caption = (
-            f"Section {words}{case}{_format_open_cases(data, name)}: force of the far side on the "
-            f"near side of the cut, N > 0 tension{f', e1 = {axes}' if axes else ''}{band}"
-        )
-        halves = _split_panels(figure)
-        yield from (Drawing(half, "", HALF_WIDTH, "half") for half in halves)
-        yield Sentence(caption)
+        caption = f"Section {words}{case}{_format_open_cases(data, name)}{f'; e1 = {axes}' if axes else ''}"
+        for k, half in enumerate(_split_panels(figure)):
+            yield Drawing(half, caption if k == 0 else "", HALF_WIDTH, "half")
     if len(cut_runs) > len(drawn_runs):
         yield Sentence(
             f"{len(cut_runs) - len(drawn_runs)} further sections are not shown: heun plot SPEC sections.NAME"
@@ -94,7 +93,7 @@ def _collect_extremes(run: ReportedRun, name: str) -> BarExtremes | None:
             if isinstance(end.value, str) or end.place is None:
                 return None
             time = float(run.results.time[0]) if end.time is None else end.time  # the same at all instants
-            extremes.append(Extreme(end.value, float(end.place.partition(" m")[0]), time))
+            extremes.append(Extreme(end.value, end.place.s, time))
         found[quantity] = (extremes[0], extremes[1])
     return found
 
@@ -171,7 +170,8 @@ def _iter_extremes(data: ReportData, names: list[str]) -> Iterator[Part]:
         groups = [_make_group(data, name) for name in names if ("s" in sections[name]) == has_places]
         if groups:
             caption = SECTIONS.heading(data.runs[0].results, data.labels)
-            yield make_cases_table(data, caption, groups, has_places=has_places)
+            table = make_cases_table(data, caption, groups, has_places=has_places)
+            yield table._replace(fill="page") if table.fill == "half" else table
 
 
 def _make_group(data: ReportData, name: str) -> LoadGroup:
@@ -247,7 +247,7 @@ def _make_cells(
     return [
         TextCell(describe_object("sections", entry.name, data.labels)),
         *([TextCell(entry.run.case_label)] if data.has_cases else []),
-        TextCell(format_place_in_unit(extreme.place, data.units, with_unit=False)),
+        TextCell(format_place(extreme.place, data.units)),
         *([TextCell("" if is_constant else format_instant(extreme.time, entry.run))] if has_instants(data) else []),
         TextCell(written),
         TextCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),

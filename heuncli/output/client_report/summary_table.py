@@ -22,20 +22,25 @@ from heuncli.output.snapshots.tables import SearchedPage
 from heuncli.output.summary.run_document import summarise
 from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases
 from heuncli.output.summary.summary_rows import MIN_TURN, SummaryRow
-from heuncli.results.results import NOWHERE, CutPosition, Extremes
+from heuncli.output.tables.plurals import format_count
+from heuncli.results.results import NOWHERE, Extremes
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.cut_runs import collect_runs
 
-MORE_NOTE = "{} smaller ones: chapter Loads"
+MORE_NOTE = "{}: chapter Loads"
 UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"
 
 
 class ReportedLoad(NamedTuple):
-    """The greatest load of a thing over all cases, and the names of others of its kind with the same one."""
+    """The greatest load of a thing over all cases, and the names of others of its kind with the same one.
+
+    kind: a word before its name, where a thing of another kind has the same one
+    """
 
     name: str
     greatest: GreatestOfCases
     alike: Sequence[str] = ()
+    kind: str = ""
 
 
 def summarise_cases(data: ReportData) -> Summary:
@@ -61,18 +66,11 @@ def _read_extremes(run: ReportedRun) -> SearchedPage:
             for end in (ends.low, ends.high)
         ]
         rows.append([*ends_found[0], *ends_found[1]])
-        places.append((_parse_place(ends.low.place), _parse_place(ends.high.place)))
+        places.append((ends.low.place or NOWHERE, ends.high.place or NOWHERE))
     low, low_at, high, high_at = np.array(rows).reshape(-1, 4).T
     column = np.zeros(len(known), dtype=np.intp)
     searched = Extremes(low, low_at, column, high, high_at, column, run.is_searched, True, tuple(places), tuple(known))
     return SearchedPage(page, searched)
-
-
-def _parse_place(place: str | None) -> CutPosition:
-    if place is None:
-        return NOWHERE
-    distance, _, side = place.partition(" m")
-    return CutPosition(float(distance), side.strip() or None, None)
 
 
 def list_loads(data: ReportData) -> list[ReportedLoad]:
@@ -81,15 +79,21 @@ def list_loads(data: ReportData) -> list[ReportedLoad]:
     """
     rows = [row for row in data.summary.rows if row.kind not in ("", "section") and not row.is_given]
     rows.sort(key=lambda row: (row.unit != "N", -abs(row.value)))
+    kinds: dict[str, set[str]] = {}
+    for row in rows:
+        kinds.setdefault(_name_thing(row, data), set()).add(row.kind)
     found = []
     for group in group_alike(rows, data.summary):
-        names = list(
-            dict.fromkeys(describe_object(row.block_path.partition(".")[0], row.name, data.labels) for row in group)
-        )
+        words = [(row.kind if len(kinds[name]) > 1 else "", name) for row in group for name in [_name_thing(row, data)]]
+        names = list(dict.fromkeys(f"{kind} {name}".strip() for kind, name in words))
         greatest = find_greatest_of_cases(data, group[0].path, group[0].name)
         if greatest is not None:
-            found.append(ReportedLoad(names[0], greatest, names[1:]))
+            found.append(ReportedLoad(names[0], greatest, names[1:], words[0][0]))
     return found
+
+
+def _name_thing(row: SummaryRow, data: ReportData) -> str:
+    return describe_object(row.block_path.partition(".")[0], row.name, data.labels)
 
 
 def find_worst_instant(data: ReportData) -> tuple[ReportedRun, float | None]:
@@ -104,7 +108,7 @@ def make_summary_table(data: ReportData) -> OutputTable | None:
     if not data.summary.rows:
         return None
     table, shown, n_further = make_table(data.summary)
-    notes = [*table.notes, *([MORE_NOTE.format(n_further)] if n_further else [])]
+    notes = [*table.notes, *([MORE_NOTE.format(format_count(n_further, "smaller load"))] if n_further else [])]
     for row in shown:
         notes += _list_uncertain(data, row)
     return table._replace(notes=notes, fill="page")
@@ -112,8 +116,7 @@ def make_summary_table(data: ReportData) -> OutputTable | None:
 
 def _list_uncertain(data: ReportData, row: SummaryRow) -> list[str]:
     cases = find_uncertain_cases(data, row.path) if data.has_cases else []
-    name = describe_object(row.block_path.partition(".")[0], row.name, data.labels)
-    return [UNCERTAIN_NOTE.format(name, join_names(cases))] if cases else []
+    return [UNCERTAIN_NOTE.format(_name_thing(row, data), join_names(cases))] if cases else []
 
 
 def find_crank(data: ReportData) -> str | None:

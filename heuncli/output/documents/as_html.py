@@ -37,6 +37,7 @@ STYLE = Path(__file__).with_name("document.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 FILLS = {"": "", "page": "fills", "columns": "fills columns", "half": "fills"}  # of a table -> classes
 MAX_WHOLE_ROWS = 20  # of a table that is kept on one page
+TALL_HEIGHT = 480.0  # pixels of a first figure that has a key of its numbers below, and gets more of the page
 LONG_CELL = 34  # characters; a longer cell may wrap
 VOID_TAGS = ("meta", "br", "img")  # tags without an end tag
 
@@ -195,7 +196,8 @@ def _render_drawing(part: Drawing) -> str:
         figure = figure._replace(shapes=shapes)
     markup = to_svg(figure).partition("?>\n")[2]
     caption = make_element("figcaption", escape_text(part.caption)) if part.caption else ""
-    return make_element("figure", markup + caption, class_=part.place)
+    is_tall = part.place == "first" and figure.height > TALL_HEIGHT
+    return make_element("figure", markup + caption, class_=part.place + " tall" * is_tall)
 
 
 def _render_verbatim(part: Verbatim) -> str:

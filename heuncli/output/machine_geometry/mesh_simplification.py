@@ -14,7 +14,7 @@ from heuncli.scene.meshes.model import IndexArray, cross_product_rows
 
 MAX_TRIANGLES = 6000  # drawn triangles of a mesh
 INITIAL_CELLS = 64  # grid cells along each axis in the first attempt
-# An edge is sharp if the cosine of the angle between its faces is smaller; same in output/web_page/surfaces.js.
+# An edge is sharp if the cosine of the angle between its faces is smaller; same in output/web_page/solids.js.
 EDGE_COSINE = 0.8
 
 

@@ -17,7 +17,7 @@ from heuncli.output.snapshots.golden_file import (
     Value,
 )
 from heuncli.output.tables.table_plans import AXIS, IMPULSES, MASS_EFFECT, PLANS, TablePlan
-from heuncli.results.results import Array, CutPosition, Results
+from heuncli.results.results import Array, Results
 from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.quantities.channels import Channel, iter_channels
 from heuncli.study.quantities.cut_runs import CutRun, collect_runs
@@ -116,8 +116,3 @@ def collect_all_columns(results: Results, scope: SnapshotScope) -> dict[str, Cha
 def collect_values(results: Results, scope: SnapshotScope) -> dict[str, Array]:
     """Collect the values of all columns by their paths."""
     return {path: column.values for path, column in collect_all_columns(results, scope).items()}
-
-
-def format_place(place: CutPosition) -> str:
-    """Format a place along a series of cuts: its distance [m], and the side of the load that acts there."""
-    return " ".join([f"{place.s:.6g} m", *([place.side] if place.side else [])])

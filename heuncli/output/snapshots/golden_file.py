@@ -13,9 +13,10 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, InstanceOf, PlainSerializer, ValidationError
 
 from heuncli.base.errors import Finding
+from heuncli.results.results import CutPosition
 
 FORMAT: Final = 2  # of the files that are written
 READABLE = (1, 2)  # other formats are refused
@@ -28,6 +29,24 @@ Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Value = Number | Literal["open", "unknown", "beyond"]
 N_EVEN = 11  # number of evenly spaced instants at which every quantity is stored
 REWRITE_HINT = "delete it and recreate it with --update"
+
+
+def format_place(place: CutPosition) -> str:
+    """Format a place along a series of cuts as a file has it: its distance [m], and the side of the load there."""
+    return " ".join([f"{place.s:.6g} m", *([place.side] if place.side else [])])
+
+
+def parse_place(value: object) -> object:
+    """Read a place from the text of a file. Raises ValueError."""
+    if not isinstance(value, str):
+        return value
+    distance, unit, side = value.partition(" m")
+    if not unit:
+        raise ValueError("expected a distance such as '0.28 m before'")
+    return CutPosition(float(distance), side.strip() or None, None)
+
+
+Place = Annotated[InstanceOf[CutPosition], BeforeValidator(parse_place), PlainSerializer(format_place)]
 
 
 class SnapshotPart(BaseModel):
@@ -57,10 +76,10 @@ class NumberSnapshot(SnapshotPart):
     last: Value | None = None
     least: Value | None = None
     least_at: Number | None = None
-    least_place: str | None = None
+    least_place: Place | None = None
     greatest: Value | None = None
     greatest_at: Number | None = None
-    greatest_place: str | None = None
+    greatest_place: Place | None = None
     least_at_error: Number | None = None
     greatest_at_error: Number | None = None
     even: list[Value] = []

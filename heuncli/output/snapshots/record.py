@@ -30,7 +30,7 @@ from heuncli.output.snapshots.golden_file import (
 from heuncli.output.tables.impulse_tables import MAX_LISTED, make_impact_results
 from heuncli.output.tables.page import Page
 from heuncli.results.path_words import IMPULSE_UNITS
-from heuncli.results.results import Array, Block, DeterminateSum, Results
+from heuncli.results.results import Array, Block, CutPosition, DeterminateSum, Results
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.quantities.cut_runs import collect_runs
@@ -76,8 +76,8 @@ class SnapshotBounds(NamedTuple):
     low_spread, high_spread: how far the instants may lie elsewhere [s], if that is known
     """
 
-    low: tuple[float, float, str | None] | None
-    high: tuple[float, float, str | None] | None
+    low: tuple[float, float, CutPosition | None] | None
+    high: tuple[float, float, CutPosition | None] | None
     low_spread: float | None = None
     high_spread: float | None = None
 

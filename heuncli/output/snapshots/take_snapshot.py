@@ -21,7 +21,6 @@ from heuncli.output.snapshots.columns import (
     collect_all_columns,
     collect_columns,
     collect_values,
-    format_place,
 )
 from heuncli.output.snapshots.course_sums import (
     GAUSS,
@@ -276,7 +275,7 @@ def _make_run_bounds(extremes: Extremes) -> dict[str, SnapshotBounds]:
     """
     bounds: dict[str, SnapshotBounds] = {}
     for i, path in enumerate(extremes.paths):
-        low = float(extremes.low[i]), float(extremes.low_at[i]), format_place(extremes.places[i][0])
-        high = float(extremes.high[i]), float(extremes.high_at[i]), format_place(extremes.places[i][1])
+        low = float(extremes.low[i]), float(extremes.low_at[i]), extremes.places[i][0]
+        high = float(extremes.high[i]), float(extremes.high_at[i]), extremes.places[i][1]
         bounds |= {f"{path}.lowest": SnapshotBounds(low, None), f"{path}.highest": SnapshotBounds(None, high)}
     return bounds

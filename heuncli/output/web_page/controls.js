@@ -1,6 +1,6 @@
 /** @file The controls of the page: what they offer, and what they do when they are used. */
 
-import { axesOf, coursesOf, peakOf } from "./courses.js";
+import { axesOf, coursesOf, madeOf, peakOf } from "./courses.js";
 import { PENS } from "./curve.js";
 import { instant } from "./digits.js";
 import { by, fill, made } from "./elements.js";
@@ -22,8 +22,8 @@ const SIZES = 1.2; // by how much a step of the arrow size lengthens
 
 /** What is chosen on the page beside the frame. */
 export class Chosen {
-  /** @param {object} data @param {() => void} changed */
-  constructor(data, changed) {
+  /** @param {object} data @param {() => void} changed @param {Chosen} [before] what was chosen in another load case */
+  constructor(data, changed, before) {
     this.data = data;
     this.changed = changed;
     this.choices = arrowChoices(data);
@@ -45,6 +45,30 @@ export class Chosen {
       data.sections.find((section) => section.loads.length) ??
       null;
     this.load = null;
+    this.band = true;
+    if (before) this.take(before);
+  }
+
+  /** Choose what was chosen in another load case, as far as it is there. @param {Chosen} before */
+  take({ names, values, paths, look, size, band, choice, section, load, curves, axis }) {
+    Object.assign(this, { names, values, paths, look, size, band });
+    const as = (list, other, key) => list.find((each) => each[key] === other?.[key]);
+    this.choice = choice ? (as(this.choices, choice, "key") ?? this.choice) : null;
+    this.section = as(this.data.sections, section, "name") ?? this.section;
+    if (this.section && section?.chosen < this.section.cuts.length) this.section.chosen = section.chosen;
+    this.load = (this.section && as(this.section.loads, load, "label")) ?? null;
+    this.axis = as(this.axes, axis, "label") ?? this.axis;
+    this.curves = curves.filter((path) => this.courses.some((course) => course.path === path));
+    const unit = this.shownCourses[0]?.unit; // which may be another one in this case
+    this.curves = this.curves.filter((_, k) => this.shownCourses[k].unit === unit);
+  }
+
+  /** The frame nearest to a place on an axis: the same angle or time as in another load case. */
+  nearest(place) {
+    const axis = this.axes.find(({ label }) => label === place?.label);
+    if (!axis) return null;
+    const off = (k) => Math.abs(axis.values[k] - place.at);
+    return axis.values.reduce((best, _, k) => (off(k) < off(best) ? k : best), 0);
   }
 
   /** The load of the section that is looked at first: the bending that is largest, else the first there is. */
@@ -66,14 +90,8 @@ export class Chosen {
     const joints = this.courses.filter(({ path }) => /^joints\..*\.force$/.test(path)).slice(0, TRIED);
     const some = joints.length ? joints : this.courses.slice(0, TRIED);
     const most = ({ high }) => high.reduce((best, v) => (Math.abs(v) > best ? Math.abs(v) : best), 0);
-    const found = some.map((course) => this.made(course)).sort((a, b) => most(b) - most(a));
+    const found = some.map(madeOf).sort((a, b) => most(b) - most(a));
     return found[0]?.path ?? "";
-  }
-
-  /** A curve, made when it is first needed. */
-  made(course) {
-    course.made ??= course.make();
-    return course.made;
   }
 
   /** Show the curve of a path alone. @param {string} path */
@@ -84,7 +102,7 @@ export class Chosen {
 
   /** The curves that are shown. @returns {import("./courses.js").Course[]} */
   get shownCourses() {
-    return this.curves.map((path) => this.made(this.courses.find((course) => course.path === path)));
+    return this.curves.map((path) => madeOf(this.courses.find((course) => course.path === path)));
   }
 
   /** The curves that may be added: of the unit of the first. */
@@ -102,8 +120,8 @@ function isOwn(event) {
   return (tag === "BUTTON" || tag === "SUMMARY") && (event.key === " " || event.key === "Enter");
 }
 
-/** The view's buttons, the pointer, the keys. */
-export function listenToView(view, player, changed) {
+/** The view's buttons, the pointer, the keys, until the signal. @param {AbortSignal} signal */
+export function listenToView(view, player, changed, signal) {
   const canvas = by("machine");
   listenToPointers(canvas, view, changed);
   const act = (id, what) =>
@@ -128,17 +146,18 @@ export function listenToView(view, player, changed) {
     ",": () => player.halt(player.frame - 1),
     ".": () => player.halt(player.frame + 1),
   };
-  document.addEventListener("keydown", (event) => {
+  const follow = (event) => {
     if (event.altKey || event.ctrlKey || event.metaKey || isOwn(event)) return;
     if (jumps[event.key] && frames > 1) jumps[event.key]();
     else if (event.target === canvas && viewKey(event, view)) changed();
     else return;
     event.preventDefault();
-  });
+  };
+  document.addEventListener("keydown", follow, { signal });
 }
 
-/** Play, slider, speed, marks; nothing of it where there is one instant. */
-export function listenToTime(data, player) {
+/** Play, slider, speed, marks; nothing of it where there is one instant. @param {Player} [before] of another case */
+export function listenToTime(data, player, before) {
   const { count, time, marks } = data;
   const moving = count > 1;
   for (const id of ["moving", "over", "marks", "worst"]) by(id).hidden = !moving || (id === "marks" && !marks.length);
@@ -153,7 +172,8 @@ export function listenToTime(data, player) {
     by("speed"),
     SPEEDS.map(([speed, label]) => [String(speed), label]),
   );
-  player.speed = speedFor(time[count - 1] - time[0]);
+  player.speed = before?.speed ?? speedFor(time[count - 1] - time[0]);
+  by("repeat").checked = player.repeats = before?.repeats ?? true;
   by("speed").value = String(player.speed);
   by("speed").addEventListener("change", () => (player.speed = Number(by("speed").value)));
   by("repeat").addEventListener("change", () => (player.repeats = by("repeat").checked));
@@ -184,6 +204,7 @@ export function listenToDrawn(chosen, player, changed) {
     by("bodies"),
     LOOKS.map(([opaque, label]) => [String(opaque), label]),
   );
+  by("bodies").value = String(chosen.look);
   by("bodies").addEventListener("change", () => {
     chosen.look = Number(by("bodies").value);
     changed();
@@ -195,6 +216,7 @@ export function listenToDrawn(chosen, player, changed) {
     if (chosen.choice?.frame !== undefined) player.halt(chosen.choice.frame);
     changed();
   });
+  by("size").value = String(Math.round(Math.log(chosen.size) / Math.log(SIZES)));
   by("size").addEventListener("input", () => {
     chosen.size = SIZES ** Number(by("size").value);
     changed();
@@ -260,10 +282,13 @@ export function listenToCurve(chosen, player, changed, panel) {
     by("added").replaceChildren(...chips);
     changed();
   };
-  const show = (path) => {
-    chosen.setCourse(path);
+  const begin = () => {
     if (chosen.curves.length) select.value = chosen.curves[0];
     offer();
+  };
+  const show = (path) => {
+    chosen.setCourse(path);
+    begin();
   };
   select.addEventListener("change", () => show(select.value));
   by("more").addEventListener("change", () => {
@@ -289,7 +314,18 @@ export function listenToCurve(chosen, player, changed, panel) {
     follow(event);
   });
   canvas.addEventListener("pointermove", follow);
-  show(chosen.telling());
+  if (!chosen.curves.length) chosen.setCourse(chosen.telling());
+  begin();
   if (!chosen.courses.length) by("over").hidden = true;
   return show;
+}
+
+/** Whether the envelope of all load cases is drawn. @param {boolean} some whether there are several */
+export function listenToBand(chosen, changed, some) {
+  by("bandlabel").hidden = !some;
+  by("band").checked = chosen.band;
+  by("band").addEventListener("change", () => {
+    chosen.band = by("band").checked;
+    changed();
+  });
 }

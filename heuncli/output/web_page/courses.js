@@ -9,7 +9,7 @@ const DEGREES = 180 / Math.PI;
 /**
  * @typedef {object} Course
  * @property {string} path of the number @property {string} label what it is called @property {string} unit shown
- * @property {import("./digits.js").Style} style of its digits
+ * @property {import("./digits.js").Style} style of its digits @property {number} size of the unit, in SI
  * @property {Float64Array} low in the unit shown @property {Float64Array} high the same, but of a series of cuts
  */
 
@@ -19,7 +19,7 @@ function ofRow(row, count) {
     const make = () => {
       const values = new Float64Array(count);
       for (let k = 0; k < count; k += 1) values[k] = pick(k) * row.size;
-      return { path, label, unit: row.unit, style: row.style, low: values, high: values };
+      return { path, label, unit: row.unit, size: row.size, style: row.style, low: values, high: values };
     };
     return { path, label, unit: row.unit, make };
   };
@@ -41,13 +41,25 @@ function ofLoad(section, load, count) {
       low[k] = values.length ? Math.min(...values) * load.size : NaN;
       high[k] = values.length ? Math.max(...values) * load.size : NaN;
     }
-    return { path: load.path, label, unit: load.unit, style: load.style, low, high: section.s ? high : low };
+    const { path, unit, size, style } = load;
+    return { path, label, unit, size, style, low, high: section.s ? high : low };
   };
   return { path: load.path, label, unit: load.unit, make };
 }
 
 /** All curves there are; each is made when it is asked for. @param {object} data */
 export function coursesOf(data) {
+  data.courses ??= collected(data);
+  return data.courses;
+}
+
+/** A curve, made when it is first needed. @returns {Course} */
+export function madeOf(course) {
+  course.made ??= course.make();
+  return course.made;
+}
+
+function collected(data) {
   const rows = data.blocks.flatMap((block) => block.groups.flatMap((group) => group.rows));
   return [
     ...rows.flatMap((row) => ofRow(row, data.count)),
@@ -57,6 +69,11 @@ export function coursesOf(data) {
 
 /** Over what curves can be drawn: time, and the angles of cranks. @returns {{label: string, values: Float64Array}[]} */
 export function axesOf(data) {
+  data.axes ??= foundAxes(data);
+  return data.axes;
+}
+
+function foundAxes(data) {
   const cranks = [...data.rows.values()].filter((row) => /^coordinates\..*\.angle$/.test(row.path)).filter((row) => {
     const { values } = row.parts[0];
     const way = Math.sign(values[values.length - 1] - values[0]);

@@ -1,29 +1,38 @@
 /** @file Curves over time or an angle: axes, events and impulses, extremes, and a cursor at the frame that is shown. */
 
-import { cleared } from "./canvases.js";
 import { peakOf } from "./courses.js";
 import { roundBelow, short, written } from "./digits.js";
-import { polyline, ring } from "./strokes.js";
+import { cleared, polyline, ring } from "./strokes.js";
 
 const MARGIN = { left: 66, right: 14, top: 24, bottom: 46 };
 const MOST_WORDS = 8;
 /** Names of the colours of the curves, and the dashes that tell them apart without colour. */
 export const PENS = [["positive", []], ["negative", [7, 3]], ["force", [2, 2]], ["moment", [9, 3, 2, 3]]];
 
+/** The least and the greatest known value of some curves. @returns {number[]} */
+function rangeOf(courses) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const values of courses.flatMap((course) => [course.low, course.high])) {
+    for (const value of values) {
+      if (value < low && value > -Infinity) low = value;
+      if (value > high && value < Infinity) high = value;
+    }
+  }
+  return low <= high ? [low, high] : [0, 1];
+}
+
 /** Where instants and values stand in a panel [pixels]. */
 export class Panel {
-  constructor(width, height, axis, courses) {
+  constructor(width, height, axis, courses, band) {
     this.left = MARGIN.left;
     this.right = width - MARGIN.right;
     this.top = MARGIN.top;
     this.bottom = height - MARGIN.bottom;
     this.values = axis.values;
-    const ends = [axis.values[0], axis.values[axis.values.length - 1]];
+    const ends = [axis, band ?? axis].flatMap(({ values }) => [values[0], values[values.length - 1]]);
     this.first = Math.min(...ends);
     this.span = Math.max(...ends) - this.first || 1;
-    const known = courses.flatMap((course) => [...course.low, ...course.high]).filter(Number.isFinite);
-    let low = known.length ? known.reduce((a, v) => Math.min(a, v)) : 0;
-    let high = known.length ? known.reduce((a, v) => Math.max(a, v)) : 1;
+    let [low, high] = rangeOf(band ? [...courses, band] : courses);
     const last = 10 ** -courses[0].style[0]; // what is below the last certain digit is not drawn as a curve
     if (high - low < 20 * last) [low, high] = [low - 10 * last, high + 10 * last];
     const spare = high - low || Math.abs(high) || 1;
@@ -88,24 +97,24 @@ function drawAxes(pen, panel, axis, unit, colours, labels) {
 }
 
 /** One line; where it is open it is broken. */
-function drawValues(pen, panel, values, colour, dash) {
+function drawValues(pen, panel, values, colour, dash, x = panel.values, width = 1.8) {
   let run = [];
   for (let k = 0; k <= values.length; k += 1) {
     if (k < values.length && Number.isFinite(values[k])) {
-      run.push([panel.x(panel.values[k]), panel.y(values[k])]);
+      run.push([panel.x(x[k]), panel.y(values[k])]);
     } else {
-      if (run.length > 1) polyline(pen, run, colour, 1.8, dash);
+      if (run.length > 1) polyline(pen, run, colour, width, dash);
       run = [];
     }
   }
 }
 
 /** What lies between the smallest and the greatest, as a band. */
-function drawBand(pen, panel, { low, high }, colour) {
+function drawBand(pen, panel, { low, high }, colour, values = panel.values) {
   const known = [...low.keys()].filter((k) => Number.isFinite(low[k]));
   pen.beginPath();
-  known.forEach((k, i) => pen[i ? "lineTo" : "moveTo"](panel.x(panel.values[k]), panel.y(high[k])));
-  known.reverse().forEach((k) => pen.lineTo(panel.x(panel.values[k]), panel.y(low[k])));
+  known.forEach((k, i) => pen[i ? "lineTo" : "moveTo"](panel.x(values[k]), panel.y(high[k])));
+  known.reverse().forEach((k) => pen.lineTo(panel.x(values[k]), panel.y(low[k])));
   pen.closePath();
   pen.globalAlpha = 0.18;
   pen.fillStyle = colour;
@@ -124,16 +133,29 @@ function drawPeak(pen, panel, course, highest, colour, colours, labels, rank) {
   labels.add(`peak ${course.path} ${highest}`, text, x, y, colours.ink, rank, 7);
 }
 
+/** The envelope of all load cases, behind the curves, with its extremes and their cases. */
+function drawEnvelope(pen, panel, band, { style, unit, path }, colours, labels) {
+  drawBand(pen, panel, band, colours.faint, band.values);
+  for (const values of [band.low, band.high]) drawValues(pen, panel, values, colours.faint, [], band.values, 0.8);
+  for (const [end, rank] of [[band.greatest, 8], [band.least, 7.5]]) {
+    const [x, y] = [panel.x(end.x), panel.y(end.value)];
+    ring(pen, x, y, 3, colours.panel, colours.ink, 1.5);
+    const value = `${written(end.value, style)} ${unit === "1" ? "" : unit}`.trim();
+    labels.add(`envelope ${path} ${rank}`, `${value}, ${band.names[end.run]}`, x, y, colours.ink, rank, 7);
+  }
+}
+
 /**
  * The whole picture.
  * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./courses.js").Course[]} courses of one unit
- * @param {{label: string, values: Float64Array}} axis @param {number} frame
+ * @param {{label: string, values: Float64Array}} axis
+ * @param {import("./envelope.js").Envelope & {names: string[]}|null} band of the first curve @param {number} frame
  * @param {import("./labels.js").LabelList} labels @returns {Panel}
  */
-export function drawCurve(canvas, data, courses, axis, frame, colours, labels) {
+export function drawCurve(canvas, data, courses, axis, band, frame, colours, labels) {
   const { pen, width, height } = cleared(canvas);
   labels.begin(pen, width, height);
-  const panel = new Panel(width, height, axis, courses);
+  const panel = new Panel(width, height, axis, courses, band);
   drawAxes(pen, panel, axis, courses[0].unit, colours, labels);
   for (const mark of data.marks) {
     const x = panel.x(axis.values[mark.frame]);
@@ -141,6 +163,7 @@ export function drawCurve(canvas, data, courses, axis, frame, colours, labels) {
     if (data.marks.length > MOST_WORDS) continue;
     labels.set(`mark ${mark.frame}`, mark.words, x, 10, colours.faint, 2, "center");
   }
+  if (band) drawEnvelope(pen, panel, band, courses[0], colours, labels);
   courses.forEach((course, k) => {
     const [name, dash] = PENS[k % PENS.length];
     if (course.low !== course.high) {
@@ -152,6 +175,7 @@ export function drawCurve(canvas, data, courses, axis, frame, colours, labels) {
       const middle = (panel.left + panel.right) / 2;
       labels.set(`open ${k}`, "open at all times", middle, panel.top + 24 + 18 * k, colours.faint, 3, "center");
     }
+    if (band && k === 0) return; // the extremes of all cases are marked in place of its own
     drawPeak(pen, panel, course, true, colours[name], colours, labels, 5 - k);
     drawPeak(pen, panel, course, false, colours[name], colours, labels, 4.5 - k);
   });

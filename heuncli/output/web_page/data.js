@@ -17,23 +17,89 @@ function gathered(bytes, offset, count, size) {
   return new DataView(found.buffer);
 }
 
-/** A column: steps from differences of differences (see packing.py), or floating-point numbers. */
-function unpacked(bytes, [offset, count, lag, order, step]) {
-  const found = new Float64Array(count);
-  if (step === 0) {
-    const view = gathered(bytes, offset, count, order);
-    const read = order === 8 ? (k) => view.getFloat64(8 * k, true) : (k) => view.getFloat32(4 * k, true);
-    for (let k = 0; k < count; k += 1) found[k] = read(k);
-    return found;
+const MAX_GAIN = 64; // as in packing.py
+
+/**
+ * The weights by which the numbers before an instant, the last first, predict the one there: those of Lagrange's
+ * polynomial, or of the next lower order where it would magnify their rounding. To the bit those of packing.py.
+ * @param {ArrayLike<number>} times @param {number} order @returns {number[][]} for each instant
+ */
+export function weightsOf(times, order) {
+  const found = [];
+  for (let m = 0; m < times.length; m += 1) found.push(weightsAt(times, m, Math.min(order, m)));
+  return found;
+}
+
+/** @param {ArrayLike<number>} times @param {number} m @param {number} order */
+function weightsAt(times, m, order) {
+  for (let size = order; size > 0; size -= 1) {
+    const weights = new Array(size).fill(1);
+    for (let j = 0; j < size; j += 1) {
+      for (let k = 0; k < size; k += 1) {
+        if (k !== j) weights[j] *= (times[m] - times[m - 1 - k]) / (times[m - 1 - j] - times[m - 1 - k]);
+      }
+    }
+    let gain = 0;
+    for (const weight of weights) gain += Math.abs(weight);
+    if (gain <= MAX_GAIN) return weights;
   }
+  return [];
+}
+
+/** Whole steps that stand in planes of bytes: 0, 1, 2, 3, ... for 0, -1, 1, -2, ... */
+function unfolded(bytes, offset, count) {
   const view = gathered(bytes, offset, count, 4);
+  const found = new Float64Array(count);
   for (let k = 0; k < count; k += 1) {
     const folded = view.getUint32(4 * k, true);
     found[k] = folded % 2 ? -(folded + 1) / 2 : folded / 2;
   }
-  for (let pass = 0; pass < order; pass += 1) for (let k = lag; k < count; k += 1) found[k] += found[k - lag];
-  for (let k = 0; k < count; k += 1) found[k] *= step;
   return found;
+}
+
+/** The columns of a block of bytes, by what the JSON says of them. */
+class Columns {
+  /** @param {Uint8Array} bytes */
+  constructor(bytes) {
+    this.bytes = bytes;
+    /** @type {Map<string, number[][]>} */
+    this.weights = new Map();
+  }
+
+  /** Floating-point numbers. */
+  floats(offset, count, size) {
+    const view = gathered(this.bytes, offset, count, size);
+    return Float64Array.from({ length: count }, (_, k) =>
+      size === 8 ? view.getFloat64(8 * k, true) : view.getFloat32(4 * k, true),
+    );
+  }
+
+  /** The weights of an order, of the instants at an offset, or of so many numbers at equal distances. */
+  weightsFor(instants, count, order) {
+    const key = `${instants} ${count} ${order}`;
+    if (!this.weights.has(key)) {
+      const times = instants < 0 ? Array.from({ length: count }, (_, k) => k) : this.floats(instants, count, 8);
+      this.weights.set(key, weightsOf(times, order));
+    }
+    return this.weights.get(key);
+  }
+
+  /** A column: whole steps, predicted from those before (see packing.py), or floating-point numbers. */
+  read([offset, count, lag, order, step, across, instants]) {
+    if (step === 0) return this.floats(offset, count, order);
+    const found = unfolded(this.bytes, offset, count);
+    for (let pass = 0; pass < across; pass += 1) {
+      for (let k = 0; k < count; k += 1) if (k % lag) found[k] += found[k - 1];
+    }
+    const weights = this.weightsFor(instants, count / lag, order);
+    for (let k = lag; k < count; k += 1) {
+      let predicted = 0;
+      weights[Math.floor(k / lag)].forEach((weight, j) => (predicted += weight * found[k - (j + 1) * lag]));
+      found[k] += Math.floor(predicted + 0.5);
+    }
+    for (let k = 0; k < count; k += 1) found[k] *= step;
+    return found;
+  }
 }
 
 /**
@@ -48,9 +114,9 @@ function numbers(packed, count) {
 /** The data in a block of bytes: the JSON, with its columns unpacked where they stand. */
 function parsed(bytes) {
   const length = new DataView(bytes.buffer).getUint32(0, true);
-  const columns = bytes.subarray(4 + length);
+  const columns = new Columns(bytes.subarray(4 + length));
   const text = new TextDecoder().decode(bytes.subarray(4, 4 + length));
-  const revive = (_, value) => (value && Array.isArray(value.packed) ? unpacked(columns, value.packed) : value);
+  const revive = (_, value) => (value && Array.isArray(value.packed) ? columns.read(value.packed) : value);
   return JSON.parse(text, revive);
 }
 
@@ -77,8 +143,9 @@ function rowsOf(data, count) {
   return rows;
 }
 
-/** A run, ready to be shown. */
-function prepared(data) {
+/** A load case, ready to be shown; made so once. @param {object} data */
+export function prepared(data) {
+  if (data.rows) return data;
   const { count, scene } = data;
   data.time = numbers(data.time, count);
   for (const surface of scene.bodies.flatMap((body) => body.surfaces)) {
@@ -93,14 +160,12 @@ function prepared(data) {
 }
 
 /**
- * The data of the page.
- * @param {string} text base64 of a deflated block @param {number} run the number of the load case
- * @returns {Promise<{data: object, cases: string[]}>}
+ * The load cases of the page; `prepared` makes each one ready.
+ * @param {string} text base64 of a deflated block @returns {Promise<object[]>}
  */
-export function readData(text, run) {
+export function readData(text) {
   return inflated(bytesOf(text)).then((bytes) => {
     const data = parsed(bytes);
-    const runs = data.runs ?? [data];
-    return { data: prepared(runs[run] ?? runs[0]), cases: runs.map((each) => each.case) };
+    return data.runs ?? [data];
   });
 }

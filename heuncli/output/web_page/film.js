@@ -4,7 +4,7 @@ import { cloudOf, coverOf } from "./cloud.js";
 import { coloursNow } from "./colours.js";
 import { Chosen } from "./controls.js";
 import { axesOf } from "./courses.js";
-import { readData } from "./data.js";
+import { prepared, readData } from "./data.js";
 import { instant } from "./digits.js";
 import { by } from "./elements.js";
 import { gifOf } from "./gif.js";
@@ -99,7 +99,7 @@ function draw(data) {
   return [base64(gifOf(pictures, wide, high, 1 / rate))];
 }
 
-readData(by("data").textContent, 0).then(({ data }) => {
-  by("film").textContent = draw(data).join(" ");
+readData(by("data").textContent).then(([data]) => {
+  by("film").textContent = draw(prepared(data)).join(" ");
   document.documentElement.dataset.done = "yes";
 });

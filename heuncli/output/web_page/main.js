@@ -2,28 +2,38 @@
 
 import { cloudOf, coverOf } from "./cloud.js";
 import { coloursNow } from "./colours.js";
-import { Chosen, listenToCurve, listenToDrawn, listenToSections, listenToTime, listenToView } from "./controls.js";
+import {
+  Chosen,
+  listenToBand,
+  listenToCurve,
+  listenToDrawn,
+  listenToSections,
+  listenToTime,
+  listenToView,
+} from "./controls.js";
 import { drawCurve } from "./curve.js";
-import { readData } from "./data.js";
+import { prepared, readData } from "./data.js";
 import { instant, short, written } from "./digits.js";
 import { by, made } from "./elements.js";
+import { envelopeOf } from "./envelope.js";
 import { LabelList } from "./labels.js";
 import { Player } from "./player.js";
 import { drawMachine } from "./stage.js";
 import { SummaryTable } from "./summary.js";
 import { NumberTable } from "./table.js";
-import { listenToCases, listenToTabs, numberOf } from "./tabs.js";
+import { listenToCases, listenToTabs, nameOf, numberOf } from "./tabs.js";
 import { View } from "./view.js";
 
 const AT_ONCE = 400; // cells of the table that are written at every image while the machine plays
 const PAUSE = 0.25; // ms for each cell beyond these until they are written again
 
 /** What is to be known of the run, below; above only that there is something. */
-function tellRun(data) {
+function tellRun(data, signal) {
   const notes = `${data.alerts} ${data.alerts === 1 ? "note" : "notes"} on this run`;
+  document.title = by("title").textContent = data.title;
   by("alert").hidden = !data.alerts;
   by("alert").textContent = notes;
-  by("alert").addEventListener("click", () => (by("about").open = true));
+  by("alert").addEventListener("click", () => (by("about").open = true), { signal });
   by("told").replaceChildren(...data.told.map((sentence) => made("li", sentence)));
   const lines = [...data.about, ["heun", data.version], ["file", data.file]];
   for (const [label, text] of lines) if (text) by("lines").append(made("dt", label), made("dd", text));
@@ -69,76 +79,154 @@ function tellCurve(course, frame, over) {
   by("curve").setAttribute("aria-label", `${course.label} over ${over}; now ${value} ${course.unit}`);
 }
 
-/** Call `follow` with the colours whenever the page turns dark or light. */
-function listenToColours(follow) {
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => follow(coloursNow()));
+/** Call `follow` with the colours whenever the page turns dark or light, until the signal. */
+function listenToColours(follow, signal) {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => follow(coloursNow()), { signal });
 }
 
-/** Begin with the data of a load case. */
-function begin({ data, cases }, run) {
-  data.scene.cloud = cloudOf(data.scene, data.count);
-  data.scene.cover = coverOf(data.scene);
-  let [waiting, last, panel] = [false, 0, null];
-  const colours = { now: coloursNow() };
-  const labels = { machine: new LabelList(), curve: new LabelList() };
-  const changed = () => {
-    if (!waiting) requestAnimationFrame(draw);
-    waiting = true;
-  };
-  const player = new Player(data.time, changed);
-  const view = new View(data.scene);
-  const chosen = new Chosen(data, changed);
-  const table = new NumberTable(by("numbers"), data);
-  const crank = chosen.axes[1] ?? null;
-  let show = () => {};
-  const summary = new SummaryTable(by("summary"), data, crank, (frame, path) => {
-    if (chosen.courses.some((course) => course.path === path)) show(path);
-    player.halt(frame);
-  });
-
-  function draw() {
-    waiting = false;
-    const { frame, share } = player;
-    const shown = { frame, share, ...chosen.shown };
-    drawMachine(by("machine"), data, view, shown, colours.now, labels.machine);
-    const courses = chosen.shownCourses;
-    if (data.count > 1 && courses.length) {
-      panel = drawCurve(by("curve"), data, courses, chosen.axis, frame, colours.now, labels.curve);
-      tellCurve(courses[0], frame, chosen.axis.label);
+/** The envelope of the curve over all cases, made anew where another curve or axis is chosen; null: not drawn. */
+function bandMaker(runs) {
+  const names = runs.map(nameOf);
+  let [key, band] = ["", null];
+  return ({ band: wanted, axis }, [course]) => {
+    if (!wanted || runs.length < 2 || !course) return null;
+    if (key !== `${course.path} ${axis.label}`) {
+      key = `${course.path} ${axis.label}`;
+      band = envelopeOf(runs.map(prepared), course, axis);
+      if (band) band.names = names;
     }
+    return band;
+  };
+}
+
+/** Which case governs the curve, as buttons that go there. @param {(run: number, frame: number) => void} go */
+function tellGoverning(band, course, go) {
+  const key = band ? `${course.path} ${band.greatest.run} ${band.least.run}` : "";
+  const bar = by("governing");
+  if (bar.dataset.key === key) return;
+  bar.dataset.key = key;
+  bar.hidden = !band;
+  const buttons = Object.entries(band ? { greatest: band.greatest, least: band.least } : {}).map(([word, end]) => {
+    const value = `${written(end.value, course.style)} ${course.unit === "1" ? "" : course.unit}`.trim();
+    const button = made("button", `${word} ${value}: ${band.names[end.run]}`, { type: "button" });
+    button.addEventListener("click", () => go(end.run, end.frame));
+    return button;
+  });
+  bar.replaceChildren(made("span", "Of all load cases", { class: "word" }), ...buttons);
+}
+
+/** A load case on the page, until it is left. */
+class ShownCase {
+  /**
+   * @param {object[]} runs all cases @param {number} run the number of this one
+   * @param {object} before what the case before it left
+   * @param {(run: number, frame?: number) => void} change to another case
+   */
+  constructor(runs, run, before, change) {
+    const data = prepared(runs[run]);
+    data.scene.cloud ??= cloudOf(data.scene, data.count);
+    data.scene.cover ??= coverOf(data.scene);
+    Object.assign(this, { data, change, waiting: false, last: 0, panel: null });
+    this.ended = new AbortController();
+    this.colours = coloursNow();
+    this.labels = { machine: new LabelList(), curve: new LabelList() };
+    this.changed = () => {
+      if (!this.waiting) requestAnimationFrame(() => this.draw());
+      this.waiting = true;
+    };
+    this.player = new Player(data.time, this.changed);
+    this.view = new View(data.scene);
+    if (before.view) this.view.take(before.view);
+    this.chosen = new Chosen(data, this.changed, before.chosen);
+    this.table = new NumberTable(by("numbers"), data);
+    this.crank = this.chosen.axes[1] ?? null;
+    this.bandOf = bandMaker(runs);
+    this.summary = new SummaryTable(by("summary"), data, this.crank, (frame, path) => {
+      if (this.chosen.courses.some((course) => course.path === path)) this.show(path);
+      this.player.halt(frame);
+    });
+    this.listen(before, runs.length > 1);
+    this.player.show(before.frame ?? this.chosen.nearest(before.place) ?? data.worst);
+    this.draw();
+    if (before.playing && data.count > 1) this.player.toggle();
+  }
+
+  /** Follow the controls. */
+  listen(before, hasCases) {
+    const { data, player, chosen, changed } = this;
+    const { signal } = this.ended;
+    tellRun(data, signal);
+    by("caption").textContent = data.count > 1 ? "Values at this frame" : "Values at this instant";
+    listenToView(this.view, player, changed, signal);
+    listenToTime(data, player, before.player);
+    listenToDrawn(chosen, player, changed);
+    listenToSections(chosen, changed);
+    this.tab = listenToTabs(this.table, changed, before.tab);
+    listenToBand(chosen, changed, hasCases && data.count > 1);
+    this.show = listenToCurve(chosen, player, changed, () => this.panel);
+    listenToColours((now) => {
+      this.colours = now;
+      changed();
+    }, signal);
+    this.size = new ResizeObserver(changed);
+    this.size.observe(by("machine"));
+  }
+
+  draw() {
+    this.waiting = false;
+    if (this.ended.signal.aborted) return;
+    const { data, player, chosen, table } = this;
+    const { frame, share } = player;
+    drawMachine(by("machine"), data, this.view, { frame, share, ...chosen.shown }, this.colours, this.labels.machine);
+    this.drawCurves(frame);
     const now = performance.now();
-    if (!player.playing || now - last > PAUSE * (table.cells.length - AT_ONCE)) {
-      last = now;
+    if (!player.playing || now - this.last > PAUSE * (table.cells.length - AT_ONCE)) {
+      this.last = now;
       table.show(frame);
       by("signs").textContent = signsOf(chosen, data);
       by("machine").setAttribute("aria-label", `${data.title}, at ${instant(data.time[frame], 0)} s`);
     }
-    summary.show(frame);
-    tellInstant(data, player, crank);
+    this.summary.show(frame);
+    tellInstant(data, player, this.crank);
     document.documentElement.dataset.frame = String(frame);
   }
 
-  tellRun(data);
-  by("caption").textContent = data.count > 1 ? "Values at this frame" : "Values at this instant";
-  listenToCases(cases, run);
-  listenToView(view, player, changed);
-  listenToTime(data, player);
-  listenToDrawn(chosen, player, changed);
-  listenToSections(chosen, changed);
-  listenToTabs(table, changed);
-  show = listenToCurve(chosen, player, changed, () => panel);
-  listenToColours((now) => {
-    colours.now = now;
-    changed();
-  });
-  new ResizeObserver(changed).observe(by("machine"));
-  player.show(numberOf("frame", data.worst));
-  draw();
+  drawCurves(frame) {
+    const courses = this.chosen.shownCourses;
+    if (this.data.count < 2 || !courses.length) return;
+    const { axis } = this.chosen;
+    const band = this.bandOf(this.chosen, courses);
+    this.panel = drawCurve(by("curve"), this.data, courses, axis, band, frame, this.colours, this.labels.curve);
+    tellCurve(courses[0], frame, axis.label);
+    tellGoverning(band, courses[0], this.change);
+  }
+
+  /** End it. @returns {object} what the next case takes over */
+  leave() {
+    const { view, player, chosen } = this;
+    const { playing } = player;
+    const place = { label: chosen.axis.label, at: chosen.axis.values[player.frame] };
+    player.halt();
+    this.ended.abort();
+    this.size.disconnect();
+    return { view, player, chosen, place, tab: this.tab(), playing };
+  }
 }
 
-if (typeof DecompressionStream === "undefined") {
-  by("old").hidden = false;
-} else {
-  const run = numberOf("case", 0);
-  readData(by("data").textContent, run).then((found) => begin(found, run));
+/** Show the load cases, each in a fresh copy of the page's main part. @param {object[]} runs */
+function showCases(runs) {
+  const blank = document.querySelector("main").cloneNode(true);
+  let shown = null;
+  const change = (run, frame) => {
+    const before = shown?.leave() ?? {};
+    if (shown) document.querySelector("main").replaceWith(blank.cloneNode(true));
+    by("case").value = String(run);
+    shown = new ShownCase(runs, run, Object.assign(before, { frame }), change);
+  };
+  const first = Math.min(numberOf("case", 0), runs.length - 1);
+  listenToCases(runs, first, (run) => change(run));
+  change(first, numberOf("frame", runs[first].worst));
 }
+
+if (typeof DecompressionStream === "undefined") by("old").hidden = false;
+else readData(by("data").textContent).then(showCases);

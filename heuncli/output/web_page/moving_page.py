@@ -15,14 +15,12 @@ from heuncli.output.machine_geometry.poses import extract_poses
 from heuncli.output.machine_geometry.views import find_motion_plane
 from heuncli.output.tables.heading import make_heading
 from heuncli.output.tables.table_plans import SECTIONS
-from heuncli.output.web_page.acting import make_acting_loads
-from heuncli.output.web_page.cuts import make_sections
-from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_frames, resample_at_frames
+from heuncli.output.web_page.drawn_loads import make_acting_loads, make_sections
+from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_frames, find_peaks, resample_at_frames
 from heuncli.output.web_page.geometry import make_page_machine, make_page_scene
 from heuncli.output.web_page.number_rows import make_blocks, make_impact_page_tables, split_heading
 from heuncli.output.web_page.packing import pack_exact
 from heuncli.output.web_page.page_assembly import FILM_SCRIPT, assemble_page
-from heuncli.output.web_page.peaks import find_peaks
 from heuncli.results.results import Array, Results
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import Labels, make_labels

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,6 @@ from heuncli.study.quantities.channels import (
     Channel,
     iter_channels,
     iter_impulse_channels,
-    make_section_channels,
 )
 from heuncli.study.quantities.digits import StatedErrors, Style, largest_magnitude
 from heuncli.study.quantities.labels import Labels
@@ -210,26 +209,3 @@ def is_zero(channel: Channel, style: Style, certain: StatedErrors) -> bool:
     """Return whether a channel shows 0 at all instants."""
     largest = certain.units.find(channel.unit)[1] * float(np.abs(channel.values).max(initial=0.0))
     return not np.isnan(channel.values).any() and style.write(largest) == "0"
-
-
-def make_section_loads(
-    name: str, section: Mapping[str, Any], labels: Labels, certain: StatedErrors
-) -> list[dict[str, Any]]:
-    """Make the rows of a section's forces and stresses, each (n_t, n_cuts), without those that show 0 everywhere.
-
-    Rows of one family (forces; moments) have the same decimals.
-    """
-    channels = make_section_channels(name, section)
-    styles = choose_styles(channels, np.zeros((0, len(channels))), certain)
-    scales: dict[str, float] = {}
-    for channel in channels:
-        scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest_magnitude(channel.values))
-    loads = []
-    for channel, style in zip(channels, styles, strict=True):
-        if not is_zero(channel, style, certain):
-            loads.append({
-                "path": channel.path, "label": channel.label, "caption": describe_path(channel.path, labels),
-                **choose_shown_style(channel, scales[channel.unit], style, labels, certain),
-                "values": pack_values(channel.values, channel.values[0].size),
-            })  # fmt: skip
-    return loads

@@ -1,12 +1,11 @@
 /** @file The machine on its canvas: bodies and symbols by depth, then arrows and loads, then all words. */
 
-import { cleared } from "./canvases.js";
 import { drawLoad, drawLoadScale } from "./loads.js";
 import { Painter } from "./painter.js";
-import { drawPaths } from "./paths.js";
-import { posesAt, stands } from "./poses.js";
+import { drawPaths, posesAt, stands } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { drawActing, drawMark, nameMark, paintBelt, paintRope } from "./running.js";
+import { cleared } from "./strokes.js";
 import { drawCorner, drawGroundPoint, paintJoint, paintLine, paintPath } from "./symbols.js";
 import { drawArrows, drawScale } from "./wrenches.js";
 

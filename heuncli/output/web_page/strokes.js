@@ -1,4 +1,4 @@
-/** @file What is drawn in pixels on top of a machine: lines, arrows, words. */
+/** @file What is drawn in pixels: canvases as sharp as the screen is, lines, arrows, words. */
 
 /** The font of all words on canvases. */
 export const FONT = '12px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
@@ -110,4 +110,21 @@ function endOn(pen, [x, y], toward, colour, paper) {
       2,
     );
   }
+}
+
+/**
+ * The pen of a canvas, cleared; its units are the pixels of the page.
+ * @param {HTMLCanvasElement} canvas
+ * @returns {{pen: CanvasRenderingContext2D, width: number, height: number}}
+ */
+export function cleared(canvas) {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const fine = window.devicePixelRatio || 1;
+  const [w, h] = [Math.round(width * fine), Math.round(height * fine)];
+  if (canvas.width !== w) canvas.width = w;
+  if (canvas.height !== h) canvas.height = h;
+  const pen = canvas.getContext("2d");
+  pen.setTransform(fine, 0, 0, fine, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return { pen, width, height };
 }

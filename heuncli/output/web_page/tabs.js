@@ -4,9 +4,15 @@ import { by } from "./elements.js";
 
 const TABS = ["summary", "joints", "sections", "all"];
 
-/** Let the tabs choose what is shown. @param {import("./table.js").NumberTable} table @param {() => void} changed */
-export function listenToTabs(table, changed) {
+/**
+ * Let the tabs choose what is shown.
+ * @param {import("./table.js").NumberTable} table @param {() => void} changed @param {string} first shown at first
+ * @returns {() => string} the tab that is chosen
+ */
+export function listenToTabs(table, changed, first = TABS[0]) {
+  let current = first;
   const choose = (chosen) => {
+    current = chosen;
     for (const name of TABS) by(`tab-${name}`).setAttribute("aria-pressed", String(name === chosen));
     by("summary").hidden = chosen !== "summary";
     by("numbers").hidden = by("caption").hidden = chosen === "summary";
@@ -15,20 +21,23 @@ export function listenToTabs(table, changed) {
   };
   for (const name of TABS) by(`tab-${name}`).addEventListener("click", () => choose(name));
   for (const name of ["joints", "sections"]) by(`tab-${name}`).hidden = !table.has(name);
-  choose("summary");
+  choose(by(`tab-${first}`).hidden ? TABS[0] : first);
+  return () => current;
 }
 
-/** Let the load case be chosen; the page is read anew with it. @param {string[]} cases @param {number} run */
-export function listenToCases(cases, run) {
+/** What a load case is called. @param {{case: string}} data */
+export function nameOf(data) {
+  return data.case.replaceAll("_", " ") || "base";
+}
+
+/** Let the load case be chosen. @param {object[]} runs @param {number} run @param {(run: number) => void} change */
+export function listenToCases(runs, run, change) {
   const select = by("case");
-  by("caselabel").hidden = cases.length < 2 && !cases[0];
-  select.replaceChildren(...cases.map((name, k) => new Option(name || "base", String(k))));
+  by("caselabel").hidden = runs.length < 2 && !runs[0].case;
+  select.replaceChildren(...runs.map((data, k) => new Option(nameOf(data), String(k))));
   select.value = String(run);
-  select.disabled = cases.length < 2;
-  select.addEventListener("change", () => {
-    location.hash = `case=${select.value}`;
-    location.reload();
-  });
+  select.disabled = runs.length < 2;
+  select.addEventListener("change", () => change(Number(select.value)));
 }
 
 /** A number of the page's address, behind the #. @param {string} name @param {number} usual */

@@ -57,6 +57,14 @@ export class View {
     }
   }
 
+  /** As another view, of the same machine in another load case. @param {View} other */
+  take({ azimuth, elevation, fitted, zoom, shift, width, height }) {
+    Object.assign(this, { azimuth, elevation });
+    this.turn(0, 0);
+    this.fit();
+    if (!fitted) Object.assign(this, { fitted, zoom, shift, width, height });
+  }
+
   /** From aside and above. */
   oblique() {
     if (this.normal && Math.abs(dot(this.normal, this.up)) < 0.5) {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from heuncli.app.cli.captions import check_text
 from heuncli.app.cli.figure_options import render_text, require_figure_form, require_width
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, save
@@ -14,6 +13,7 @@ from heuncli.app.commands.plot.plot_target import parse_words
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.output.drawing.drawing_files import encode_drawing
 from heuncli.output.drawing.figure import Figure
+from heuncli.study.quantities.given_captions import check_text
 
 
 def main(request: PlotRequest) -> int:

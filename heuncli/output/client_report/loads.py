@@ -1,14 +1,17 @@
-"""The table of points: where joints and bushings act, and their load at the instant of the greatest force."""
+"""The chapter of loads: the points of joints and bushings with their load at the instant of the greatest force, and the
+extremes of foundation, joints, stops, couplings and forces.
+"""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.client_report.cases_table import has_instants
+from heuncli.output.client_report.cases_table import has_instants, make_cases_table
 from heuncli.output.client_report.extremes import (
     DASH,
     MINUS,
@@ -17,9 +20,13 @@ from heuncli.output.client_report.extremes import (
     find_extremes,
     format_instant,
 )
+from heuncli.output.client_report.load_groups import TOTAL, LoadGroup, drop_components, iter_groups
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
-from heuncli.output.documents.document import OutputColumn, OutputTable, TextCell
+from heuncli.output.documents.document import OutputColumn, OutputTable, Part, Sentence, TextCell
 from heuncli.output.machine_geometry.poses import extract_poses
+from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
+from heuncli.output.tables.table_blocks import describe_chosen_components
+from heuncli.output.tables.table_plans import COUPLINGS, FORCES, FOUNDATION, JOINTS, STOPS, TablePlan
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
 from heuncli.scene.file_format.loads import Bushing
@@ -32,6 +39,12 @@ MAX_POINTS = 40
 HEADING = "POINTS  position, and load at the greatest force in each case; {}"
 BUSHING_AXES = "bushings in their own axes"
 PLACE_DECIMALS = {"m": 3, "mm": 1}
+KIND_WORDS = {"joints": "joint", "forces": "bushing"}
+
+NO_JOINTS_NOTE = "No joints, and no connection to the ground."
+ONLY_IMPACTS_NOTE = "Only impulses are requested: see the impulses for the joints and the ground."
+MAGNITUDES_NOTE = "{} {}: only magnitudes of vectors; components: heun run SPEC --format csv"
+SUPPORTS_NOTE = "supports on the ground: the reactions of their joints, with the opposite sign"
 
 
 class HardpointLoad(NamedTuple):
@@ -48,17 +61,19 @@ class HardpointLoad(NamedTuple):
 
 def make_hardpoint_table(data: ReportData) -> OutputTable | None:
     """Make the table of the points of joints and bushings; None if there are none, or too many."""
-    names = {f"joints.{name}": name for name in data.runs[0].results.joints}
-    names |= {f"forces.{name}": name for name, force in data.spec.forces.items() if isinstance(force, Bushing)}
-    if not names or len(names) > MAX_POINTS:
+    things = [("joints", name) for name in data.runs[0].results.joints]
+    things += [("forces", name) for name, force in data.spec.forces.items() if isinstance(force, Bushing)]
+    if not things or len(things) > MAX_POINTS:
         return None
-    loads = [load for prefix, name in names.items() for load in _iter_point_loads(data, prefix, name)]
+    captions = Counter(describe_object(kind, name, data.labels) for kind, name in things)
+    loads = [load for kind, name in things for load in _iter_point_loads(data, kind, name, captions)]
     return _make_table(data, loads) if loads else None
 
 
-def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[HardpointLoad]:
-    """Yield the load of a point in each case, or in the governing one of many."""
-    kind = prefix.partition(".")[0]
+def _iter_point_loads(data: ReportData, kind: str, name: str, captions: Counter[str]) -> Iterator[HardpointLoad]:
+    """Yield the load of a point in each case, or in the governing one of many; captions: how often each occurs."""
+    prefix, words = f"{kind}.{name}", describe_object(kind, name, data.labels)
+    words = f"{KIND_WORDS[kind]} {words}" if captions[words] > 1 else words
     found = []
     for run in data.runs:
         ends = find_extremes(run, f"{prefix}.force")
@@ -72,7 +87,6 @@ def _iter_point_loads(data: ReportData, prefix: str, name: str) -> Iterator[Hard
         moment_ends = find_extremes(run, f"{prefix}.moment") if has_moment else None
         errors = ends.error, moment_ends.error if moment_ends is not None else 0.0
         place = _locate(run, kind, name, k)
-        words = describe_object(kind, name, data.labels)
         found.append((ends.high.value, HardpointLoad(words, run, time, place, force, moment, errors)))
     if len(data.runs) > MAX_CASES and found:
         found = [max(found, key=lambda pair: pair[0])]
@@ -155,3 +169,56 @@ def _format_vector(
 def _find_length(vector: Array) -> float:
     """Return the magnitude of the known components of a vector."""
     return float(np.sqrt(np.nansum(vector * vector)))
+
+
+def make_load_parts(data: ReportData) -> list[Part]:
+    """Make the tables of loads, or a sentence if there are none."""
+    hardpoints = make_hardpoint_table(data)
+    tables: list[Part] = [hardpoints] if hardpoints is not None else []
+    tables += [part for plan in (FOUNDATION, JOINTS, STOPS, COUPLINGS, FORCES) for part in _iter_table(data, plan)]
+    tables.sort(key=lambda table: isinstance(table, OutputTable) and table.fill == "half")
+    tables = gather_notes(tables)
+    if not any(data.runs[0].results.joints) and not data.spec.joints:
+        return tables or [Sentence(NO_JOINTS_NOTE)]
+    return tables or [Sentence(ONLY_IMPACTS_NOTE)]
+
+
+def gather_notes(parts: Sequence[Part]) -> list[Part]:
+    """Gather the notes that stand below several tables: once, below the last."""
+    notes = [note for part in parts if isinstance(part, OutputTable) for note in part.notes]
+    shared = [note for note in dict.fromkeys(notes) if notes.count(note) > 1]
+    if not shared:
+        return list(parts)
+    own = [
+        part._replace(notes=[note for note in part.notes if note not in shared])
+        if isinstance(part, OutputTable)
+        else part
+        for part in parts
+    ]
+    return [*own, OutputTable("", notes=shared)]
+
+
+def _iter_table(data: ReportData, plan: TablePlan) -> Iterator[Part]:
+    """Yield the table of one kind of results, if the scene has it. What stands in another table is left out: supports
+    of the foundation, components of bushings.
+    """
+    groups = list(iter_groups(data, plan))
+    if not groups:
+        return
+    notes = []
+    if plan.kind == "joints":
+        notes = list(dict.fromkeys(note for run in data.runs for note in describe_chosen_components(run.results)))
+    if plan is FOUNDATION:
+        notes = [SUPPORTS_NOTE] if len(groups) > 1 else []
+        groups = [group._replace(name="total") for group in groups if group.name == TOTAL]
+    if plan is FORCES:
+        groups = [_shorten_bushing(data, group) for group in groups]
+    if len(groups) > MAX_FULL_GROUPS:
+        groups = [drop_components(group) for group in groups]
+        notes.append(MAGNITUDES_NOTE.format(len(groups), f"{plan.what or 'support'}s"))
+    yield make_cases_table(data, plan.heading(data.runs[0].results, data.labels), groups, notes)
+
+
+def _shorten_bushing(data: ReportData, group: LoadGroup) -> LoadGroup:
+    """Drop the components of a bushing, which stand in the table of points."""
+    return drop_components(group) if isinstance(data.spec.forces.get(group.key), Bushing) else group

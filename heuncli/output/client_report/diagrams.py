@@ -1,4 +1,6 @@
-"""The chapter of histories: the most loaded joints, couplings and forces over time or over the crank angle."""
+"""The chapters of diagrams: the most loaded joints, couplings and forces over time or over the crank angle, and polar
+diagrams of the joints of a machine that turns all around.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from heuncli.base.joint_kinds import TYPES
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.client_report.extremes import GreatestOfCases, choose_family, find_extremes, format_instant
@@ -17,9 +20,12 @@ from heuncli.output.client_report.summary_table import ReportedLoad, find_crank,
 from heuncli.output.documents.document import Drawing, Part
 from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, Trace
 from heuncli.output.drawing.ticks import choose_ends
-from heuncli.output.figures.courses import choose_instants, is_claimed
+from heuncli.output.figures.courses import FigureSource, choose_instants, is_claimed
+from heuncli.output.figures.polar import make_polar_figure
+from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
+from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object, describe_path
 from heuncli.study.quantities.labels import Labels
 
@@ -28,15 +34,23 @@ MAX_CURVES = 4  # cases in one panel; of more, the governing one
 MAX_ALIKE = 4  # names in a title
 ALIKE = 0.01  # of their greatest value: loads whose extremes agree to it share a panel
 MAX_SEARCH_INSTANTS = 400  # of the search's instants in a curve
-HEIGHT = 106.0  # pixels
+HEIGHT = 98.0  # pixels
 MARGIN = 0.12  # above a curve, for its words
+
+MAX_DIAGRAMS = 2
+POLAR_HEIGHT = 182.0  # pixels
+LABEL_STEP = 180  # degrees between the labels of marks, at half the width of a sheet
+MIN_WIDTH = 0.1  # of a curve of tips, beside its length: a narrower one says no more than a history
 
 
 class SharedPanel(NamedTuple):
-    """A load with a panel, and the names of others whose extremes agree with its own."""
+    """A load with a panel, and the names of others whose extremes agree with its own; kind: before its name, where
+    needed.
+    """
 
     greatest: GreatestOfCases
     names: Sequence[str]
+    kind: str = ""
 
 
 @record
@@ -97,7 +111,7 @@ def _share_panels(lines: Sequence[ReportedLoad]) -> list[SharedPanel]:
             continue
         same = next((k for k, panel in enumerate(panels) if _are_alike(panel.greatest, greatest)), None)
         if same is None:
-            panels.append(SharedPanel(greatest, [line.name, *line.alike]))
+            panels.append(SharedPanel(greatest, [line.name, *line.alike], line.kind))
         else:
             panels[same] = panels[same]._replace(names=[*panels[same].names, line.name, *line.alike])
     return panels
@@ -113,7 +127,7 @@ def _are_alike(first: GreatestOfCases, second: GreatestOfCases) -> bool:
 
 def _make_caption(data: ReportData, panel: SharedPanel) -> str:
     """Make the caption: what is drawn, and what else is alike."""
-    words = describe_load(panel.greatest.path, data.labels)
+    words = f"{panel.kind} {describe_load(panel.greatest.path, data.labels)}".strip()
     names = panel.names[1:]
     if not names:
         return words
@@ -165,3 +179,64 @@ def _mark_greatest(
         where = f"{x:.0f}°" if crank is not None else f"{format_instant(time, course.run)} s"
         if math.isfinite(value):
             yield Spot(x, value, f"{greatest.family.style.write(greatest.value)} at {where}", k, is_filled=True)
+
+
+def _is_on_a_line(run: ReportedRun, path: str) -> bool:
+    """Return whether a force has little more than one direction: its components vary along one axis alone."""
+    ends = [find_extremes(run, f"{path}.{axis}") for axis in XYZ]
+    spans = sorted(max(each.values) - min(each.values) for each in ends if each is not None and each.values)
+    return len(spans) < len(XYZ) or spans[1] < MIN_WIDTH * spans[2]
+
+
+def _is_firing(item: Item) -> bool:
+    return isinstance(item, Spot) and item.shape == "diamond"
+
+
+def _is_largest(item: Spot) -> bool:
+    return item.is_filled and item.shape == "circle"
+
+
+def _shorten_panel(panel: Panel) -> Panel:
+    """Return a panel for half the width: fewer labels of marks; the greatest load and firings are in the caption."""
+    items = []
+    for item in panel.items:
+        if isinstance(item, Spot):
+            angle = item.text.removesuffix("°")
+            is_dropped = item.is_filled or (angle.isdigit() and int(angle) % LABEL_STEP != 0)
+            item = item._replace(text="") if is_dropped else item
+        items.append(item)
+    return panel._replace(height=min(panel.height, POLAR_HEIGHT), items=tuple(items))
+
+
+def make_polar_parts(data: ReportData) -> list[Part]:
+    """Make the polar diagrams of the most loaded joints that turn, each in its governing case."""
+    if find_crank(data) is None:
+        return []
+    parts: list[Part] = []
+    for line in list_loads(data):
+        greatest = line.greatest
+        kind, _, rest = greatest.path.partition(".")
+        name, _, quantity = rest.partition(".")
+        if greatest.is_steady or kind != "joints" or quantity != "force":
+            continue
+        if _is_on_a_line(greatest.run, greatest.path):
+            continue
+        if "angle" not in TYPES[data.labels.joints[name].type].coordinates or not is_claimed(greatest.run.study):
+            continue
+        try:
+            figure = make_polar_figure([FigureSource("", greatest.run.study)], [greatest.path], data.units)
+        except NotDrawable:
+            continue
+        case = f", load case {greatest.run.case_label}" if greatest.run.name else ""
+        firing = ", filled: peaks of actuators" if any(map(_is_firing, figure.panels[0].items)) else ""
+        spots = [item for item in figure.panels[0].items if isinstance(item, Spot)]
+        largest = next((spot.text for spot in spots if _is_largest(spot)), "")
+        words = describe_object("joints", name, data.labels)
+        caption = f"{words}: force{case}{f', greatest {largest}' if largest else ''}; marks: crank angle{firing}"
+        figure = figure._replace(
+            title="", words=(), legend=(), notes=(), panels=list(map(_shorten_panel, figure.panels))
+        )
+        parts.append(Drawing(figure, caption, HALF_WIDTH, "half"))
+        if len(parts) == MAX_DIAGRAMS:
+            break
+    return parts
