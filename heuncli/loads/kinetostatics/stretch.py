@@ -108,6 +108,9 @@ class Stretch:
         if not moving:
             return self.fixed_cuts
         heights = np.clip(np.stack(moving, axis=1), self.corners[0], self.corners[-1])
+        rounding = tolerances.SUM_ROUNDING * np.abs(self.corners).max()
+        if len(heights) and np.ptp(heights, axis=0).max() <= rounding:
+            return self.make_node_cuts(self.add_corners(heights[0]))
         corners = np.broadcast_to(self.corners, (len(heights), len(self.corners)))
         return self.make_node_cuts(np.sort(np.concatenate([corners, heights], axis=1), axis=1))
 
@@ -115,6 +118,13 @@ class Stretch:
     def fixed_cuts(self) -> Cuts:
         """The cuts at the nodes where nothing moves over the body."""
         return self.make_node_cuts(self.corners)
+
+    def add_corners(self, heights: Array) -> Array:
+        """Return the corners (m,), with those of loads that stay at heights, as of gears on a turning shaft."""
+        closest = CORNER_DISTANCE * self.cuts.plane_tolerance
+        is_new = np.abs(heights[:, None] - self.corners).min(axis=1) > closest
+        added = np.sort(heights[is_new])
+        return np.sort(np.append(self.corners, added[np.append(True, np.diff(added) > closest)[: len(added)]]))
 
     def make_node_cuts(self, corners: Array) -> Cuts:
         """Make the cuts at the nodes between corners, (m,) or (n_t, m).
@@ -246,8 +256,8 @@ def find_highest_of_pieces(q: Array, fine: Array) -> StretchPeaks:
 
     A sample is below its summit by κ/8 at most, κ being the bend of the parabola through it and its neighbours, at
     equal steps of arccos x. Each piece that may so reach the highest sample is followed to its summit: chosen by
-    samples alone, the piece changes by rounding where two have equal ones, and with it the value. Where summits are equal
-    but for rounding, the piece with the highest sample is named.
+    samples alone, the piece changes by rounding where two have equal ones, and with it the value. Of summits that are
+    equal but for rounding, that with the highest sample is returned.
     """
     instants, last = np.arange(len(fine)), fine.shape[2] - 1
     place = np.argmax(fine, axis=2)[..., None]

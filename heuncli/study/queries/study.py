@@ -222,7 +222,7 @@ class Study:
         """Return the recovery at some instants of the run, (n,) ascending, from the cache or anew; setup: with other
         cuts.
 
-        keep: cache it for the next search, which begins at the same instants
+        keep: cache it for the next search or figure, which begins at the same instants
         """
         key = times.tobytes(), SHARES in reports
         recovery = self.recovery_cache.get(key)
@@ -230,6 +230,9 @@ class Study:
             recovery = self._recovery(times, reports)
             if keep:
                 self.recovery_cache[key] = recovery
+                counts = [len(own.solutions.times) for own in self.recovery_cache.values()]
+                while len(counts) > 1 and sum(counts) > self.chunk_size:
+                    del self.recovery_cache[next(iter(self.recovery_cache))], counts[0]
         return recovery if setup is None else recovery.with_cuts(setup)
 
     @cached_property
