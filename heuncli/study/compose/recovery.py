@@ -71,11 +71,12 @@ class Recovery:
     state_instants: ComparedInstants | None = None
 
     def with_cuts(self, setup: Setup) -> Recovery:
-        """Return the same with the cuts of another setup; what was computed stays, and what all cuts need is computed
-        here, once for all of them.
-        """
-        _ = self.loads, self.joints, self.couplings
+        """Return the same with the cuts of another setup; what was computed stays."""
         return self._share_computed(replace(self, setup=setup), INDEPENDENT_OF_CUTS)
+
+    def compute_loads(self) -> None:
+        """Compute the loads that all cuts need, so that recoveries with other cuts share them."""
+        _ = self.loads, self.joints, self.couplings
 
     def select(self, mask: Mask) -> Recovery:
         """Return the recovery of some of the instants."""
