@@ -43,6 +43,16 @@ def spend_effort(effort: int) -> bool:
     return True
 
 
+def remaining_effort() -> int:
+    """Return the effort left for this file."""
+    return _EffortBudget.remaining
+
+
+def restore_effort(effort: int) -> None:
+    """Give back the effort spent since it was this: what it was spent on is done again."""
+    _EffortBudget.remaining = effort
+
+
 def find_similar(word: str, *candidates: Collection[str]) -> str | None:
     """Return the known word most similar to `word`; None if none is similar or the effort is used up."""
     if len(word) > MAX_WORD_LENGTH or not spend_effort(sum(map(len, candidates)) * (len(word) + WORD_OVERHEAD) ** 2):

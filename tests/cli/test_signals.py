@@ -56,7 +56,10 @@ def shot(number: int, where: str, folder: Path) -> subprocess.CompletedProcess[s
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("where", ["heuncli.app.cli.entry", "yaml", "pydantic_core", "numpy", "heuncli.study.workflow"])
+@pytest.mark.parametrize(
+    "where",
+    ["heuncli.app.cli.entry", "yaml", "heuncli.scene.file_format.plain_reading", "numpy", "heuncli.study.workflow"],
+)
 def test_an_interrupt_while_something_is_imported(folder: Path, where: str) -> None:
     done = shot(signal.SIGINT, where, folder)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "heun: interrupted\n")

@@ -15,7 +15,7 @@ from pydantic_core import ValidationError
 import heuncli
 from heuncli.base.errors import Finding, SpecError
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.file_format import document
+from heuncli.scene.file_format import document, entries
 from heuncli.scene.file_format.entries import Entry, fields_of, validate_entry
 from heuncli.scene.file_format.fields import ReadContext
 from heuncli.scene.file_format.json_schema import make_model
@@ -100,6 +100,15 @@ def test_as_models_of_pydantic_do(path: Path, monkeypatch: pytest.MonkeyPatch) -
         for given in (data, *(changed(data, draw) for _ in range(5))):
             own = outcome(lambda: validate_entry(model, given, context))  # noqa: B023
             assert own == outcome(lambda: make_model(model).model_validate(given, context=context)), given  # noqa: B023
+
+
+@pytest.mark.parametrize("path", sorted(SPECS.glob("*.yaml")), ids=lambda path: path.stem)
+def test_a_spec_without_errors_is_read_without_pydantic(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def judging(model: type[Entry]) -> Any:
+        raise AssertionError(f"{model.__name__} is not read without a doubt")
+
+    monkeypatch.setattr(entries, "make_validator", judging)
+    load(path)
 
 
 def kinds() -> Iterator[type[Entry]]:

@@ -40,6 +40,8 @@ NEWTON_STEPS = (
     3  # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
 )
 
+MAX_RISE_PER_BEND = 0.25  # of a bend, from a sample to its summit: twice what a parabola rises
+
 
 def chebyshev_polynomials(x: Array) -> Array:
     """Return T_0(x) to T_8(x), on a new last axis."""
@@ -106,6 +108,9 @@ class Stretch:
         if not moving:
             return self.fixed_cuts
         heights = np.clip(np.stack(moving, axis=1), self.corners[0], self.corners[-1])
+        rounding = tolerances.SUM_ROUNDING * np.abs(self.corners).max()
+        if len(heights) and np.ptp(heights, axis=0).max() <= rounding:
+            return self.make_node_cuts(self.add_corners(heights[0]))
         corners = np.broadcast_to(self.corners, (len(heights), len(self.corners)))
         return self.make_node_cuts(np.sort(np.concatenate([corners, heights], axis=1), axis=1))
 
@@ -113,6 +118,13 @@ class Stretch:
     def fixed_cuts(self) -> Cuts:
         """The cuts at the nodes where nothing moves over the body."""
         return self.make_node_cuts(self.corners)
+
+    def add_corners(self, heights: Array) -> Array:
+        """Return the corners (m,), with those of loads that stay at heights, as of gears on a turning shaft."""
+        closest = CORNER_DISTANCE * self.cuts.plane_tolerance
+        is_new = np.abs(heights[:, None] - self.corners).min(axis=1) > closest
+        added = np.sort(heights[is_new])
+        return np.sort(np.append(self.corners, added[np.append(True, np.diff(added) > closest)[: len(added)]]))
 
     def make_node_cuts(self, corners: Array) -> Cuts:
         """Make the cuts at the nodes between corners, (m,) or (n_t, m).
@@ -208,6 +220,13 @@ def _is_polynomial(cuts: Cuts, a: Array, b: Array) -> Mask:
     return np.asarray(errors.max(axis=(1, 2)) <= tolerances.QUADRATURE * 1e3)
 
 
+class Summits(NamedTuple):
+    """The highest values of pieces (n,): their heights, and positions in the pieces, -1 to 1."""
+
+    height: Array
+    position: Array
+
+
 class StretchPeaks(NamedTuple):
     """The highest value along a stretch at each instant (n_t,): its height, piece, and position in the piece, -1 to
     1.
@@ -226,18 +245,38 @@ def find_peaks(values: Array) -> tuple[StretchPeaks, StretchPeaks]:
     q = values.reshape(len(values), -1, DEGREE + 1)
     is_unknown = np.asarray(np.isnan(values).any(axis=1))
     q = np.where(is_unknown[:, None, None], 0.0, q) if is_unknown.any() else q
-    fine = (q @ TO_FINE).reshape(len(q), -1)
-    peaks = [find_highest(side * q, np.argmax(side * fine, axis=1)) for side in (-1.0, 1.0)]
-    low, high = (one._replace(height=np.where(is_unknown, np.nan, one.height)) for one in peaks)
+    fine = q @ TO_FINE
+    low, high = (find_highest_of_pieces(side * q, side * fine) for side in (-1.0, 1.0))
+    low, high = (one._replace(height=np.where(is_unknown, np.nan, one.height)) for one in (low, high))
     return low, high
 
 
-def find_highest(q: Array, start_indices: Indices) -> StretchPeaks:
-    """Find the highest value of the polynomials with the heights q at the nodes of pieces, starting from their highest
-    of FINE.
+def find_highest_of_pieces(q: Array, fine: Array) -> StretchPeaks:
+    """Find the highest value along all pieces, from the heights at their nodes, (n_t, m, 9), and at FINE, (n_t, m, 33).
+
+    A sample is below its summit by κ/8 at most, κ being the bend of the parabola through it and its neighbours, at
+    equal steps of arccos x. Each piece that may so reach the highest sample is followed to its summit: chosen by
+    samples alone, the piece changes by rounding where two have equal ones, and with it the value. Of summits that are
+    equal but for rounding, that with the highest sample is returned.
     """
-    piece, place = np.divmod(start_indices, len(FINE))
-    c = q[np.arange(len(q)), piece] @ TO_COEFFICIENTS.T
+    instants, last = np.arange(len(fine)), fine.shape[2] - 1
+    place = np.argmax(fine, axis=2)[..., None]
+    before, after = np.abs(place - 1), last - np.abs(last - place - 1)
+    tops, a, b = (np.take_along_axis(fine, k, axis=2)[..., 0] for k in (place, before, after))
+    highest = np.argmax(tops, axis=1)
+    may_be_higher = tops + MAX_RISE_PER_BEND * (2.0 * tops - a - b) > tops[instants, highest][:, None]
+    may_be_higher[instants, highest] = True
+    instant, piece = np.nonzero(may_be_higher)
+    summit = find_highest(q[instant, piece], place[instant, piece, 0])
+    margin = np.where(piece == highest[instant], 0.0, tolerances.SUM_ROUNDING * np.abs(summit.height))
+    order = np.lexsort((margin - summit.height, instant)) if len(instant) > len(instants) else instants
+    first = order[np.searchsorted(instant[order], instants)]
+    return StretchPeaks(summit.height[first], piece[first], summit.position[first])
+
+
+def find_highest(q: Array, place: Indices) -> Summits:
+    """Find the highest values of polynomials, (n,), near places of FINE, from the heights at their nodes, (n, 9)."""
+    c = q @ TO_COEFFICIENTS.T
     first, second = c @ DERIVATIVE.T, c @ (DERIVATIVE @ DERIVATIVE).T
     low, high = FINE[np.maximum(place - 1, 0)], FINE[np.minimum(place + 1, len(FINE) - 1)]
     start = x = FINE[place]
@@ -248,4 +287,4 @@ def find_highest(q: Array, start_indices: Indices) -> StretchPeaks:
             x = np.clip(np.where(bend < 0.0, x - slope / bend, x), low, high)
     before, after = (np.sum(chebyshev_polynomials(position) * c, axis=1) for position in (start, x))
     is_better = after > before
-    return StretchPeaks(np.where(is_better, after, before), piece, np.where(is_better, x, start))
+    return Summits(np.where(is_better, after, before), np.where(is_better, x, start))

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pydantic_core import ValidationError
-
 from heuncli.base.spelling import match_misspelt_keys
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import Entry, fields_of, keys_of, validate_entry
 from heuncli.scene.file_format.fields import ReadContext
 from heuncli.scene.file_format.foreign_words import FORM_HINTS
-from heuncli.scene.file_format.pydantic_errors import missing_type_errors, translate_errors, unknown_key_error
+from heuncli.scene.file_format.pydantic_errors import (
+    missing_type_errors,
+    require_validation_error,
+    translate_errors,
+    unknown_key_error,
+)
 from heuncli.scene.file_format.quantity import describe_kind
 from heuncli.scene.file_format.rules.registry import Path_, Violation
 
@@ -40,7 +43,8 @@ class DocumentReader:
         """
         try:
             return validate_entry(model, data, self.context)
-        except ValidationError as error:
+        except ValueError as refusal:
+            error = require_validation_error(refusal)
             for code, violation in translate_errors(error, data, model):
                 self.report(code, violation._replace(path=(*path, *violation.path)))
             return self.read_remainder(path, data, model, {str(e["loc"][0]) for e in error.errors() if e["loc"]})
@@ -54,7 +58,7 @@ class DocumentReader:
         right = {key: value for key, value in data.items() if key not in wrong}
         try:
             entry = validate_entry(model, {**match_misspelt_keys(data, keys_of(model)), **right}, self.context)
-        except ValidationError:
+        except ValueError:
             return None
         self.partial[path] = frozenset(right)
         return entry

@@ -1,9 +1,9 @@
-"""The base class of the format's entries, whose annotations are its keys, and its validation by pydantic_core.
+"""The base class of the format's entries, whose annotations are its keys, and its validation.
 
-To its users an Entry behaves like a frozen pydantic model, and pydantic_core validates it. But pydantic builds a class
-and a validator for each of sixty kinds at import; with its own modules that is a third of a small run. Here a kind
-costs nothing until its first entry is read. Where real pydantic models are needed, `pydantic_models` makes them from
-the same classes.
+To its users an Entry behaves like a frozen pydantic model. Its schema is one of pydantic_core, by which an entry is
+judged that is not read without a doubt (scene/file_format/plain_reading.py): a spec without errors does not import
+pydantic_core, a fifth of a small run. A kind costs nothing until its first entry is read. Where real pydantic models
+are needed, `pydantic_models` makes them from the same classes.
 
 The markers in an annotation follow pydantic's protocol (`__get_pydantic_core_schema__`), so that both understand them.
 """
@@ -14,11 +14,14 @@ import sys
 import types
 from collections.abc import Callable, Iterator
 from functools import cache
-from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
-from pydantic_core import SchemaValidator, core_schema
-
+from heuncli.base import spelling
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.scene.file_format.plain_reading import CoreSchema, DoubtfulError, Reader, ReadInfo, make_reader
+
+if TYPE_CHECKING:
+    from pydantic_core import SchemaValidator
 
 # Entries
 
@@ -136,9 +139,9 @@ class OneOf:
     def __init__(self, tag_of: Callable[[Any], str]) -> None:
         self.tag_of = tag_of
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         choices = {tag: handler.generate_schema(form) for tag, form in iter_tagged_forms(source)}
-        return core_schema.tagged_union_schema(choices, discriminator=self.tag_of)
+        return {"type": "tagged-union", "choices": choices, "discriminator": self.tag_of}
 
 
 def iter_tagged_forms(union: Any) -> Iterator[tuple[str, Any]]:
@@ -153,13 +156,14 @@ class Preprocessor:
     def __init__(self, function: Callable[[Any, Any], Any]) -> None:
         self.function = function
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        return core_schema.with_info_before_validator_function(self.function, handler(source))
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        function = {"type": "with-info", "function": self.function}
+        return {"type": "function-before", "function": function, "schema": handler(source)}
 
 
 # Validation
 
-Schemas = dict[Any, core_schema.CoreSchema]
+Schemas = dict[Any, CoreSchema]
 
 
 def validate_entry(model: type[E], data: Any, context: Any) -> E:
@@ -167,14 +171,28 @@ def validate_entry(model: type[E], data: Any, context: Any) -> E:
 
     context: what its values may refer to
     """
-    entry: E = make_validator(model).validate_python(data, context=context)
+    effort = spelling.remaining_effort()
+    try:
+        entry: E = make_plain_reader(model)(data, ReadInfo(context))
+    except DoubtfulError:
+        spelling.restore_effort(effort)
+        entry = make_validator(model).validate_python(data, context=context)
     return entry
+
+
+@cached_by_model
+def make_plain_reader(model: type[Entry]) -> Reader:
+    """Make the reader of a kind of entries without errors."""
+    return make_reader(build_entry_schema(model))
 
 
 @cached_by_model
 def make_validator(model: type[Entry]) -> SchemaValidator:
     """Make the validator of a kind of entries."""
-    return SchemaValidator(build_entry_schema(model))
+    from pydantic_core import SchemaValidator  # for entries with errors alone
+
+    schema: Any = build_entry_schema(model)
+    return SchemaValidator(schema)
 
 
 class SchemaBuilder:
@@ -182,17 +200,17 @@ class SchemaBuilder:
 
     def __init__(self) -> None:
         self.schemas: Schemas = {  # markers define the schemas of all other types
-            Any: core_schema.any_schema(), str: core_schema.str_schema(), int: core_schema.int_schema()
+            Any: {"type": "any"}, str: {"type": "str"}, int: {"type": "int"}
         }  # fmt: skip
 
-    def __call__(self, annotation: Any) -> core_schema.CoreSchema:
+    def __call__(self, annotation: Any) -> CoreSchema:
         if annotation not in self.schemas:
             self.schemas[annotation] = self.build_schema(annotation)
         return self.schemas[annotation]
 
     generate_schema = __call__
 
-    def build_schema(self, annotation: Any) -> core_schema.CoreSchema:
+    def build_schema(self, annotation: Any) -> CoreSchema:
         """Build the schema of a new annotation. Raises TypeError for a type that values of a spec do not have."""
         origin, parts = get_origin(annotation), get_args(annotation)
         if origin is Annotated:
@@ -200,52 +218,55 @@ class SchemaBuilder:
         if origin in (Union, types.UnionType):
             return self.build_union_schema(parts)
         if origin is Literal:
-            return core_schema.literal_schema([*parts])
+            return {"type": "literal", "expected": [*parts]}
         if origin is tuple:
-            return core_schema.tuple_schema([*map(self, parts)])
+            return {"type": "tuple", "items_schema": [*map(self, parts)]}
         if origin is list:
-            return core_schema.list_schema(self(parts[0]))
+            return {"type": "list", "items_schema": self(parts[0])}
         if origin is dict:
-            return core_schema.dict_schema(*map(self, parts))
+            keys, values = map(self, parts)
+            return {"type": "dict", "keys_schema": keys, "values_schema": values}
         if isinstance(annotation, type) and issubclass(annotation, Entry):
             return build_entry_schema(annotation)
         raise TypeError(f"{annotation}: a type that the format has no reading for")
 
-    def build_union_schema(self, parts: tuple[Any, ...]) -> core_schema.CoreSchema:
+    def build_union_schema(self, parts: tuple[Any, ...]) -> CoreSchema:
         """Build the schema of one of several types, or null."""
         schemas = [self(part) for part in parts if part is not types.NoneType]
-        combined = schemas[0] if len(schemas) == 1 else core_schema.union_schema([*schemas])
-        return core_schema.nullable_schema(combined) if len(schemas) < len(parts) else combined
+        combined = schemas[0] if len(schemas) == 1 else {"type": "union", "choices": schemas}
+        return {"type": "nullable", "schema": combined} if len(schemas) < len(parts) else combined
 
 
 schema_of = SchemaBuilder()
 
 
-def build_marked_schema(annotation: Any, markers: tuple[Any, ...]) -> core_schema.CoreSchema:
+def build_marked_schema(annotation: Any, markers: tuple[Any, ...]) -> CoreSchema:
     """Build the schema of a type by its one marker that defines a schema, if any."""
     readers = [mark for mark in markers if hasattr(mark, "__get_pydantic_core_schema__")]
     if not readers:
         return schema_of(annotation)
     (reader,) = readers
-    schema: core_schema.CoreSchema = reader.__get_pydantic_core_schema__(annotation, schema_of)
+    schema: CoreSchema = reader.__get_pydantic_core_schema__(annotation, schema_of)
     return schema
 
 
-def build_entry_schema(model: type[Entry]) -> core_schema.CoreSchema:
+def build_entry_schema(model: type[Entry]) -> CoreSchema:
     """Build the schema of an entry: its keys and no others."""
     keys = {name: build_field_schema(field) for name, field in fields_of(model).items()}
-    inner: core_schema.CoreSchema = core_schema.model_fields_schema(keys, model_name=model.__name__)
+    inner: CoreSchema = {"type": "model-fields", "fields": keys, "model_name": model.__name__}
     if model.before.__func__ is not Entry.before.__func__:  # type: ignore[attr-defined]
-        inner = core_schema.no_info_before_validator_function(model.before, inner)
-    config = core_schema.CoreConfig(title=model.__name__, extra_fields_behavior="forbid")
-    return core_schema.model_schema(model, inner, config=config)
+        function = {"type": "no-info", "function": model.before}
+        inner = {"type": "function-before", "function": function, "schema": inner}
+    config = {"title": model.__name__, "extra_fields_behavior": "forbid"}
+    return {"type": "model", "cls": model, "schema": inner, "config": config}
 
 
-def build_field_schema(field: Field) -> core_schema.ModelField:
+def build_field_schema(field: Field) -> CoreSchema:
     """Build the schema of a key with its default."""
     schema = schema_of(field.annotation)
     if field.default_factory is not None:
-        schema = core_schema.with_default_schema(schema, default_factory=field.default_factory)
+        schema = {"type": "default", "schema": schema, "default_factory": field.default_factory}
     elif not field.is_required:
-        schema = core_schema.with_default_schema(schema, default=field.default)
-    return core_schema.model_field(schema, validation_alias=field.alias)
+        schema = {"type": "default", "schema": schema, "default": field.default}
+    alias = {"validation_alias": field.alias} if field.alias is not None else {}
+    return {"type": "model-field", "schema": schema, **alias}

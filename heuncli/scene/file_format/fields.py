@@ -10,8 +10,6 @@ from collections.abc import Collection, Mapping
 from itertools import chain, islice
 from typing import Annotated, Any
 
-from pydantic_core import core_schema
-
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
 from heuncli.base.records import record, replace
@@ -22,6 +20,7 @@ from heuncli.scene.expressions.scope import NO_NAMES
 from heuncli.scene.file_format.entries import Entry, OneOf, Preprocessor, Tag
 from heuncli.scene.file_format.foreign_words import FORM_HINTS
 from heuncli.scene.file_format.labels import MAX_TEXT, check_plain_text
+from heuncli.scene.file_format.plain_reading import CoreSchema
 from heuncli.scene.file_format.quantity import (
     Scope,
     describe_kind,
@@ -54,8 +53,8 @@ class ValueReader:
     def read(self, value: Any, info: Any) -> Any:
         raise NotImplementedError
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        return core_schema.with_info_plain_validator_function(self.read)
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return {"type": "function-plain", "function": {"type": "with-info", "function": self.read}}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         return self.make_json_schema()
@@ -198,8 +197,8 @@ class PlainText(ValueReader):
 class StrictBoolean:
     """`true` or `false`, and nothing that could be taken for them."""
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        return core_schema.bool_schema(strict=True)
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return {"type": "bool", "strict": True}
 
 
 def is_bare_name(value: Any, parameters: Mapping[str, float | None]) -> bool:

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Union, get_args, get_origin
-
-from pydantic_core import ValidationError
+from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
 
 from heuncli.base.errors import Finding
 from heuncli.base.spelling import find_similar, match_misspelt_keys, suggest
@@ -29,6 +27,9 @@ from heuncli.scene.file_format.labels import LABEL
 from heuncli.scene.file_format.quantity import DependentError, describe_kind
 from heuncli.scene.file_format.rules.registry import Path_, Violation
 
+if TYPE_CHECKING:
+    from pydantic_core import ValidationError
+
 # Pydantic errors
 
 KINDS = {  # pydantic's error types for a value of the wrong kind
@@ -37,6 +38,15 @@ KINDS = {  # pydantic's error types for a value of the wrong kind
 }  # fmt: skip
 POINT_KEYS = frozenset({"at", "from", "to", "about"})  # keys of points, given by name or by coordinates
 FORM_NAMES = {"single": "a number", "list": "a list", "rows": "a list of lists", "mapping": "a mapping"}
+
+
+def require_validation_error(error: ValueError) -> ValidationError:
+    """Return an error of `validate_entry` as pydantic's. Raises the error if it is none."""
+    from pydantic_core import ValidationError  # for entries with errors alone
+
+    if isinstance(error, ValidationError):
+        return error
+    raise error
 
 
 def translate_errors(error: ValidationError, data: Any, model: type[Entry]) -> Iterator[tuple[str, Violation]]:
@@ -299,6 +309,6 @@ def _required_keys(model: type[Entry]) -> set[str]:
 def _is_valid(model: type[Entry], data: dict[str, Any], context: Any) -> bool:
     try:
         validate_entry(model, data, context)
-    except ValidationError:
+    except ValueError:
         return False
     return True

@@ -88,7 +88,26 @@ class Box(ThickSolid):
         )
         return np.asarray(P[0])
 
+    def aligned_piece_inertia(self, n: Array, d: Array) -> Array | None:
+        """Compute the pseudo-inertia of pieces cut across one of the box's axes, (k, 4, 4); None for other planes."""
+        local = self.axes.T @ n
+        k = int(np.argmax(np.abs(local)))
+        i, j = (k + 1) % 3, (k + 2) % 3
+        if local[i] != 0.0 or local[j] != 0.0:
+            return None
+        a, b, c = (float(self.half_size[axis]) for axis in (i, j, k))
+        g = np.clip((d - n @ self.center) / abs(float(local[k])), -c, c)
+        volume = 4.0 * a * b * (c - g)
+        first, second = np.zeros((len(d), 3)), np.zeros((len(d), 3, 3))
+        first[:, k] = np.sign(local[k]) * volume * 0.5 * (c + g)
+        second[:, i, i], second[:, j, j] = volume * (a * a / 3.0), volume * (b * b / 3.0)
+        second[:, k, k] = volume * ((c * c + c * g + g * g) / 3.0)
+        return self.pseudo_inertia_from_moments(volume, first, second)
+
     def piece_inertia(self, n: Array, d: Array, side: Array, tolerance: float) -> Array:
+        aligned = self.aligned_piece_inertia(n, d)
+        if aligned is not None:
+            return aligned
         columns = self.divide_into_columns(n, d)
         c = float(self.half_size[columns.order[2]])
         g = np.clip(columns.g, -c, c)

@@ -48,7 +48,7 @@ RANK_REPORTS = SHARED_BLOCKS  # reports that need the rank of the closures
 ENERGY_REPORTS = frozenset({"energy", IMPULSES})  # reports that show energies
 # properties that do not depend on which components are indeterminate
 INDEPENDENT_OF_VERDICTS = frozenset({"states", "kernel_joint_loads", "loads", "energy", "inertia"})
-INDEPENDENT_OF_CUTS = INDEPENDENT_OF_VERDICTS | {"decided", "shares"}
+INDEPENDENT_OF_CUTS = INDEPENDENT_OF_VERDICTS | {"decided", "couplings", "shares"}
 
 
 @record
@@ -73,6 +73,10 @@ class Recovery:
     def with_cuts(self, setup: Setup) -> Recovery:
         """Return the same with the cuts of another setup; what was computed stays."""
         return self._share_computed(replace(self, setup=setup), INDEPENDENT_OF_CUTS)
+
+    def compute_loads(self) -> None:
+        """Compute the loads that all cuts need, so that recoveries with other cuts share them."""
+        _ = self.loads, self.joints, self.couplings
 
     def select(self, mask: Mask) -> Recovery:
         """Return the recovery of some of the instants."""

@@ -231,7 +231,8 @@ class Verdicts(NamedTuple):
     dependent (n_t,): number of dependent closure rows
     holding (n_t, contacts): which contacts are closed
     ordinary (n_t,): whether the pose is not singular
-    open: for each array over the instants the mask of its indeterminate components, None for none
+    open: for each array over the instants the mask of its indeterminate components, None for none; empty if nothing is
+    indeterminate
     """
 
     times: Array
@@ -248,7 +249,9 @@ class VerdictsBetween:
         times, dependent, holding, ordinary = (np.concatenate(x) for x in list(zip(*parts, strict=True))[:4])
         self.times, self.dependent, self.holding = times, dependent, holding
         lengths = [len(part.times) for part in parts]
-        self.open = [concatenate_masks(masks, lengths) for masks in zip(*(part.open for part in parts), strict=True)]
+        count = max((len(part.open) for part in parts), default=0)
+        rows = (part.open or (None,) * count for part in parts)
+        self.open = [concatenate_masks(masks, lengths) for masks in zip(*rows, strict=True)]
         same = ordinary[1:] & ordinary[:-1] & (dependent[1:] == dependent[:-1])
         same &= (holding[1:] == holding[:-1]).all(axis=1)
         for mask in self.open:
@@ -268,6 +271,8 @@ class VerdictsBetween:
 
     def mark_open(self, blocks: dict[str, Any], times: Array) -> None:
         """Mark the indeterminate components in the blocks of instants that this covers, in place."""
+        if all(mask is None for mask in self.open):
+            return
         k = self._find_previous(times)
         for leaf, mask in zip(iter_leaves(blocks), self.open, strict=True):
             if mask is not None:
@@ -296,13 +301,14 @@ def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | Non
         if stress is None
         else stress.count <= recovery.generic_self_stress_count
     )
-    determinate_leaves = list(iter_leaves(make_requested_blocks(recovery.without_indeterminacy_search(), reports)))
-    found: tuple[Mask | None, ...] = (None,) * len(determinate_leaves)
+    found: tuple[Mask | None, ...] = ()
     if decided.remaining_self_stress is not None:
-        leaves_with_open = iter_leaves(make_requested_blocks(recovery, reports))
+        determinate_blocks, blocks = (
+            make_requested_blocks(own, reports) for own in (recovery.without_indeterminacy_search(), recovery)
+        )
         found = tuple(
             find_newly_open(own.block[own.name], other.block[other.name])
-            for own, other in zip(determinate_leaves, leaves_with_open, strict=True)
+            for own, other in zip(iter_leaves(determinate_blocks), iter_leaves(blocks), strict=True)
         )
     return Verdicts(recovered.times, recovered.dependent_count, recovered.holding, ordinary, found)
 

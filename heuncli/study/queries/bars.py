@@ -180,8 +180,14 @@ class WholeBar:
             impulse = next(impulse for impulse in self.study.make_impulse_blocks(setup) if impulse["time"] == time)
             section: Block = impulse["sections"][self.name]
             return {name: np.asarray(section[name]) for name in ("s", *RESULTANTS)}
-        section = self.study.compute_reports(np.array([time]), SECTIONS, setup).sections[self.name]
+        section = self._compute_section(np.array([time]), setup)
         return {"s": np.asarray(section["s"]).reshape(-1)} | {name: section[name][0] for name in RESULTANTS}
+
+    def _compute_section(self, times: Array, setup: Setup) -> Block:
+        """Return its block at some instants; what does not depend on cuts stays for others, also of other bars."""
+        recovery = self.study.find_recovery(times, SECTIONS, setup, keep=True)
+        section: Block = self.study.compose_reports(recovery, SECTIONS).sections[self.name]
+        return section
 
     def make_lines(self, time: float) -> dict[str, BarLine]:
         """Make the lines of all quantities along the bar at an instant."""
@@ -237,10 +243,10 @@ class WholeBar:
         (6, k).
         """
         for _ in range(MAX_HALVINGS):
-            nodes = self.study.compute_reports(times, SECTIONS, self.setup).sections[self.name]
+            nodes = self._compute_section(times, self.setup)
             jumps = extremes.find_jump_sides(times)
             moving = MovingEdges.from_section(nodes, self.corner_tolerance)
-            moving_ends = np.array([] if moving is None else moving.end_places)
+            moving_ends = find_corners(nodes["s"], 0.0) if moving is None else np.array(moving.end_places)
             corners = self.stretch.corners - float(self.stretch.find_height(np.array(0.0)))
             s, side = make_places(np.sort(np.append(corners, moving_ends)), self.corner_tolerance, extra_places)
             smooth = np.broadcast_to(~jumps[:, None], (len(jumps), len(s)))
@@ -249,9 +255,7 @@ class WholeBar:
                 values = {name: nodes[name] @ to_places for name in RESULTANTS}
             else:
                 cuts = make_cuts_at(self.stretch.cuts, s, side)
-                values = self.study.compute_reports(times, SECTIONS, replace(self.setup, cuts=(cuts,))).sections[
-                    self.name
-                ]
+                values = self._compute_section(times, replace(self.setup, cuts=(cuts,)))
                 smooth = smooth & ~moving.find_passes(s, self.corner_tolerance)
             all_bounds = [find_bounds(times, values[name], smooth, self.find_error(name)) for name in RESULTANTS]
             if all(quantity_bounds.is_fine for quantity_bounds in all_bounds) or len(times) > MAX_INSTANTS:

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NONE: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose solutions are in memory at a time
+MAX_RECOVERIES = 64  # cached ones, together of no more instants than a chunk
 RECENT_PARTS = 8  # of such a chunk: the share that stays cached for the next question
 TOO_FEW = "extremes are searched from {} samples: too few to find every peak and jump of this motion"
 CUT_SHORT = "the search for extremes was stopped early: higher values may exist"
@@ -178,10 +179,13 @@ class Study:
 
         The last ones are cached: figures ask for several numbers at the same instants.
         """
+        is_kept = len(times) <= self.chunk_size // RECENT_PARTS
         if setup is not None:
-            return self.compose_reports(self.find_recovery(times, reports, setup), reports)
+            return self.compose_reports(self.find_recovery(times, reports, setup, keep=is_kept), reports)
         key = times.tobytes(), frozenset(reports)
-        found = self._recent_reports.pop(key, None) or self.compose_reports(self.find_recovery(times, reports), reports)
+        found = self._recent_reports.pop(key, None)
+        if found is None:
+            found = self.compose_reports(self.find_recovery(times, reports, keep=is_kept), reports)
         self._recent_reports[key] = found
         counts = [len(own.time) for own in self._recent_reports.values()]
         while sum(counts) > self.chunk_size // RECENT_PARTS:
@@ -222,7 +226,7 @@ class Study:
         """Return the recovery at some instants of the run, (n,) ascending, from the cache or anew; setup: with other
         cuts.
 
-        keep: cache it for the next search, which begins at the same instants
+        keep: cache it for the next search or figure, which begins at the same instants
         """
         key = times.tobytes(), SHARES in reports
         recovery = self.recovery_cache.get(key)
@@ -230,7 +234,14 @@ class Study:
             recovery = self._recovery(times, reports)
             if keep:
                 self.recovery_cache[key] = recovery
-        return recovery if setup is None else recovery.with_cuts(setup)
+                counts = [len(own.solutions.times) for own in self.recovery_cache.values()]
+                while len(counts) > MAX_RECOVERIES or (len(counts) > 1 and sum(counts) > self.chunk_size):
+                    del self.recovery_cache[next(iter(self.recovery_cache))], counts[0]
+        if setup is None:
+            return recovery
+        if "sections" in reports:
+            recovery.compute_loads()
+        return recovery.with_cuts(setup)
 
     @cached_property
     def recovery_cache(self) -> dict[tuple[bytes, bool], Recovery]:

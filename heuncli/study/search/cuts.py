@@ -18,7 +18,7 @@ from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
 from heuncli.loads.kinetostatics.cuts import Cuts, list_attachments, list_distributed_loads
-from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, find_peaks, make_cuts_at, make_stretch
+from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, StretchPeaks, find_peaks, make_cuts_at, make_stretch
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array, Block, CutPosition, Extremes
 from heuncli.results.results_schema import RESULTANTS
 from heuncli.study.compose.recovery import Recovery
@@ -104,14 +104,18 @@ def find_cut_extremes(stretch: Stretch, s: Array, values: Array) -> tuple[CutExt
     """Return the lowest and the highest value along a series of cuts, from the values (9 m,) at the nodes s of its m
     pieces.
     """
-    low, high = compute_envelope(values[None])[0].tolist()
-    places = [stretch.make_place(*locate_summit(s, values, side)[:2]) for side in (-1.0, 1.0)]
-    return CutExtreme(low + 0.0, places[0]), CutExtreme(high + 0.0, places[1])
+    low, high = find_peaks(values[None])
+    places = [stretch.make_place(*locate_peak(s, peak)[:2]) for peak in (low, high)]
+    return CutExtreme(-float(low.height[0]) + 0.0, places[0]), CutExtreme(float(high.height[0]) + 0.0, places[1])
 
 
 def locate_summit(s: Array, values: Array, side: float) -> tuple[float, float, tuple[float, float]]:
     """Locate the highest (side 1) or lowest (-1) of values at nodes (9 m,): distance, side, ends of its piece."""
-    top = find_peaks(values[None])[side > 0.0]
+    return locate_peak(s, find_peaks(values[None])[side > 0.0])
+
+
+def locate_peak(s: Array, top: StretchPeaks) -> tuple[float, float, tuple[float, float]]:
+    """Locate a peak of one instant along pieces with nodes s: distance, side, ends of its piece."""
     k, x = int(top.piece[0]) * (DEGREE + 1), float(top.position[0])
     a, b = float(s[k]), float(s[k + DEGREE])
     if x in (-1.0, 1.0):
