@@ -23,6 +23,7 @@ from heuncli.base import tolerances
 from heuncli.base.linear_algebra import count_rank
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.islands import AssemblyIsland
+from heuncli.multibody.assembly.loop_bounds import bound_least_gap
 from heuncli.multibody.assembly.reduced_islands import ReducedIsland, least_motion
 from heuncli.multibody.assembly.rows import Rows, pose_rows
 from heuncli.multibody.assembly.walk import AssemblyPoses, iter_continuation, place_body
@@ -79,6 +80,10 @@ class IslandFit:
     def reduce_rows(self, rows: dict[int, Rows]) -> ReducedIsland:
         """Reduce its rows to the freedoms that its tree leaves."""
         return ReducedIsland(self.island, self.conditions, rows, self.free_motions(), self.size)
+
+    def bound_gap(self) -> float:
+        """Return what the gap is at least, in all poses that can be reached; 0 where that is not known."""
+        return bound_least_gap(self.island, self.conditions, self.poses, self.size)
 
     def gap(self, rows: dict[int, Rows]) -> float:
         """Compute the root of the sum of squares of all gaps, lengths by L."""
@@ -164,7 +169,8 @@ class IslandFit:
         if self.close(limit):
             return True, 0
         best, least_gap = self.save_poses(), self.gap(self.rows())
-        for kick in kicks:
+        bound = self.bound_gap()
+        for kick in () if bound > limit and bound >= BETTER * least_gap else kicks:  # none could close it, or improve
             self.restore_poses(start)
             self.apply(self._kick(KICK * kick))
             if self.close(limit):
