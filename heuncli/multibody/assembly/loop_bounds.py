@@ -88,12 +88,12 @@ class LoopSides:
         """Return the attitude that a body has in all poses, (3, 3); None if it may turn."""
         condition = self.conditions.get(body)
         if body not in self.conditions or not self.poses.turns[body]:
-            return self.poses.R[body]
+            return np.asarray(self.poses.R[body])
         if condition is None or condition.pose.turn != "all":
             return None
         is_to = body == condition.b
         parent = self.find_attitude(condition.a if is_to else condition.b)
-        return None if parent is None else np.asarray(parent @ (condition.relative if is_to else condition.relative.T))
+        return None if parent is None else parent @ (condition.relative if is_to else condition.relative.T)
 
     def _add_last_side(
         self,
