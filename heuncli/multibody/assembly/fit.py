@@ -41,7 +41,10 @@ POLISH = 60  # steps; more only creep, where long shifts save ever smaller turns
 
 
 class IslandFit:
-    """The fit of one island; it changes the poses that it is given."""
+    """The fit of one island; it changes the poses that it is given.
+
+    last_rows: the rows where `close` has left the poses
+    """
 
     def __init__(
         self,
@@ -59,6 +62,7 @@ class IslandFit:
         self.size = size
         self.planar = planar
         self.joints = [k for k in island.tree_joints if k >= 0] + island.closures
+        self.last_rows: dict[int, Rows] = {}
         self.bodies = sorted({i for k in self.joints for i in (conditions[k].a, conditions[k].b)} | set(island.members))
 
     def free_motions(self) -> list[tuple[bool, bool]]:
@@ -159,6 +163,7 @@ class IslandFit:
             else:
                 break
             rows, gap, damping = new_rows, new_gap, max(damping / 4.0, MIN_DAMPING)
+        self.last_rows = rows
         return gap <= limit
 
     def settle(self, limit: float, kicks: Sequence[int] = KICKS) -> tuple[bool, int]:
@@ -168,14 +173,14 @@ class IslandFit:
         start = self.save_poses()
         if self.close(limit):
             return True, 0
-        best, least_gap = self.save_poses(), self.gap(self.rows())
+        best, least_gap = self.save_poses(), self.gap(self.last_rows)
         bound = self.bound_gap()
         for kick in () if bound > limit and bound >= BETTER * least_gap else kicks:  # none could close it, or improve
             self.restore_poses(start)
             self.apply(self._kick(KICK * kick))
             if self.close(limit):
                 return True, kick
-            gap = self.gap(self.rows())
+            gap = self.gap(self.last_rows)
             if gap < BETTER * least_gap:
                 best, least_gap = self.save_poses(), gap
         self.restore_poses(best)
@@ -261,8 +266,9 @@ class IslandFit:
         counts.
         """
         last, factor, length = np.zeros(0), 1.0, math.inf
+        rows = self.rows()
         for _ in range(POLISH):
-            z = least_motion(self.reduce_rows(self.rows()), self._displacements(start), shift_weight)[0]
+            z = least_motion(self.reduce_rows(rows), self._displacements(start), shift_weight)[0]
             if _norm(z) < tolerances.POLISHED or (
                 _norm(z) < tolerances.SUM_OF_SQUARES_LIMIT and _norm(z) > 0.5 * length
             ):
@@ -275,6 +281,7 @@ class IslandFit:
             for _ in range(10):
                 self.apply(_limit_step(factor * z))
                 if self.close(limit) and (blind or _is_lower(self._sums(start, shift_weight), sums)):
+                    rows = self.last_rows
                     break
                 self.restore_poses(before)
                 factor *= 0.5
@@ -325,6 +332,8 @@ def _damped_step(r: ReducedIsland, mu: float) -> Array:
 
 def _limit_step(z: Array) -> Array:
     """Shorten z where a turn is larger than one step may be."""
+    if float(z @ z) < 0.99 * TURN * TURN:  # of all turns and shifts together
+        return z
     turns = z.reshape(-1, 6)[:, :3]
     largest = math.sqrt(float(np.max(np.sum(turns * turns, axis=1), initial=0.0)))
     return z * (TURN / largest) if largest > TURN else z
