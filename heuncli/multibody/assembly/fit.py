@@ -5,7 +5,8 @@
         Otherwise, from the poses that the walk has found:
     (1) with `near`: what near gives is fixed, the others fit it as well as they can; then it is released
     (2) close: least |e − C y|² + μ (Σθ² + 0.01 Σd²/L²) step by step (Levenberg-Marquardt), turns at most 0.3 rad;
-        where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns
+        where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns, unless
+        the sides of the loop prove that no pose has a smaller one (loop_bounds.py)
     (3) polish: least Σθ² from the start of (2), then least Σd², among the poses that are closed
 
 θ turns of attitudes that are not given, d shifts of pivots that are not given, L the scene's size, l the island's own;

@@ -32,7 +32,7 @@ from heuncli.scene.shapes.rotations import largest_magnitude
 
 # Distance
 
-FULL_CHECKS = 32  # instants at which all points are always compared
+FULL_CHECKS = 8  # instants at which all points are always compared
 ROUNDING_MARGIN = 1.0 + 1e-9  # more than the rounding of a distance
 
 
