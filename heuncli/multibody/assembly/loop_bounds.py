@@ -95,6 +95,22 @@ class LoopSides:
         parent = self.find_attitude(condition.a if is_to else condition.b)
         return None if parent is None else parent @ (condition.relative if is_to else condition.relative.T)
 
+    def find_direction(self, body: int, direction: Array) -> Array | None:
+        """Return the direction that a body's own has in all poses, world, but for its sign; None if it may turn."""
+        attitude = self.find_attitude(body)
+        if attitude is not None:
+            return np.asarray(attitude @ direction)
+        condition = self.conditions[body]
+        if condition is None or condition.pose.turn not in ("axis", "all"):
+            return None
+        is_to = body == condition.b
+        parent = condition.a if is_to else condition.b
+        if condition.pose.turn == "all":
+            return self.find_direction(parent, (condition.relative if is_to else condition.relative.T) @ direction)
+        own, other = (condition.to_axis, condition.axis) if is_to else (condition.axis, condition.to_axis)
+        is_along = np.array_equal(direction, own) or np.array_equal(direction, -own)
+        return self.find_direction(parent, other) if is_along else None
+
     def _add_last_side(
         self,
         meeting: Sequence[tuple[int | None, Array]],
@@ -138,10 +154,9 @@ class LoopSides:
             if d.pose.hold == "distance":
                 lengths.append(d.length)
             elif d.pose.hold != "point":
-                attitude = self.find_attitude(d.a)
-                if attitude is None:
+                axis = self.find_direction(d.a, d.axis)
+                if axis is None:
                     return None
-                axis = attitude @ d.axis
                 directions += [axis] if d.pose.hold == "line" else [*perpendicular_pair(axis)]
         return directions
 
