@@ -5,9 +5,11 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from heuncli.analyses.variants.evaluation import VariantSolver
+from heuncli.base.errors import HeunError
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
@@ -47,6 +49,12 @@ MEASURED = (
     (CASES[6], MeasureRequest("max", "joints.low.force")),
 )
 
+REFUSED = (
+    Case(SPECS / "slider_crank.yaml", "r", 0.5, "a crank longer than the rod"),
+    Case(STARTERS / "four_bar.yaml", "bodies.rocker.points.C.0", 1.5, "a rocker longer than all other bars"),
+    Case(SPECS / "four_bar.yaml", "bodies.coupler.points.C.0", 1.5, "a coupler longer than all other bars"),
+)
+
 
 def variants() -> None:
     """Print it, of all results and of one joint's loads alone, and of one measure; and what a search takes."""
@@ -65,6 +73,9 @@ def variants() -> None:
         took = of_measure(case, asked)
         title = f"{case.path.stem} {case.what}: {asked.how} {asked.path}"
         print(f"{title:58s}{statistics.median(took):8.2f}{statistics.fmean(took):8.2f}")
+    print(f"\n{'variants that cannot be assembled':58s}{'median':>8s} [ms]")
+    for case in REFUSED:
+        print(f"{case.path.stem + ' ' + case.what:58s}{of_refusal(case):8.1f}")
     finds()
 
 
@@ -78,6 +89,17 @@ def of_measure(case: Case, asked: MeasureRequest) -> list[float]:
         measure_value(asked, prepared.solve(values))
         found.append(1e3 * (time.process_time() - begun))
     return found
+
+
+def of_refusal(case: Case) -> float:
+    """Median processor time of a variant that is refused [ms]."""
+    prepared, found = VariantSolver(case.path), []
+    for k in range(5):
+        begun = time.process_time()
+        with suppress(HeunError):
+            prepared.solve({case.key: repr(case.value * (1.0 + 0.01 * k))})
+        found.append(1e3 * (time.process_time() - begun))
+    return statistics.median(found)
 
 
 def costs(case: Case, options: Options) -> tuple[float, float, float]:

@@ -136,7 +136,8 @@ class Evaluator:
         closed = np.zeros((n_t, len(layout.open_contacts)))
         # contacts closed by others count as closed too: the rank, and later checks, decide which of them carry
         contact_states = self.start_holding if holding is None else holding
-        closed[:] = layout.closed_contacts(contact_states)
+        if layout.contacts:
+            closed[:] = layout.closed_contacts(contact_states)
         inputs = {"times": instants, "branches": held_branches, "holding": closed}
         numbers = {name: as_numbers(table) for name, table in tables.items()}
         outputs = {"states": projected_states, "columns": columns, **numbers}
@@ -144,8 +145,8 @@ class Evaluator:
         rows, whole = tables["rows"], tables["whole"]
         residual = self._drop_rounding(whole["residual"][:, 0], rows)
         allowed_residual = self.allowed_residual(whole["gap"][:, 0])
-        is_opening = self._find_opening(contact_states, rows, residual, allowed_residual)
-        if is_opening.any():
+        is_opening = self._find_opening(contact_states, rows, residual, allowed_residual) if layout.contacts else None
+        if is_opening is not None and is_opening.any():
             open_states = np.where(is_opening, OPEN, contact_states)
             return self.evaluate(
                 times, states, branches=branches, hold_rows=hold_rows, causes=causes, holding=open_states

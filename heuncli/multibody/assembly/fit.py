@@ -5,7 +5,8 @@
         Otherwise, from the poses that the walk has found:
     (1) with `near`: what near gives is fixed, the others fit it as well as they can; then it is released
     (2) close: least |e − C y|² + μ (Σθ² + 0.01 Σd²/L²) step by step (Levenberg-Marquardt), turns at most 0.3 rad;
-        where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns
+        where that stalls with a gap (links in line have no slope), again with small fixed pseudo-random turns, unless
+        the sides of the loop prove that no pose has a smaller one (loop_bounds.py)
     (3) polish: least Σθ² from the start of (2), then least Σd², among the poses that are closed
 
 θ turns of attitudes that are not given, d shifts of pivots that are not given, L the scene's size, l the island's own;
@@ -23,6 +24,7 @@ from heuncli.base import tolerances
 from heuncli.base.linear_algebra import count_rank
 from heuncli.multibody.assembly.conditions import JointCondition
 from heuncli.multibody.assembly.islands import AssemblyIsland
+from heuncli.multibody.assembly.loop_bounds import bound_least_gap
 from heuncli.multibody.assembly.reduced_islands import ReducedIsland, least_motion
 from heuncli.multibody.assembly.rows import Rows, pose_rows
 from heuncli.multibody.assembly.walk import AssemblyPoses, iter_continuation, place_body
@@ -40,7 +42,10 @@ POLISH = 60  # steps; more only creep, where long shifts save ever smaller turns
 
 
 class IslandFit:
-    """The fit of one island; it changes the poses that it is given."""
+    """The fit of one island; it changes the poses that it is given.
+
+    last_rows: the rows where `close` has left the poses
+    """
 
     def __init__(
         self,
@@ -58,6 +63,7 @@ class IslandFit:
         self.size = size
         self.planar = planar
         self.joints = [k for k in island.tree_joints if k >= 0] + island.closures
+        self.last_rows: dict[int, Rows] = {}
         self.bodies = sorted({i for k in self.joints for i in (conditions[k].a, conditions[k].b)} | set(island.members))
 
     def free_motions(self) -> list[tuple[bool, bool]]:
@@ -79,6 +85,10 @@ class IslandFit:
     def reduce_rows(self, rows: dict[int, Rows]) -> ReducedIsland:
         """Reduce its rows to the freedoms that its tree leaves."""
         return ReducedIsland(self.island, self.conditions, rows, self.free_motions(), self.size)
+
+    def bound_gap(self) -> float:
+        """Return what the gap is at least, in all poses that can be reached; 0 where that is not known."""
+        return bound_least_gap(self.island, self.conditions, self.poses, self.size)
 
     def gap(self, rows: dict[int, Rows]) -> float:
         """Compute the root of the sum of squares of all gaps, lengths by L."""
@@ -154,6 +164,7 @@ class IslandFit:
             else:
                 break
             rows, gap, damping = new_rows, new_gap, max(damping / 4.0, MIN_DAMPING)
+        self.last_rows = rows
         return gap <= limit
 
     def settle(self, limit: float, kicks: Sequence[int] = KICKS) -> tuple[bool, int]:
@@ -163,13 +174,14 @@ class IslandFit:
         start = self.save_poses()
         if self.close(limit):
             return True, 0
-        best, least_gap = self.save_poses(), self.gap(self.rows())
-        for kick in kicks:
+        best, least_gap = self.save_poses(), self.gap(self.last_rows)
+        bound = self.bound_gap()
+        for kick in () if bound > limit and bound >= BETTER * least_gap else kicks:  # none could close it, or improve
             self.restore_poses(start)
             self.apply(self._kick(KICK * kick))
             if self.close(limit):
                 return True, kick
-            gap = self.gap(self.rows())
+            gap = self.gap(self.last_rows)
             if gap < BETTER * least_gap:
                 best, least_gap = self.save_poses(), gap
         self.restore_poses(best)
@@ -255,8 +267,9 @@ class IslandFit:
         counts.
         """
         last, factor, length = np.zeros(0), 1.0, math.inf
+        rows = self.rows()
         for _ in range(POLISH):
-            z = least_motion(self.reduce_rows(self.rows()), self._displacements(start), shift_weight)[0]
+            z = least_motion(self.reduce_rows(rows), self._displacements(start), shift_weight)[0]
             if _norm(z) < tolerances.POLISHED or (
                 _norm(z) < tolerances.SUM_OF_SQUARES_LIMIT and _norm(z) > 0.5 * length
             ):
@@ -269,6 +282,7 @@ class IslandFit:
             for _ in range(10):
                 self.apply(_limit_step(factor * z))
                 if self.close(limit) and (blind or _is_lower(self._sums(start, shift_weight), sums)):
+                    rows = self.last_rows
                     break
                 self.restore_poses(before)
                 factor *= 0.5
@@ -319,6 +333,8 @@ def _damped_step(r: ReducedIsland, mu: float) -> Array:
 
 def _limit_step(z: Array) -> Array:
     """Shorten z where a turn is larger than one step may be."""
+    if float(z @ z) < 0.99 * TURN * TURN:  # of all turns and shifts together
+        return z
     turns = z.reshape(-1, 6)[:, :3]
     largest = math.sqrt(float(np.max(np.sum(turns * turns, axis=1), initial=0.0)))
     return z * (TURN / largest) if largest > TURN else z

@@ -88,8 +88,9 @@ class PoseAssembly:
         fit = IslandFit(self.poses, island, self.conditions, self.tree.depth, self.size, self.mechanism.planar)
         before = fit.save_poses()
         drawn = self.drawn.x[island.members], self.drawn.R[island.members]
-        closed, kick = fit.close_near_drawing(drawn, self.limit)
-        if not closed:
+        can_close = fit.bound_gap() <= self.limit  # else it is fitted for what the error says alone
+        closed, kick = fit.close_near_drawing(drawn, self.limit) if can_close else (False, 0)
+        if can_close and not closed:
             closed = fit.follow_coordinates(drawn, self._prescribed, self.limit)
         if not closed:
             fit.restore_poses(before)

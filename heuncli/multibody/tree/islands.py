@@ -101,6 +101,8 @@ def _make_island(layout: Layout, rows: Array, bodies: list[int], is_couple: Mask
 def find_couples(layout: Layout) -> Mask:
     """Return whether the load of each closure row is a couple, (rows,); of a sum: the loads of all its parts."""
     closures, part_kinds = layout.tables["closures"], layout.tables["parts"]["kind"]
+    if not len(closures):
+        return np.zeros(0, dtype=bool)
     is_couple = np.isin(closures["kind"], COUPLES)
     for r in np.flatnonzero(closures["kind"] == kernel.SUM).tolist():
         first, count = int(closures["part"][r]), int(closures["part_count"][r])

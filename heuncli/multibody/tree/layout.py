@@ -168,6 +168,8 @@ class Layout(LayoutFrame):
     @property
     def open_contacts(self) -> Array:
         """The contact state with all contacts open: a number for each, then for each latch the place where it holds."""
+        if not self.contacts:
+            return np.zeros(0)
         places = self.tables["closures"]["length"][[self.contacts[i].row for i in self.latches]]
         return np.concatenate([np.zeros(len(self.contacts)), places])
 

@@ -15,6 +15,7 @@ Each run reaches an impulse that both share at a slightly different instant.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from heuncli.scene.shapes.rotations import largest_magnitude
 
 # Distance
 
-FULL_CHECKS = 32  # instants at which all points are always compared
+FULL_CHECKS = 8  # instants at which all points are always compared
 ROUNDING_MARGIN = 1.0 + 1e-9  # more than the rounding of a distance
 
 
@@ -39,10 +40,16 @@ def motion_error(marks: MotionPoints, bodies: Table, count: int, size: float) ->
     """Estimate the error of any point relative to the size, (n,); bodies: results of `count` runs."""
     r, R = (bodies[name].reshape(-1, count, *bodies[name].shape[1:]) for name in ("r", "R"))
     extent = np.abs(r[:, 0]).max(axis=(1, 2)) / size
-    one, other = np.triu_indices(count, 1)  # all pairs of runs
+    one, other = pair_runs(count)
     squares = marks.squared_distances(r[:, other] - r[:, one], R[:, other] - R[:, one])
     distance = np.sqrt(squares.max(axis=(1, 2))) / size
     return replace_nan_errors(2.0 * distance + tolerances.PLACE_ROUNDING * np.maximum(extent, 1.0))
+
+
+@cache
+def pair_runs(count: int) -> tuple[Indices, Indices]:
+    """Return all pairs of some runs."""
+    return np.triu_indices(count, 1)
 
 
 def bounded_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, size: float) -> Array:

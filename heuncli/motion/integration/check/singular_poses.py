@@ -35,6 +35,8 @@ def find_singular_positions(runner: Runner, run: Trajectory) -> list[float]:
     """Return the instants [s] at which the rank of the closures fell, the first hundred."""
     suspects = np.flatnonzero(run.pivots < tolerances.SUSPECT_PIVOT)
     instants: list[float] = []
+    if not len(suspects):
+        return instants
     for steps in np.split(suspects, np.flatnonzero(np.diff(suspects) > 1) + 1)[:MOST]:
         if len(steps):
             begin = float(run.ends[steps[0] - 1]) if steps[0] else 0.0
