@@ -74,6 +74,7 @@ def test_faults_that_were_mended_stay_away_from_pages(row: Page, browser: Chromi
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("row", HELD_REPORTS, ids=lambda row: row.name)
+@pytest.mark.third
 def test_faults_that_were_mended_stay_away_from_reports(row: Report, browser: Chromium, tmp_path: Path) -> None:
     held = {fault for fault, where in MENDED.items() if "report" in where}
     assert [str(f) for f in draw_report(row, tmp_path, browser).findings if f.kind in held] == []

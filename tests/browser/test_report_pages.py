@@ -69,6 +69,7 @@ def test_sheets_and_boxes(browser: Chromium, report: Report) -> None:
         assert [row for row in seen["tables"] if row[0] < LEAST_WIDTH - 0.03 and row[1] > LONG + 1] == []
 
 
+@pytest.mark.third
 def test_the_first_page_is_filled(browser: Chromium, report: Report) -> None:
     """What follows the first page's own parts begins on it, unless these fill three quarters of it."""
     with browser.open(report.path) as tab:

@@ -288,6 +288,7 @@ def test_a_spec_that_changed_without_a_number_is_said_and_renewed(heun: Heun, fo
 
 @pytest.mark.heavy  # the compiled one keeps
 @pytest.mark.parametrize("name", ["double", "slider_crank", "hammered_four_bar"])
+@pytest.mark.third
 def test_the_plain_kernel_passes_what_the_compiled_one_kept(heun: Heun, folder: Path, name: str) -> None:
     spec = str(ROOT / "specs" / f"{name}.yaml")
     assert heun("check", spec, "--golden", "g", "--update", "--force").returncode == 0

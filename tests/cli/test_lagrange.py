@@ -237,6 +237,7 @@ def test_coordinates_that_all_stand(heun: Heun) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_every_spec_has_its_equations(path: Path) -> None:
     try:
         found = solve_lagrange(load(str(path), checking=False), LagrangeOptions())

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from heuncli.app.cli import jobs
 from tests.shared.command import HANGING, Heun
 
 # Two bars that meet over a base: they close where the one from the right is long enough.
@@ -36,8 +37,10 @@ WEIGHT = ("--minimise", "joints.pivot.force.z")
 
 
 @pytest.fixture(autouse=True)
-def gable(folder: Path) -> None:
+def gable(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The scene; variants are solved in this process, where no number of others is asked for: forking it is costly."""
     (folder / "gable.yaml").write_text(GABLE)
+    monkeypatch.setattr(jobs, "count_processors", lambda: 1)
 
 
 def found_by(heun: Heun, *words: str, code: int = 0) -> dict[str, Any]:

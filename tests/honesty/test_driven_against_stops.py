@@ -91,6 +91,7 @@ def test_it_is_told_as_a_drive_against_a_stop(seed: int) -> None:
      ("-max(t - 0.2, 0)**3", False), ("t**5", True), ("-t**5", False)],
 )  # fmt: skip
 @pytest.mark.parametrize("gravity", [0.0, -9.81])
+@pytest.mark.third
 def test_a_drive_that_starts_at_the_stop(law: str, is_refused: bool, gravity: float) -> None:
     """A parallelogram that touches its stop: it may rest there, and move away, however slowly.
 

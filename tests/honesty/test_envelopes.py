@@ -87,6 +87,7 @@ def extreme(bar: Bar, part: str, sign: float) -> float:
 
 
 @pytest.mark.parametrize("seed", range(24))
+@pytest.mark.third
 def test_a_driven_bar(seed: int) -> None:
     bar = drawn(seed)
     run = solve(load("bar.yaml", told(bar)), Options(requested_reports=frozenset({"sections"})))

@@ -77,6 +77,7 @@ def reference() -> Array:
 
 
 @pytest.mark.parametrize("t", sorted(KNOWN))
+@pytest.mark.third
 def test_the_reference(t: int) -> None:
     assert np.abs(reference()[t * EVERY] - KNOWN[t]).max() <= OFF[t]
 

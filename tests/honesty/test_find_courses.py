@@ -11,6 +11,7 @@ from tests.honesty.find_courses import KINDS, judged
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.third
 def test_what_is_told_of_a_known_course_is_true(kind: str) -> None:
     for seed in range(3):
         course, relation, verdict = judged(seed, kind, direct=True)

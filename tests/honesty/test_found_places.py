@@ -27,6 +27,7 @@ def found(heun: Heun, name: str, unknown: str, value: str, tolerance: str) -> An
 
 
 @pytest.mark.parametrize(("name", "unknown", "measure"), CASES, ids=[case[0] for case in CASES])
+@pytest.mark.third
 def test_a_coarse_run_tells_the_place_within_its_error(heun: Heun, name: str, unknown: str, measure: str) -> None:
     ends = found(heun, name, unknown, f"{measure} = 0", "1e-7")["course"]
     low, high = (sorted(each["measure"] for each in ends)[k] for k in (0, -1))

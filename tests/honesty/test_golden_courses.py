@@ -28,6 +28,7 @@ def test_a_load_that_moves_and_a_second_peak_that_grows_are_found() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.third
 def test_means_of_loads_that_jump_are_right_to_their_error(seed: int) -> None:
     outcome = golden_means.look_at(seed)
     assert outcome.ratios is None or max(outcome.ratios) <= 1.0, outcome

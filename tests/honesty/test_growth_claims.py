@@ -8,6 +8,7 @@ from tests.honesty.growth_claims import drawn, faults, right, told
 
 
 @pytest.mark.parametrize("seed", [0, 5, 6, 15])
+@pytest.mark.third
 def test_the_growth_of_a_chain(seed: int) -> None:
     of = drawn(seed)
     by = right(of)

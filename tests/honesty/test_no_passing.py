@@ -22,6 +22,7 @@ def passed(text: str) -> list[str]:
 @pytest.mark.parametrize("kinds", KINDS)
 @pytest.mark.parametrize("h", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
 @pytest.mark.parametrize("mass", [1.0, 1e-12])
+@pytest.mark.third
 def test_what_stands_still_passes_nothing(kinds: str, h: float, mass: float) -> None:
     """Straight, or next to it, pulled along itself by its weight or not at all."""
     light = stretched_chain(h, "[0, 0, 0]", kinds, RUN).replace("mass: 1,", f"mass: {mass!r},")

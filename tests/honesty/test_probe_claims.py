@@ -20,6 +20,7 @@ def probed(text: str) -> Probe:
 
 
 @pytest.mark.parametrize("seed", range(24))
+@pytest.mark.third
 def test_the_rates_of_a_chain(seed: int) -> None:
     text, A = chain(seed, "{duration: 0.2, samples: 3}")
     found, values = probed(text).stiffness, np.linalg.eigvals(A)

@@ -25,6 +25,7 @@ def test_it_rests_as_told_before(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("way", ["turned", "mm, t, ms", "sawn"])
+@pytest.mark.third
 def test_another_scene_is_told_from_it(way: str) -> None:
     """A billionth of the weights is seen."""
     tree = resting("plane", 0)

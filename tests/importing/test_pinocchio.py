@@ -120,6 +120,7 @@ def test_a_public_robot_that_is_let_go_accelerates_as_pinocchio_says(name: str) 
 
 
 @pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.third
 def test_drawn_trees_need_the_efforts_of_pinocchio(shape: str) -> None:
     for seed in range(12):
         text = drawn_robot(seed, Wishes(links=4 + seed * 2, shape=shape)).text
@@ -127,6 +128,7 @@ def test_drawn_trees_need_the_efforts_of_pinocchio(shape: str) -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.third
 def test_joints_that_are_let_go_accelerate_as_pinocchio_says(shape: str) -> None:
     """All of them free: forward dynamics, by aba there."""
     for seed in range(100, 110):

@@ -36,6 +36,7 @@ def recovery(make: object, seed: int) -> tuple[Case, Recovery]:
 
 
 @pytest.mark.parametrize("of", CASES)
+@pytest.mark.third
 def test_actions_enter_at_the_points_of_their_bodies(of: tuple[object, int]) -> None:
     """Where a lever lies between, as in a rod, the force runs along it."""
     c, r = recovery(*of)
@@ -52,6 +53,7 @@ def test_actions_enter_at_the_points_of_their_bodies(of: tuple[object, int]) -> 
 
 
 @pytest.mark.parametrize("of", CASES)
+@pytest.mark.third
 def test_the_power_of_what_acts_in_a_joint_is_its_value_times_its_rate(of: tuple[object, int]) -> None:
     """In balls and planes, too, where the rate has no axis: it is how fast they turn, or slide, at all."""
     c, _ = recovery(*of)
@@ -75,6 +77,7 @@ def test_what_resists_nothing_tells_how_fast_its_joint_turns() -> None:
 
 
 @pytest.mark.parametrize("of", CASES)
+@pytest.mark.third
 def test_what_comes_from_outside_ends_in_the_ground(of: tuple[object, int]) -> None:
     """Supports, drives and loads between ground and body carry what acts from outside, less the inertia."""
     c, r = recovery(*of)

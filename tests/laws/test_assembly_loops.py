@@ -277,6 +277,7 @@ TURNING = ("ball", "pin", "universal")  # elsewhere a long shift may save a smal
 
 @pytest.mark.parametrize("noise", [0.0, 0.1, 0.3])
 @pytest.mark.parametrize("seed", range(20))
+@pytest.mark.third
 def test_random_loops_close(seed: int, noise: float) -> None:
     s = random_loop(seed, noise)
     a = assemble(s)

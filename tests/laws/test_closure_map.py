@@ -114,6 +114,7 @@ def test_the_jacobian_is_the_rate_of_the_gaps(of: tuple[Callable[[int], Case], i
 
 
 @pytest.mark.parametrize("of", CASES)
+@pytest.mark.third
 def test_carried_loads_hold_the_multipliers(of: tuple[Callable[[int], Case], int]) -> None:
     """Every body balances: its joint's load, the opposite of those it carries, and its rows' loads; any multipliers."""
     c, setup, recovered = solved(*of)
@@ -147,6 +148,7 @@ def test_carried_loads_hold_the_multipliers(of: tuple[Callable[[int], Case], int
 
 
 @pytest.mark.parametrize("of", CASES)
+@pytest.mark.third
 def test_free_directions_take_what_the_jacobian_says(of: tuple[Callable[[int], Case], int]) -> None:
     """Virtual work: the joint loads that multipliers need have, along the freedoms, the parts -J' lambda."""
     c, setup, recovered = solved(*of)

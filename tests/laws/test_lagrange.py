@@ -81,6 +81,7 @@ def matrices(at: Instant, names: tuple[str, ...], moved: float, rates: np.ndarra
 
 
 @pytest.mark.parametrize(("kind", "seed"), PROPER)
+@pytest.mark.third
 def test_the_rate_of_the_inertia_is_what_the_coriolis_matrix_says(kind: str, seed: int) -> None:
     """e' = G + G' along any motion: e' - 2 G is antisymmetric. e' by differences, of coordinates proper alone."""
     at, found = looked_at(kind, seed)
@@ -95,6 +96,7 @@ def test_the_rate_of_the_inertia_is_what_the_coriolis_matrix_says(kind: str, see
 
 
 @pytest.mark.parametrize(("kind", "seed"), PROPER)
+@pytest.mark.third
 def test_the_symbols_make_the_matrix(kind: str, seed: int) -> None:
     """gamma by unit rates and G by the rates of the scene are two routes to one matrix."""
     _, found = looked_at(kind, seed, christoffel=True)
@@ -111,6 +113,7 @@ def test_the_symbols_make_the_matrix(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", [1, 25, 30, 32, 33, 1001, 1010])
+@pytest.mark.third
 def test_other_coordinates(seed: int) -> None:
     """With other coordinates, q' = R r', e becomes R' e R, k and C by parts R' k; the energy stays."""
     at, found = looked_at("loop of pins", seed)
@@ -135,6 +138,7 @@ WITH_BALLS = {1, 5, 1004}  # among the loops: turns about the world's axes have 
 
 
 @pytest.mark.parametrize(("kind", "seed"), [case for case in PROPER if case[1] not in WITH_BALLS])
+@pytest.mark.third
 def test_forces_are_what_their_causes_accelerate(kind: str, seed: int) -> None:
     """k by virtual work is e times the accelerations that each cause alone makes of the scene without drives."""
     at, found = looked_at(kind, seed)

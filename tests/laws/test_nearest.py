@@ -31,6 +31,7 @@ def test_loops_close_near_their_drawing(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(0, 80, 3))
+@pytest.mark.third
 def test_how_a_body_is_drawn_does_not_matter(seed: int) -> None:
     """Near poses, bodies drawn in world coordinates, both mixed: one start, one end."""
     ends = []
@@ -88,6 +89,7 @@ OTHERWISE = [(1, -135), (1, -120), (14, 60), (14, 90), (31, -105), (31, -90), (5
 
 @pytest.mark.parametrize(("which", "degrees"), OTHERWISE)
 @pytest.mark.parametrize("driven", [False, True])
+@pytest.mark.third
 def test_a_crank_turned_away_from_the_drawing_keeps_the_way_to_close(which: int, degrees: float, driven: bool) -> None:
     A, B, C, D = joints = crank_rockers(which + 1)[which]
     points, names = [(*p, 0.0) for p in joints], ["ground", "crank", "coupler", "rocker", "ground"]

@@ -34,6 +34,7 @@ def at_its_start(path: Path) -> str:
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_states_that_were_compared_are_those_found_afresh(path: Path) -> None:
     study = solve(load(str(path), at_its_start(path)), Options())
     afresh = recover(study.setup, study.history.solutions, study.options.least_norm)

@@ -148,6 +148,7 @@ def test_its_share_is_its_own_value(seed: int) -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("way", ["turned", "mirrored", "inches, pounds", "faster", "renamed", "other origins"])
+@pytest.mark.third
 def test_told_otherwise_it_is_the_same(way: str, seed: int) -> None:
     scene, _ = rubbing_scene(seed)
     times = np.array([0.0, 0.1, 0.25])

@@ -123,6 +123,7 @@ def richardson(shape: Shape, n: Array, d: float) -> Array:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", ["cylinder", "tube", "cone", "frustum"])
+@pytest.mark.third
 def test_round_shapes_against_prisms_of_many_sides(name: str) -> None:
     shape = SOLIDS[name]
     f = make_composite_solid([shape])

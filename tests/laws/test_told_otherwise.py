@@ -128,6 +128,7 @@ def same_sums(one: Results, other: Results, joints: dict[str, str] | None = None
 
 
 @each(("turned", "mirrored"), DOUBLES)
+@pytest.mark.third
 def test_what_is_open_in_other_axes(seed: int, way: str) -> None:
     """World components are open by the oracle's self-stresses in the new directions; those along joints' axes stay."""
     scene, before = redundant(seed)[0], redundant(seed)[1].results

@@ -98,7 +98,13 @@ def test_same_bits_between_the_samples(scene: str, plain: Asked) -> None:
 
 @needs_both
 @pytest.mark.parametrize(
-    ("scene", "method"), [("double", "Radau9"), ("friction", "Radau5"), ("door_closer", "Radau5"), ("drawer", "Radau5")]
+    ("scene", "method"),
+    [
+        ("double", "Radau9"),
+        ("friction", "Radau5"),
+        pytest.param("door_closer", "Radau5", marks=pytest.mark.long),
+        pytest.param("drawer", "Radau5", marks=pytest.mark.long),
+    ],
 )
 def test_same_bits_by_collocation(scene: str, method: str, plain: Asked) -> None:
     """Dense equations, real and complex, Newton's iteration, and its steps done again."""

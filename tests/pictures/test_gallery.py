@@ -45,6 +45,7 @@ def test_faults_that_were_mended_stay_away(row: Picture, tmp_path: Path) -> None
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("spec", "path"), MARKED)
+@pytest.mark.third
 def test_marked_numbers_are_extremes_of_the_run(spec: str, path: str, heun: Heun, folder: Path) -> None:
     file = str(find_spec(spec))
     assert heun("plot", file, path, "-o", "x.svg").returncode == 0

@@ -74,6 +74,7 @@ SHOWN = [
 
 
 @pytest.mark.parametrize(("name", "paths"), SHOWN)
+@pytest.mark.third
 def test_curves_are_the_results_to_a_pixel(heun: Heun, folder: Path, name: str, paths: tuple[str, ...]) -> None:
     panels = drawn(heun, folder, spec(name), *paths)
     found = results(heun, spec(name))

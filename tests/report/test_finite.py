@@ -141,6 +141,7 @@ def test_what_is_infinite_is_refused_by_its_path(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
+@pytest.mark.third
 def test_nan_stands_only_for_what_may_be_open(name: str) -> None:
     found = results(name)
     for keys, value, owner in of_every_kind(found):

@@ -78,6 +78,7 @@ def test_which_points_are_decimal(text: str, expected: str) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("spec", ["engine", "axle_loads", "press"])
+@pytest.mark.third
 def test_every_cell_of_the_summary_is_measured(spec: str, heun: Heun) -> None:
     """The greatest load is what --measure finds, to the digits shown."""
     path = str(SPECS / f"{spec}.yaml")

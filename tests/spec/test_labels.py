@@ -70,6 +70,7 @@ def numbers(spec: Spec) -> str:
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_labels_on_everything_change_no_scene(path: Path) -> None:
     data, labels = label_everything(read_source(str(path), None).data)
     plain, plain_cases = load_with_cases(str(path))
@@ -85,6 +86,7 @@ SCHEMA = make_spec_schema()
 
 
 @pytest.mark.parametrize("name", SOLVED)
+@pytest.mark.third
 def test_labels_change_no_result(name: str) -> None:
     """JSON differs by the block of labels alone, CSV not at all."""
     path = str(ROOT / "specs" / f"{name}.yaml")
