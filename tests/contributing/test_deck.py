@@ -12,7 +12,7 @@ PLAIN = Addition(
         "heuncli/output/fe_decks/registry.py": (
             after('    "abaqus": Deck("abaqus"),\n', '    "plain": Deck("plain"),\n'),
         ),
-        "heuncli/app/commands/export/request.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
+        "heuncli/app/commands/export.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
     },
     {
         "heuncli/output/fe_decks/plain.py": '''"""Load cases as plain lines: the acceleration, a block a case."""

@@ -16,7 +16,7 @@ import pytest
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
 from heuncli.analyses.load_cases.solid_mesh import SolidMesh, read_mesh
 from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_units
-from heuncli.app.commands.export.request import FORMATS
+from heuncli.app.commands.export import FORMATS
 from heuncli.base.records import replace
 from heuncli.output.fe_decks import nastran
 from heuncli.output.fe_decks.naming import DeckNames

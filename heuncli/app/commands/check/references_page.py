@@ -8,7 +8,7 @@ from typing import Any
 
 from heuncli.analyses.published.cases import KINDS, PublishedCase
 from heuncli.analyses.published.comparison import AGREES, NumberComparison, TableComparison
-from heuncli.app.commands.check.check_result import CheckResult
+from heuncli.app.commands.check.results import CheckResult
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import (
     Cell,

@@ -7,14 +7,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from heuncli.app.api import read
-from heuncli.app.cli import memory, timeout
-from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
+from heuncli.app.cli import timeout
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, require_choice
+from heuncli.app.cli.spec_options import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.target import TABLES, choose_format, note_si_format, parse_units
 from heuncli.app.commands.run.request import FORMATS, RunRequest
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
+from heuncli.base.available_memory import result_memory
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.snapshots.selection import find_default_reports, parse_choice, select_reports
@@ -61,9 +62,7 @@ def main(request: RunRequest) -> int:
     spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - start, time_limit=timeout.remaining_time())
-    options = replace(
-        options, memory_budget=MemoryBudget(*memory.result_memory("table" if measures or collectives else form))
-    )
+    options = replace(options, memory_budget=MemoryBudget(*result_memory("table" if measures or collectives else form)))
     paths = _require_paths(request, spec, measures, collectives)
     is_table = form in TABLES or is_overview
     if request.hardpoints:
