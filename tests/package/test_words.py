@@ -40,7 +40,6 @@ FILES_OF_KEYS = re.compile(
     r"scene/file_format/(format\w*|entries|fields|models|loads|couplings)\.py|app/python/\w+\.py"
     r"|analyses/(balancing/results|lagrange/study)\.py"
 )
-DECKS = ("abaqus", "ansys", "as_csv", "as_json", "calculix", "nastran")
 # Others that strings refer to, or whose name a protocol of Python's prescribes.
 KEPT = {
     "analyses/load_cases/model.py": {"PointAction.at"},
@@ -62,7 +61,6 @@ KEPT = {
     "scene/file_format/format.py": {"ExpectEntry.before"},
     "scene/importers/mjcf/reader.py": {"described"},
     "scene/importers/urdf/reader.py": {"described"},
-    **{f"output/fe_decks/{name}.py": {"written"} for name in DECKS},
     "study/queries/curves.py": {"CurveComparison.at"},
     "study/compose/recovery.py": {"Recovery.decided"},
 }

@@ -13,7 +13,7 @@ from heuncli.app.cli.output import emit, print_stderr
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Spec
 

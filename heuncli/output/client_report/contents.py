@@ -14,8 +14,8 @@ from heuncli.output.client_report.polar import make_polar_parts
 from heuncli.output.client_report.report_data import CHAPTER_NAMES, ON_REQUEST, ReportData
 from heuncli.output.client_report.sections import make_section_parts
 from heuncli.output.client_report.trust import make_open_parts, make_trust_parts
+from heuncli.output.documents.as_html import Sheet
 from heuncli.output.documents.document import Brand, Chapter, OutputDocument, Part, Sentence, Verbatim, has_content
-from heuncli.output.documents.sheet import Sheet
 
 MAX_SPEC_LINES = 2000  # of a spec that is printed
 CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {

@@ -22,7 +22,7 @@ from heuncli.output.documents.document import (
     make_text_columns,
 )
 from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 
 REFERENCE = "reference"
 CASES = ("case", "description", "numbers", "kind", "digits", "in last digits", "relative", "verdict")

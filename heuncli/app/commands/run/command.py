@@ -109,10 +109,10 @@ def _require_paths(
     not fit.
     """
     if measures:
-        from heuncli.output.snapshots import measure, measure_units
+        from heuncli.output.snapshots import measure
 
         measure.require_known_paths(measures, spec)
-        measure_units.require_fitting_units(measures, spec, parse_units(request.units), request.units)
+        measure.require_fitting_units(measures, spec, parse_units(request.units), request.units)
     if collectives is None:
         return [each.path for each in measures]
     from heuncli.app.commands.run.collective import require_paths

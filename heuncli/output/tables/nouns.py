@@ -1,9 +1,18 @@
-"""Shorten lists of numbered names: `pin1, pin2, pin3` is `pin1–pin3`."""
+"""Counts with their nouns (`2 bodies`), and ranges of numbered names (`pin1–pin3`). Needs no NumPy."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+
+
+def format_count(number: int, noun: str) -> str:
+    """Format a number of things: `1 body`, `2 bodies`, `no loops`, `0 degrees of freedom`."""
+    if noun == "degree of freedom":
+        return f"{number} {noun if number == 1 else 'degrees of freedom'}"
+    plural = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}s"
+    return f"{number or 'no'} {noun if number == 1 else plural}"
+
 
 MIN_RANGE = 3  # names; two are listed
 NUMBERED = re.compile(r"(.*?)([1-9]\d*|0)$", re.DOTALL)

@@ -1,17 +1,28 @@
-"""The hint below the table of joints where parallel pins in space leave reactions open."""
+"""What a run says besides its numbers: its warnings, and the hint where parallel pins in space leave reactions open."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.output.documents.document import OutputTable
-from heuncli.results.results import Array
+from heuncli.results.results import Array, Results
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.quantities.digits import OPEN_NOTE
 from heuncli.study.queries.study import Study
+
+
+def collect_warnings(spec: Spec, results: Results | None, later: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Return the warnings of reading, with their places, and those of solving and later ones that are not among
+    them.
+    """
+    reading_messages = {problem.message for problem in spec.warnings}
+    solving_warnings = [text for text in results.warnings if text not in reading_messages] if results else []
+    return [str(problem) for problem in spec.warnings], solving_warnings + list(later)
+
 
 PINS_NOTE = (
     "pins in a spatial model constrain more than the motion requires: try `space: planar`, or `line` or `ball` in "
