@@ -1,5 +1,5 @@
 """What users touch: the command line and the interface to Python.
 
-`cli` has what all commands share (`registry`: a row a command; `entry`: words to an exit code), `commands` a folder
+`cli` has what all commands share (its own lines tell how a command line is run), `commands` a module or folder
 a command, `api` the way from a file to a solved scene, `python` the classes that `import heuncli` gives.
 """

@@ -7,7 +7,7 @@ from typing import Any
 
 from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
-from heuncli.app.commands.lagrange.options import parse_range
+from heuncli.app.commands.lagrange.command import parse_range
 from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.analyses.load_cases.assembly import assemble_load_cases
-from heuncli.output.fe_decks.naming import DeckNames
+from heuncli.output.fe_decks.parts import DeckNames
 from heuncli.output.fe_decks.registry import DECKS
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options

@@ -10,8 +10,8 @@ import pytest
 import xmlschema
 from junitparser import Error, Failure, JUnitXml, Skipped
 
-from heuncli.app.commands.check.check_result import CheckResult
 from heuncli.app.commands.check.junit import render_junit
+from heuncli.app.commands.check.results import CheckResult
 from heuncli.base.errors import Problem
 from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.output.tables.workflow_lines import MAX_OF_KIND, Annotation, iter_lines

@@ -351,8 +351,8 @@ def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
             raise trouble
         return load_with_cases(path, **words)
 
-    module = {"check": "checking"}.get(command, "command")
-    monkeypatch.setattr(f"heuncli.app.commands.{command}.{module}.load_with_cases", fail_once)
+    module = {"check": "check.checking"}.get(command, command)
+    monkeypatch.setattr(f"heuncli.app.commands.{module}.load_with_cases", fail_once)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun(command, "expecting.yaml", "swinging.yaml", "failing.yaml", "wrong.yaml")
     assert done.returncode == (code if code == 70 else 2)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.analyses.published.cases import list_names
-from heuncli.app.commands.new.command import list_kinds
+from heuncli.app.commands.new import list_kinds
 from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 

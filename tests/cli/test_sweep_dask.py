@@ -20,8 +20,8 @@ from heuncli.analyses.variants.measures import VariantResult
 from heuncli.analyses.variants.parameters import parse_axis_values
 from heuncli.analyses.variants.plans import Plan, make_axes_plan
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.commands.sweep.cluster import batches as cluster_lots
 from heuncli.app.commands.sweep.cluster import scheduler as cluster
+from heuncli.app.commands.sweep.cluster import workers as cluster_lots
 from heuncli.app.commands.sweep.cluster.connection import ClusterGone
 from heuncli.app.commands.sweep.cluster.scheduler import WORKER_DIED, solve_variants
 from heuncli.output.snapshots import measure

@@ -11,7 +11,8 @@ import pytest
 
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.app.commands.sweep.cluster import worker as cluster_worker
-from heuncli.app.commands.sweep.cluster.batches import (
+from heuncli.app.commands.sweep.cluster.worker import HELLO, CachedRecipe, Variant, described, solve_batch
+from heuncli.app.commands.sweep.cluster.workers import (
     DEPTH,
     FIRST_SIZE,
     GROWTH,
@@ -22,7 +23,6 @@ from heuncli.app.commands.sweep.cluster.batches import (
     VariantBatch,
     WorkerPace,
 )
-from heuncli.app.commands.sweep.cluster.worker import HELLO, CachedRecipe, Variant, described, solve_batch
 from heuncli.output.snapshots import measure
 from heuncli.study.model.options import Options
 from heuncli.version import VERSION

@@ -47,7 +47,7 @@ def test_a_deprecation_between_other_packages_ends_nothing(heun: Heun, monkeypat
         warnings.warn("'click.utils.get_binary_stream' is deprecated", DeprecationWarning, stacklevel=1)
         return 2
 
-    monkeypatch.setattr("heuncli.app.cli.app.read", deprecated)
+    monkeypatch.setattr("heuncli.app.cli.typer_reader.read", deprecated)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert heun("runn") == (2, "", "")

@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.analyses.lagrange.results import InertiaCurve
-from heuncli.app.commands.lagrange.options import parse_range
+from heuncli.app.commands.lagrange.command import parse_range
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
 from heuncli.scene.shapes.rotations import cross_matrix

@@ -314,9 +314,9 @@ def record(out: Path, scenes_file: Path | None, quick: bool, jobs: int, root: Pa
         raise SystemExit(f"names given twice: {twice[:5]}")
     said = heun("--version")["out"].strip()
     print(f"{said}, {package.parent}: {len(scenes)} scenes, {jobs} at a time", file=sys.stderr)
-    for command in ("run", "model", "validate", "check"):
+    for module in ("run.command", "model", "validate", "check.command"):
         with contextlib.suppress(ImportError):  # only saves the workers' time
-            __import__(f"heuncli.app.commands.{command}.command")
+            __import__(f"heuncli.app.commands.{module}")
     head = {"head": {"version": VERSION, "said": said, "root": str(root), "scenes": len(scenes), "quick": quick}}
     exits: Counter[Any] = Counter()
     slow: list[tuple[float, str]] = []

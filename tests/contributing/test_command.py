@@ -1,4 +1,4 @@
-"""A command is a folder with its request and its work, and a row."""
+"""A command is a module with its options and its work, and a row."""
 
 from __future__ import annotations
 
@@ -11,38 +11,36 @@ WEIGH = Addition(
     "A command",
     {
         "heuncli/app/cli/registry.py": (
-            Edit('    Command("explain"),\n', '    Command("explain"),\n    Command("weigh"),\n'),
+            Edit(
+                '    Command("schema",',
+                '    Command("weigh", "The mass of all bodies together."),\n    Command("schema",',
+            ),
         ),
         "heuncli/app/cli/help.txt": (
             Edit("  schema       Print", "  weigh        The mass of all bodies together.\n  schema       Print"),
         ),
     },
     {
-        "heuncli/app/commands/weigh/__init__.py": "",
-        "heuncli/app/commands/weigh/request.py": '''"""What `heun weigh` is asked for: its options and arguments."""
+        "heuncli/app/commands/weigh.py": '''"""`heun weigh`: the mass of all bodies together."""
 
 from typing import Annotated, NamedTuple
 
-from heuncli.app.cli.options import FORMAT, OUTPUT, SPEC
-
-
-class WeighRequest(NamedTuple):
-    """The mass of all bodies together."""
-
-    spec: Annotated[str, SPEC]
-    format: Annotated[str | None, FORMAT] = None
-    output: Annotated[str | None, OUTPUT] = None
-''',
-        "heuncli/app/commands/weigh/command.py": '''"""`heun weigh`: the mass of all bodies together."""
-
 from heuncli.app.cli.documents import emit_document
+from heuncli.app.cli.options import FORMAT, OUTPUT, SPEC
 from heuncli.app.cli.target import choose_format
-from heuncli.app.commands.weigh.request import WeighRequest
 from heuncli.multibody.mechanism.build import build
 from heuncli.output.documents.document import OutputColumn, OutputDocument, OutputTable
 from heuncli.scene.file_format.load import load
 
 COLUMNS = (OutputColumn("body", "text"), OutputColumn("mass", unit="kg"))
+
+
+class WeighRequest(NamedTuple):
+    """The options and arguments of `heun weigh`."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[str | None, FORMAT] = None
+    output: Annotated[str | None, OUTPUT] = None
 
 
 def main(request: WeighRequest) -> int:

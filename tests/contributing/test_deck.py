@@ -10,9 +10,9 @@ PLAIN = Addition(
     "An FE deck",
     {
         "heuncli/output/fe_decks/registry.py": (
-            after('    "abaqus": Deck("abaqus"),\n', '    "plain": Deck("plain"),\n'),
+            after('    Deck("abaqus", "abaqus"),\n', '    Deck("plain", "plain"),\n'),
         ),
-        "heuncli/app/commands/export/request.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
+        "heuncli/app/commands/export.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
     },
     {
         "heuncli/output/fe_decks/plain.py": '''"""Load cases as plain lines: the acceleration, a block a case."""
@@ -21,14 +21,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.output.fe_decks.naming import DeckNames, DeckNodes
-from heuncli.output.fe_decks.readme import exact, readme
+from heuncli.output.fe_decks.parts import DeckNames, DeckNodes
+from heuncli.output.fe_decks.parts import exact, readme
 from heuncli.analyses.load_cases.model import LoadCases
 
 MARK = "!"
 
 
-def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
+def write_plain(cases: LoadCases, names: DeckNames) -> Iterator[str]:
     """The text in pieces."""
     yield from readme(cases, DeckNodes(cases, names), MARK, "Points are tied by hand.", ("Field is g - a.",))
     for k, case in enumerate(cases.cases, start=1):
@@ -38,7 +38,7 @@ def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
         yield "End\\n"
 
 
-def notes(cases: LoadCases, names: DeckNames) -> list[str]:
+def list_plain_notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """What no card says."""
     return ["turning is left out"]
 ''',

@@ -9,7 +9,7 @@ import pytest
 
 import heuncli
 from heuncli.analyses.load_cases.model import LoadCases
-from heuncli.output.fe_decks.naming import DeckNames
+from heuncli.output.fe_decks.parts import DeckNames
 from heuncli.output.fe_decks.registry import DECKS
 
 SCENE: dict[str, Any] = {

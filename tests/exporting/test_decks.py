@@ -16,11 +16,10 @@ import pytest
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
 from heuncli.analyses.load_cases.solid_mesh import SolidMesh, read_mesh
 from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_units
-from heuncli.app.commands.export.request import FORMATS
+from heuncli.app.commands.export import FORMATS
 from heuncli.base.records import replace
 from heuncli.output.fe_decks import nastran
-from heuncli.output.fe_decks.naming import DeckNames
-from heuncli.output.fe_decks.readme import exact
+from heuncli.output.fe_decks.parts import DeckNames, exact
 from heuncli.output.fe_decks.registry import DECKS
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_vectors

@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
 from heuncli.app.commands.lagrange import course_page
-from heuncli.app.commands.lagrange.options import parse_range
+from heuncli.app.commands.lagrange.command import parse_range
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.table_units import Units
 from tests.shared.folders import ROOT

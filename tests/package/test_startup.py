@@ -62,7 +62,7 @@ RARE = {
     "heuncli.study.queries.measure",
     "heuncli.study.queries.expectations",
     "heuncli.output.tables.export",
-    "heuncli.app.cli.app",
+    "heuncli.app.cli.typer_reader",
 }
 # the last: pydantic, for plugins; pydantic_core judges entries with errors
 STRANGE = {"scipy", "rich", "typer", "numpy.ma", "pydantic_core", "pydantic", "importlib.metadata"}
@@ -100,7 +100,7 @@ def test_a_plain_run_loads_what_it_needs() -> None:
         (("model", "-"), DOOR, {"heuncli.loads.redundancy.advice"}),
         (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.output.snapshots.measure"}),
         (("run", "-", "--format", "json"), CHAIN, {"heuncli.output.tables.export"}),
-        (("run", "--help"), "", {"heuncli.app.cli.app", "typer"}),
+        (("run", "--help"), "", {"heuncli.app.cli.typer_reader", "typer"}),
     ],
 )
 @pytest.mark.third

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.plot.kinds import COMMON_OPTIONS, KINDS
 from heuncli.app.commands.plot.request import PlotRequest
+from heuncli.app.commands.plot.target import COMMON_OPTIONS, KINDS
 from heuncli.output.drawing import matplotlib_file, svg_converters
 from tests.shared.command import HANGING, Heun
 

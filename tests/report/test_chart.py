@@ -16,7 +16,7 @@ from heuncli.analyses.work_precision.results import (
     mark_front,
     round_as_shown,
 )  # fmt: skip
-from heuncli.app.commands.chart import page as report
+from heuncli.app.commands import chart as report
 from heuncli.base.records import replace
 from heuncli.output.documents.as_csv import render_csv
 from heuncli.output.documents.as_json import dump_json

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.app.commands.model.command import make_document
+from heuncli.app.commands.model import make_document
 from heuncli.output.documents.as_text import DEFAULT_WIDTH, render_text
 
 MODEL = {

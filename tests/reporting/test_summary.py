@@ -15,7 +15,7 @@ import pytest
 
 from heuncli.output.summary.summary_document import MAX_LINES, choose_rows, format_direction
 from heuncli.output.summary.summary_rows import SummaryRow
-from heuncli.output.tables.name_ranges import join_ranges
+from heuncli.output.tables.nouns import join_ranges
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 

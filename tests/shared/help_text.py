@@ -10,7 +10,7 @@ from pathlib import Path
 from heuncli.app.cli import fast_path
 
 HELP = Path(fast_path.HELP)
-CODE = "import sys; from heuncli.app.cli import app; sys.exit(app.read(['--help']))"
+CODE = "import sys; from heuncli.app.cli import typer_reader; sys.exit(typer_reader.read(['--help']))"
 
 
 def help_of_typer(columns: int = fast_path.MIN_HELP_WIDTH) -> str:

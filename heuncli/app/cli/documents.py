@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from heuncli.app.cli import terminal
 from heuncli.app.cli.output import emit
+from heuncli.base.text_safety import escape
 from heuncli.output.documents.as_text import PLAIN, TextStyle, iter_text, render_text
-from heuncli.output.documents.document import OutputDocument, OutputTable
+from heuncli.output.documents.document import OutputDocument, OutputTable, is_governing
+from heuncli.output.documents.text_table import align_cells
 
 if TYPE_CHECKING:
     from heuncli.output.drawing.figure import Figure
 
 TEXT_FORMS = ("table", "text")
+GOVERNING, UNCLEAR, NOTE, HEADING = "bold red", "yellow", "dim", "bold"  # styles of rich
+UNCLEAR_NOTES = ("indeterminate",)  # beginnings of notes that limit what the table says
 UNLIMITED = PLAIN._replace(width=None)  # of what is searched by programs as well, line by line
 
 
@@ -45,8 +50,6 @@ def is_rich(form: str, output: str | None) -> bool:
 
 def render_rich_document(document: OutputDocument) -> list[str]:
     """Render a document for a terminal: heading, its first table set by rich, and the other parts."""
-    from heuncli.app.cli.rich_tables import render_rich  # 40 ms, only for a terminal
-
     style = make_terminal_style()
     first, *others = document.parts
     assert isinstance(first, OutputTable)
@@ -80,3 +83,36 @@ def _find_writer(form: str) -> Callable[[OutputDocument], str]:
         assert form == "markdown"
         from heuncli.output.documents.as_markdown import render_markdown as render
     return render
+
+
+def render_rich(table: OutputTable, width: int | None) -> str:
+    """Render the table with escape codes for a width in columns; it ends with a newline."""
+    from rich import box  # 40 ms, only for a terminal
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    heading, _, explanation = table.heading.partition("  ")
+    target = io.StringIO()
+    console = Console(file=target, width=width, force_terminal=True, highlight=False, legacy_windows=False)
+    console.print(Text.assemble((escape(heading), HEADING), "  ", (escape(explanation), NOTE)))
+    _, *texts = align_cells(table)
+    if texts:
+        setting = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+        for column, cells in zip(table.columns, zip(*texts, strict=True), strict=True):
+            narrowest = max(map(len, cells)) if column.is_number else None  # of a number only the head is wrapped
+            justify: Literal["left", "right"] = "right" if column.is_number else "left"
+            title = escape(column.title).replace(" [", "\n[")  # the unit below the name
+            setting.add_column(Text(title), justify=justify, min_width=narrowest)
+        rows = [row for row in table.rows if not isinstance(row, str)]
+        for row, cells in zip(rows, texts, strict=True):
+            setting.add_row(
+                *(
+                    Text(text, style=GOVERNING if is_governing(cell) else "")
+                    for cell, text in zip(row, cells, strict=True)
+                )
+            )
+        console.print(setting)
+    for note in table.notes:
+        console.print(Text(escape(note), style=UNCLEAR if note.startswith(UNCLEAR_NOTES) else NOTE))
+    return target.getvalue()

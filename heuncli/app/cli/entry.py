@@ -11,13 +11,13 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from heuncli.app.cli import fast_path, memory, plain, timeout
+from heuncli.app.cli import fast_path, timeout
+from heuncli.app.cli.command_line import read_command_line
 from heuncli.app.cli.output import emit, print_stderr
-from heuncli.app.cli.registry import ParsedCommand
 from heuncli.base.errors import HeunError, LimitError, Problem
 from heuncli.base.errors import UsageError as UsageError  # re-exported for the commands
 from heuncli.base.files import ReaderGoneError
-from heuncli.base.process import progress_listener
+from heuncli.base.process import progress_listener, remaining_address_space
 from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.reading import forget_files_read
 from heuncli.version import VERSION
@@ -26,6 +26,8 @@ INTERRUPTED = 130
 Given = TypeVar("Given")
 BUG = 70
 EXIT_CODE_PRIORITY = (BUG, 5, 2, 3, 4, 1)  # manual/commands.md, "Exit codes": which exit code stands for several files
+MIN_MEMORY = 160e6  # bytes of address space for the modules of Python, NumPy and the kernel
+UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # messages of system loaders
 OUT_OF_MEMORY = Problem("out-of-memory", "not enough memory", hint="use fewer samples, or --only")
 
 
@@ -66,7 +68,7 @@ def run_contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
         error = LimitError(OUT_OF_MEMORY)
     except Exception as mishap:
         _print_traceback()
-        error = LimitError(OUT_OF_MEMORY) if memory.is_memory_error(mishap) else Bug(_make_bug_problem(mishap, argv))
+        error = LimitError(OUT_OF_MEMORY) if _is_memory_error(mishap) else Bug(_make_bug_problem(mishap, argv))
     raise error
 
 
@@ -99,13 +101,13 @@ def _run_command(argv: list[str]) -> int:
     if (text := fast_path.find_text(argv)) is not None:
         emit(text)
         return 0
-    parsed = plain.read(argv) or _parse_with_typer(argv)
+    parsed = read_command_line(argv)
     if isinstance(parsed, int):
         return parsed
     command, request = parsed
     for name in ("time_limit", "time_limit_each"):
         _require_limit(f"--{name.replace('_', '-')}", getattr(request, name, None))
-    memory.require_minimum()
+    _require_memory()
     limit = getattr(request, "time_limit", None)
     with progress_listener(None if getattr(request, "quiet", False) else lambda text: print_stderr(f"heun: {text}")):
         return timeout.run_with_limit(lambda: command.main(request), limit, command.grace, command.phase)
@@ -118,25 +120,22 @@ def _require_limit(option: str, limit: float | None) -> None:
         raise UsageError(Problem("bad-option", f"{option} {limit:g}: expected a positive number", hint=hint))
 
 
-def _parse_with_typer(argv: list[str]) -> ParsedCommand | int:
-    import contextlib
-    import io
-    import warnings
+def _require_memory() -> None:
+    """Raise LimitError [out-of-memory] if a limit on the address space leaves too little to start."""
+    available = remaining_address_space()
+    if available is None:
+        return
+    if available < MIN_MEMORY:
+        message = f"the memory limit leaves {available / 1e6:.0f} MB; heun needs {MIN_MEMORY / 1e6:.0f} MB to start"
+        raise LimitError(Problem("out-of-memory", message, hint="raise the limit (ulimit -v)"))
+    import numpy as np
 
-    output, errors = io.StringIO(), io.StringIO()  # typer reports to output if standard error is closed
-    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors), warnings.catch_warnings():
-        # An older typer may use deprecated parts of a newer click; `python -W error` must not fail for that.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        from heuncli.app.cli import app
+    np.ones((64, 64)) @ np.ones((64, 64))  # BLAS allocates its memory now; it would end the process without any
 
-        parsed = app.read(list(map(escape, argv)))  # an error message quotes the words
-        if not isinstance(parsed, int):
-            parsed = app.read(argv)
-    if text := errors.getvalue():
-        print_stderr(text.removesuffix("\n"))
-    if text := output.getvalue():
-        emit(text)
-    return parsed
+
+def _is_memory_error(error: Exception) -> bool:
+    """Return whether a library could not be loaded for lack of memory."""
+    return isinstance(error, ImportError) and any(words in str(error) for words in UNMAPPED)
 
 
 def _print_traceback() -> None:

@@ -6,8 +6,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from heuncli.app.cli.entry import UsageError
-from heuncli.base.errors import Problem
+from heuncli.base.errors import Problem, UsageError
 from heuncli.base.files import STDOUT
 from heuncli.scene.file_format.reading import find_name_read
 

@@ -1,11 +1,11 @@
 """The vocabulary of requests: the class of an option, and the options that many commands share.
 
 A request is a named tuple, one per command. Each field is an option or argument; its annotation holds the words and the
-help text. Two parsers fill it: app/cli/plain.py for plain command lines, and app/cli/app.py through typer for help and
-usage errors. Named tuples, not dataclasses, because those take 0.6 ms each to define, and every command pays.
+help text. app/cli/command_line.py fills it from the words of a line. Named tuples, not dataclasses, because those take
+0.6 ms each to define, and every command pays.
 """
 
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, get_type_hints
 
 from heuncli.base.named_tuples import NamedTuple
 
@@ -16,7 +16,7 @@ class Option(NamedTuple):
     words: its words; none: an argument
     help: what it does
     metavar: the name of its value in the help
-    completes: the key in app/cli/completion.py of its shell completion
+    completes: the key in app/cli/typer_reader.py of its shell completion
     """
 
     words: tuple[str, ...]
@@ -65,6 +65,7 @@ SPEC = Option((), "YAML file of the spec; - reads standard input.", "SPEC", comp
 class Request(Protocol):
     """A named tuple of options, such as RunRequest in app/commands/run/request.py; its docstring is the help."""
 
+    _fields: ClassVar[tuple[str, ...]]
     _field_defaults: ClassVar[dict[str, Any]]
 
     def __init__(self, **values: Any) -> None: ...
@@ -80,5 +81,5 @@ class RequestField(NamedTuple):
 
 def list_fields(request: type[Request]) -> list[RequestField]:
     """List the options and arguments of a command, in their order."""
-    notes = request.__annotations__.items()
-    return [RequestField(name, note.__origin__, note.__metadata__[0]) for name, note in notes]
+    notes = get_type_hints(request, include_extras=True)
+    return [RequestField(name, notes[name].__origin__, notes[name].__metadata__[0]) for name in request._fields]

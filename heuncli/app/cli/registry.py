@@ -1,14 +1,11 @@
-"""The table of commands: a new command is a folder in heuncli/app/commands and a row here.
+"""The table of commands: a new command is a module in heuncli/app/commands and a row here.
 
-The folder of a command holds the code that only this command needs:
+The module has the named tuple of the command's options, such as ModesRequest of `heun modes`, and main(request) -> exit
+code. A longer command is a folder: `command.py` with main, and the modules that only this command needs, such as
+`page.py` for how its result is shown. What a command computes is in heuncli/analyses.
 
-    request.py   the named tuple of its options, such as RunRequest of `heun run`; imports the vocabulary of
-                 app/cli/options.py and nothing else, because `--help` reads the requests of all commands
-    command.py   main(request) -> exit code; the only module that knows the command line, files and the terminal
-    page.py      how the result is shown; and the like. What it computes is in heuncli/analyses
-
-Both modules are imported by name when the command runs, so nothing below heuncli/app/commands imports them, and no
-command loads code of another. Code that two commands share is in layers below: app/cli, output, analyses or study.
+A module is imported by its name when its command runs, so nothing below heuncli/app/commands imports it, and no command
+loads code of another. Code that two commands share is in layers below: app/cli, output, analyses or study.
 """
 
 from __future__ import annotations
@@ -20,12 +17,16 @@ from heuncli.app.cli.options import Request
 from heuncli.app.cli.timeout import DEFAULT_PHASE, GRACE
 from heuncli.base.named_tuples import NamedTuple
 
+FOLDER = "heuncli.app.commands"
+
 
 class Command(NamedTuple):
     """A command.
 
     name: its word on the command line
-    folder: its folder in heuncli/app/commands, if not the name
+    help: what it does, a line of `heun --help`; stands here so that the list of commands imports none
+    module: where its `main` is, in heuncli/app/commands, if not in the module of its name
+    request_module: where its request is, if not there: `heun run --help` needs no more than that
     page: the manual page that describes it
     grace: how long it may run beyond its time limit [s]; longer for a command that then shows a partial result
     phase: what the error of the time limit names as the current work, if app/cli/timeout.py has no words for the
@@ -33,7 +34,9 @@ class Command(NamedTuple):
     """
 
     name: str
-    folder: str = ""
+    help: str
+    module: str = ""
+    request_module: str = ""
     page: str = "commands"
     grace: float = GRACE
     phase: str = DEFAULT_PHASE
@@ -41,15 +44,16 @@ class Command(NamedTuple):
     @property
     def request(self) -> type[Request]:
         """The named tuple of its options."""
-        request_type: type[Request] = getattr(self._module("request"), f"{self.name.capitalize()}Request")
+        module = import_module(f"{FOLDER}.{self.request_module or self.module or self.name}")
+        request_type: type[Request] = getattr(module, f"{self.name.capitalize()}Request")
         return request_type
 
     def main(self, request: Request) -> int:
         """Run the command; returns the exit code."""
-        return int(self._module("command").main(request))
+        return int(self._import_module().main(request))
 
-    def _module(self, file: str) -> Any:
-        return import_module(f"heuncli.app.commands.{self.folder or self.name}.{file}")
+    def _import_module(self) -> Any:
+        return import_module(f"{FOLDER}.{self.module or self.name}")
 
 
 class ParsedCommand(NamedTuple):
@@ -60,29 +64,107 @@ class ParsedCommand(NamedTuple):
 
 
 COMMANDS = (
-    Command("run"),
-    Command("validate"),
-    Command("model", page="model"),
-    Command("modes", page="modes"),
-    Command("balance", page="balance", phase="while the cycle was computed"),
-    Command("chart", page="chart", grace=0.8),
-    Command("probe", page="probe", phase="while disturbances of the motion were examined"),
-    Command("lagrange", page="lagrange", phase="while the equations were formed"),
-    Command("sweep", page="variants"),
-    Command("find", page="variants"),
-    Command("sensitivity", page="variants"),
-    Command("tune", page="variants", grace=0.8, phase="while variants were solved"),
-    Command("plot", page="pictures"),
-    Command("show", page="pictures"),
-    Command("report", page="pictures"),
-    Command("export", page="exporting"),
-    Command("check", page="pipelines"),
-    Command("diff", page="pipelines"),
-    Command("import", folder="importing", page="importing"),
-    Command("methods", page="methods"),
-    Command("explain"),
-    Command("schema"),
-    Command("new"),
+    Command("run", "Solve a spec and report its loads and motion.", module="run.command", request_module="run.request"),
+    Command("validate", "Read specs and report every error of every file."),
+    Command("model", "Show the model that heun makes from a spec, and why.", page="model"),
+    Command(
+        "modes",
+        "Find frequencies, damping and mode shapes of small oscillations about the rest position.",
+        page="modes",
+    ),
+    Command(
+        "balance",
+        "Find inertia forces (mass effects) over a cycle: foundation loads by order, counterweights, flywheel.",
+        module="balance.command",
+        page="balance",
+        phase="while the cycle was computed",
+    ),
+    Command(
+        "chart",
+        "Compare speed and accuracy of methods at several tolerances or steps, and show which fail and where.",
+        page="chart",
+        grace=0.8,
+    ),
+    Command(
+        "probe",
+        "Show where a motion is numerically difficult (singular positions, stiffness, chaos), with a verdict.",
+        page="probe",
+        phase="while disturbances of the motion were examined",
+    ),
+    Command(
+        "lagrange",
+        "Evaluate Lagrange's equations: effective inertia, generalised forces by cause, velocity terms.",
+        module="lagrange.command",
+        page="lagrange",
+        phase="while the equations were formed",
+    ),
+    Command(
+        "sweep",
+        "Solve variants of a spec and list a result of each.",
+        module="sweep.command",
+        request_module="sweep.request",
+        page="variants",
+    ),
+    Command(
+        "find",
+        "Find every value of a parameter at which a result equals a value, or where it is below or above.",
+        module="find.command",
+        page="variants",
+    ),
+    Command("sensitivity", "Show how results depend on parameters.", module="sensitivity.command", page="variants"),
+    Command(
+        "tune",
+        "Find the parameter values that minimise or maximise a result, within limits on other results.",
+        module="tune.command",
+        request_module="tune.options",
+        page="variants",
+        grace=0.8,
+        phase="while variants were solved",
+    ),
+    Command(
+        "plot",
+        "Plot loads and motion (over time, along a bar, polar), the machine, a sweep, modes or orders.",
+        module="plot.command",
+        request_module="plot.request",
+        page="pictures",
+    ),
+    Command(
+        "show",
+        "Show the moving machine and its loads on a self-contained page for a browser.",
+        module="show.command",
+        page="pictures",
+    ),
+    Command(
+        "report",
+        "Write a client report: loads, sections, checks, the machine, and the accuracy of the results.",
+        module="report.command",
+        request_module="report.request",
+        page="pictures",
+    ),
+    Command("export", "Write self-balanced load cases of a body for a stress analysis.", page="exporting"),
+    Command(
+        "check",
+        "Check specs, and folders of specs, against their `expect` values and golden files.\n\n"
+        "With --references: check published cases against their published results.",
+        module="check.command",
+        request_module="check.request",
+        page="pipelines",
+    ),
+    Command(
+        "diff",
+        "Show what changed by more than the stated errors between two specs, golden files or JSON results.",
+        page="pipelines",
+    ),
+    Command(
+        "import",
+        "Convert a model of another program to a spec: a robot in URDF, or a MuJoCo model (MJCF).",
+        module="importing",
+        page="importing",
+    ),
+    Command("methods", "List the integration methods and their uses.", page="methods"),
+    Command("explain", "Show a page or section of the manual, or explain a term or code.", module="explain.command"),
+    Command("schema", "Print the JSON Schema of specs, for editors."),
+    Command("new", "Write a spec to start from; without arguments, list the kinds."),
 )
 
 

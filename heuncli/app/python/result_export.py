@@ -1,17 +1,21 @@
-"""Export a solved scene as text, as an HTML fragment and as a file, with the tables of `heun run`."""
+"""Export a solved scene as text, HTML and a file, with the tables of `heun run`, and signals as a pandas.DataFrame.
+
+pandas is an optional extra (heuncli[pandas])."""
 
 from __future__ import annotations
 
 import dataclasses
+import importlib.util
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.records import replace
 from heuncli.output.documents.as_html import escape_text, make_element, render_table
 from heuncli.output.documents.as_text import render_text
+from heuncli.output.documents.document import format_head
 from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.output.snapshots.tables import TablesQuery
 from heuncli.output.summary.run_document import RunParts, make_run_parts
@@ -21,6 +25,12 @@ from heuncli.study.model.selection import Selection
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units, read_display_units
 from heuncli.study.queries.study import Study
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from heuncli.app.python.locked_run import LockedRun
+    from heuncli.app.python.signals import Signal
 
 # no colours, so that light and dark notebooks keep theirs; all rules apply within this class only
 STYLE = (
@@ -97,3 +107,35 @@ def write_results(file: str | os.PathLike[str], forms: Mapping[str, Callable[[],
         message = f"save {path.name}: unknown file extension; accepted: {', '.join(forms)}"
         raise UsageError(Problem("bad-option", message, hint="save diagrams with study.plot(...).save(file)"))
     path.write_text(form(), encoding="utf-8", newline="\n")
+
+
+INSTALL = 'pip install "heuncli[pandas]"; study[PATH].values needs only NumPy'
+
+
+def make_frame(run: LockedRun, signals: Sequence[Signal], units: bool, *, is_explicit: bool) -> pd.DataFrame:
+    """Make a frame with one column per number and one row per instant. Raises UsageError [missing-extra], [bad-option].
+
+    is_explicit: whether the caller named the signals; then one without instants is an error, else it is left out
+    """
+    if importlib.util.find_spec("pandas") is None:
+        message = "frame: requires pandas, which is not installed"
+        raise UsageError(Problem("missing-extra", message, hint=INSTALL))
+    timeless = next((signal for signal in signals if signal.times is None), None)
+    if is_explicit and timeless is not None:
+        hint = f'use study["{timeless.path}"].values'
+        raise UsageError(Problem("bad-option", f"frame: {timeless.path} does not depend on time", hint=hint))
+    import pandas as pd
+
+    columns, unit_names, errors = {}, {}, {}
+    times = run.results.time.copy()  # the index may keep a reference
+    for signal in signals:
+        if signal.times is None or signal.path == "time":
+            continue
+        flat = signal.values.reshape(len(times), -1)
+        for component, column in zip(signal.components, flat.T, strict=True):
+            path = f"{signal.path}.{component}" if component else signal.path
+            name = format_head(path, signal.unit) if units else path
+            columns[name], unit_names[name], errors[name] = column.copy(), signal.unit, signal.error
+    frame = pd.DataFrame(columns, index=pd.Index(times, name="time [s]" if units else "time"))
+    frame.attrs = {"units": unit_names, "errors": errors, "title": run.results.title}
+    return frame

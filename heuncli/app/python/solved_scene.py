@@ -256,7 +256,7 @@ class Solved(Mapping[str, "Signal"]):
         Units also stand in `frame.attrs["units"]`, errors in `frame.attrs["errors"]`. nan is indeterminate or beyond
         the horizon. Raises UsageError if pandas is not installed, or if a path has no instants.
         """
-        from heuncli.app.python.frames import make_frame
+        from heuncli.app.python.result_export import make_frame
 
         check_arguments(("units", units, BOOLEAN), ("paths", paths, TEXTS), optional=False)
         return make_frame(self._run, [self[path] for path in paths or self.paths()], units, is_explicit=bool(paths))

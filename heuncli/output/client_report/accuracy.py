@@ -27,7 +27,7 @@ from heuncli.output.documents.document import (
 )
 from heuncli.output.tables.certain_sums import make_sums_table
 from heuncli.output.tables.heading import make_heading
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.results.path_words import error_kind_of_path
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.reader_numbers import choose_reader_style

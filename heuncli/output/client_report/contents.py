@@ -14,8 +14,8 @@ from heuncli.output.client_report.loads import make_load_parts
 from heuncli.output.client_report.machine import make_drawing_parts, make_model_parts
 from heuncli.output.client_report.report_data import CHAPTER_NAMES, ON_REQUEST, ReportData, ReportedRun
 from heuncli.output.client_report.sections import make_section_parts
+from heuncli.output.documents.as_html import Sheet
 from heuncli.output.documents.document import Brand, Chapter, OutputDocument, Part, Sentence, Verbatim, has_content
-from heuncli.output.documents.sheet import Sheet
 from heuncli.output.tables.event_table import make_events_table
 from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables
 

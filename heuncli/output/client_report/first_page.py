@@ -16,7 +16,7 @@ from heuncli.output.client_report.report_data import ReportData
 from heuncli.output.client_report.summary_table import make_summary_table
 from heuncli.output.documents.document import Facts, Mood, Part, Sentence, join_names
 from heuncli.output.tables.impulse_tables import find_largest_impulses
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.study.quantities.captions import describe_object, describe_path, describe_sentence
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 

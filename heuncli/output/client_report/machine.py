@@ -23,7 +23,7 @@ from heuncli.output.documents.document import (
 from heuncli.output.figures.courses import FigureSource, is_claimed
 from heuncli.output.figures.scenes import make_scene_figure
 from heuncli.output.machine_geometry.poses import Poses, extract_poses
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
 from heuncli.scene.expressions.programs import Expression

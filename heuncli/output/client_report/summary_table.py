@@ -22,7 +22,7 @@ from heuncli.output.snapshots.tables import SearchedPage
 from heuncli.output.summary.run_document import summarise
 from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases
 from heuncli.output.summary.summary_rows import MIN_TURN, SummaryRow
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.results.results import NOWHERE, Extremes
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.cut_runs import collect_runs

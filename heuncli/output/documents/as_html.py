@@ -1,15 +1,14 @@
-"""Write a document as one HTML file without scripts and without external resources. Text from a spec is never markup.
+"""Write a document as one HTML file without scripts and without external resources, for the screen or for paper.
 
-Every text goes through `escape_text`, every element through `make_element`: nothing else writes a `<`, except the
-figures, which are SVG made by heun and escape their own texts.
-"""
+Text from a spec is never markup."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.decimal_comma import use_decimal_comma
 from heuncli.output.documents.document import (
@@ -28,7 +27,6 @@ from heuncli.output.documents.document import (
     has_content,
     is_governing,
 )
-from heuncli.output.documents.sheet import A4, Sheet, make_page_style
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.shapes import Text, to_svg
 from heuncli.output.drawing.shapes import escape_xml as escaped_for_xml
@@ -40,6 +38,20 @@ MAX_WHOLE_ROWS = 20  # of a table that is kept on one page
 TALL_HEIGHT = 480.0  # pixels of a first figure that has a key of its numbers below, and gets more of the page
 LONG_CELL = 34  # characters; a longer cell may wrap
 VOID_TAGS = ("meta", "br", "img")  # tags without an end tag
+PAPERS = {"a4": "A4", "letter": "letter"}  # words of --paper -> names of CSS
+
+
+class Sheet(NamedTuple):
+    """The paper format, and the left and right texts of the page header (not on the first page)."""
+
+    paper: Literal["a4", "letter"] = "a4"
+    is_landscape: bool = False
+    head: str = ""
+    head_right: str = ""
+    foot: str = ""
+
+
+A4 = Sheet()
 
 
 def render_html(document: OutputDocument, sheet: Sheet = A4) -> str:
@@ -216,3 +228,28 @@ RENDERERS: dict[type[Part], Callable[[Any], str]] = {
     Drawing: _render_drawing,
     Verbatim: _render_verbatim,
 }
+
+
+def make_page_style(sheet: Sheet) -> str:
+    """Make the style of pages: size, heads and feet. Every text is written in escapes, so that none is a rule."""
+    size = f"{PAPERS[sheet.paper]} {'landscape' if sheet.is_landscape else 'portrait'}"
+    font = "font: 8pt sans-serif; color: #555"
+    boxes = {
+        "top-left": (sheet.head, "width: 75%; vertical-align: bottom; padding-bottom: 3mm"),
+        "top-right": (sheet.head_right, "vertical-align: bottom; padding-bottom: 3mm"),
+        "bottom-left": (sheet.foot, "width: 75%; vertical-align: top; padding-top: 3mm"),
+    }
+    rules = [f"  @{name} {{ content: {quote_css(text)}; {font}; {place} }}"
+             for name, (text, place) in boxes.items() if text]  # fmt: skip
+    rules.append(
+        f'  @bottom-right {{ content: counter(page) " / " counter(pages); {font}; vertical-align: top; '
+        "padding-top: 3mm }"
+    )
+    first = "@page :first {\n  @top-left { content: none }\n  @top-right { content: none }\n}\n"
+    return f"\n@page {{\n  size: {size};\n" + "\n".join(rules) + "\n}\n" + first
+
+
+def quote_css(text: str) -> str:
+    """Quote a text for CSS, with every character but letters and digits of ASCII as its number."""
+    safe = (c if c.isascii() and c.isalnum() else f"\\{ord(c):06x}" for c in escape(text))
+    return '"' + "".join(safe) + '"'

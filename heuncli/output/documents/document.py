@@ -215,6 +215,11 @@ def format_cell(cell: Cell) -> str:
     return "" if cell is None else str(cell) if isinstance(cell, int) else f"{cell:.6g}"
 
 
+def is_zero_cell(cell: Cell) -> bool:
+    """Return whether a cell is empty, or a number that is printed as 0."""
+    return format_cell(cell) in ("", "0")
+
+
 def is_governing(cell: Cell) -> bool:
     """Return whether the value of a cell governs."""
     return isinstance(cell, TextCell) and cell.is_governing

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
-from heuncli.output.fe_decks.naming import DeckNames, DeckNodes, NodeLoad
-from heuncli.output.fe_decks.readme import case_heading, exact, part_lines, readme
+from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, NodeLoad, case_heading, exact, part_lines, readme
 from heuncli.results.results import Array
 
 MARK = "!"
@@ -28,7 +27,7 @@ CARD_NOTES = (
 FORCE_LABELS = ("FX", "FY", "FZ", "MX", "MY", "MZ")
 
 
-def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
+def write_ansys(cases: LoadCases, names: DeckNames) -> Iterator[str]:
     """Yield the text of the macro, in pieces."""
     nodes = DeckNodes(cases, names)
     yield from readme(cases, nodes, MARK, TIE_NOTE, CARD_NOTES)

@@ -18,8 +18,7 @@ import numpy as np
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
 from heuncli.base.records import replace
-from heuncli.output.fe_decks.naming import DeckNames, DeckNodes, NodeLoad, step_name
-from heuncli.output.fe_decks.readme import case_heading, part_lines, readme
+from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, NodeLoad, case_heading, part_lines, readme, step_name
 from heuncli.results.results import Array
 
 MARK = "$"
@@ -41,7 +40,7 @@ FIELD_WIDTH = 16
 SETS_PER_CASE = 10  # load set numbers reserved for a case: the sum, then forces, GRAV, RFORCE of A, of RACC
 
 
-def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
+def write_nastran(cases: LoadCases, names: DeckNames) -> Iterator[str]:
     """Yield the text of the deck, in pieces."""
     nodes = DeckNodes(cases, names)
     yield from readme(cases, nodes, MARK, TIE_NOTE, (*CARD_NOTES, _rounding_note(cases)))
@@ -146,7 +145,7 @@ def parse_real(text: str) -> float:
     return float(text) if not sign else float(f"{text[0]}{head}e{sign}{tail}")
 
 
-def notes(cases: LoadCases, names: DeckNames) -> list[str]:
+def list_nastran_notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Warn if a sign depends on the dialect."""
     if any(case.field.angular_acceleration.any() for case in cases.cases):
         return ["RACC has the sign for OptiStruct, MSC and Simcenter; MYSTRAN needs the opposite sign"]

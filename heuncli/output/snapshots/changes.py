@@ -11,8 +11,7 @@ from collections.abc import Iterator, Mapping
 from itertools import chain
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots.change import Change
-from heuncli.output.snapshots.course_changes import find_course_changes, have_different_instants
+from heuncli.output.snapshots.change import Change, find_course_changes, have_different_instants
 from heuncli.output.snapshots.golden_file import (
     BOUNDS,
     N_EVEN,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputTable
-from heuncli.output.snapshots.pins_note import add_pins_note
+from heuncli.output.snapshots.run_notes import add_pins_note
 from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, DoubtfulInstants
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, Extremes, Results

@@ -8,9 +8,8 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.tables.extremes_tables import PART
-from heuncli.output.tables.name_ranges import join_ranges
+from heuncli.output.tables.nouns import format_count, join_ranges
 from heuncli.output.tables.page import Page
-from heuncli.output.tables.plurals import format_count
 from heuncli.results.results_schema import RESULTANTS
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import Channel

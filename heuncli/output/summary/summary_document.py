@@ -13,7 +13,7 @@ from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, T
 from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
 from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow
 from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NOTE
-from heuncli.output.tables.name_ranges import join_ranges
+from heuncli.output.tables.nouns import join_ranges
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels

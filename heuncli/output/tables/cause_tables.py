@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, format_cell, is_zero_cell
 from heuncli.output.documents.text_table import INDENT
 from heuncli.output.tables.cut_runs import format_place
 from heuncli.output.tables.table_blocks import TableBlock
@@ -60,14 +60,14 @@ class NumberWithShares(NamedTuple):
 class ShareLine(NamedTuple):
     """One table row: a number with its shares. The rows of one family show the same decimals.
 
-    position: the instant or place as text
+    position: the instant, or the place along a series of cuts as text
     total: the number itself, None for a row of direct shares
     is_beyond_horizon: whether nothing is claimed at its instant
     is_uncertain: whether the instant is so near a singular position that the number is not known
     """
 
     label: str
-    position: str
+    position: Cell
     row: Channel
     shares: dict[str, float]
     total: float | None
@@ -138,7 +138,7 @@ def make_instants_tables(
     certain: StatedErrors,
 ) -> list[OutputTable]:
     """Make the table of all numbers of a block that have shares, at every instant. Empty list if there are none."""
-    clock = [""] if len(times) == 1 else [f"{x} s" for x in write_times(times.tolist(), float(np.ptp(times)))]
+    clock: list[Cell] = [""] if len(times) == 1 else [*_make_instants(times.tolist(), float(np.ptp(times)))]
     groups: list[tuple[str, list[ShareLine]]] = []
     for group in block.groups:
         lines: list[ShareLine] = []
@@ -200,10 +200,16 @@ def make_share_line(
 ) -> ShareLine:
     """Make the row of a number at one instant."""
     k = int(np.searchsorted(instants, time))
-    clock = f"{write_times([time], span)[0]} s" if span > 0.0 else ""
+    clock: Cell = _make_instants([time], span)[0] if span > 0.0 else ""
     return ShareLine(
         label, clock, number.row, {cause: float(values[k]) for cause, values in number.shares.items()}, value
     )
+
+
+def _make_instants(times: Sequence[float], span: float) -> list[NumberCell]:
+    """Make the cells of instants, which are printed with their unit."""
+    texts = write_times(times, span)
+    return [NumberCell(t, cached_text=f"{text} s") for t, text in zip(times, texts, strict=True)]
 
 
 def make_heading(block: TableBlock) -> str:
@@ -219,16 +225,16 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
     causes = dict.fromkeys(cause for line in all_lines for cause in line.shares)
     shown_causes, small_causes = choose_causes(list(causes), all_lines)
     heads = [*shown_causes, *[f"{len(small_causes)} others"] * bool(small_causes), *TOTAL_COLUMNS]
-    rows: list[tuple[str, ...] | str] = []
+    rows: list[tuple[Cell, ...] | str] = []
     shown_lines: list[ShareLine] = []
     special_words, left_out = set[str](), False
-    number_cells: list[list[str]] = []
+    number_cells: list[list[Cell]] = []
     for title, lines in groups:
-        texts = format_lines(lines, heads[:-2], small_causes, certain)
+        all_cells = make_share_cells(lines, heads[:-2], small_causes, certain)
         shown_here = [
             (line, cells_of_line)
-            for line, cells_of_line in zip(lines, texts, strict=True)
-            if set(cells_of_line) - {"0", ""}
+            for line, cells_of_line in zip(lines, all_cells, strict=True)
+            if not all(map(is_zero_cell, cells_of_line))
         ]
         left_out = left_out or len(shown_here) < len(lines)
         open_labels = find_indeterminate_labels(lines)
@@ -244,7 +250,7 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
         number_cells += [cells_of_line for _, cells_of_line in shown_here]
     if not number_cells:
         return OutputTable(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("all values 0",))
-    empty = [i for i in range(len(heads) - 2) if all(cells_of_line[i] in ("0", "") for cells_of_line in number_cells)]
+    empty = [i for i in range(len(heads) - 2) if all(is_zero_cell(line[i]) for line in number_cells)]
     shown = [i for i in range(len(heads)) if i not in empty]
     lead = 3 if any(line.position for line in all_lines) else 2
     cells = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
@@ -255,7 +261,8 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
     ]
     where = " except where open" if special_words else ""
     notes = [f"all values 0{where}: {', '.join(heads[i] for i in empty)}"] if empty else []
-    notes += make_notes(shown_lines, {heads[i] for i in shown}, special_words.union(*number_cells))
+    special_words |= {format_cell(cell) for cells_of_line in number_cells for cell in cells_of_line}
+    notes += make_notes(shown_lines, {heads[i] for i in shown}, special_words)
     notes += [ZERO_NOTE] if left_out else []
     return OutputTable(heading, tuple(columns), tuple(cells), tuple(notes))
 
@@ -297,10 +304,10 @@ def find_family_scales(lines: Iterable[ShareLine]) -> dict[tuple[str, str], floa
     return scales
 
 
-def format_lines(
+def make_share_cells(
     lines: Sequence[ShareLine], columns: Sequence[str], small_causes: Sequence[str], certain: StatedErrors
-) -> list[list[str]]:
-    """Format the numbers of each row: one for each column, their sum, and the total."""
+) -> list[list[Cell]]:
+    """Make the cells of each row: one for each column, their sum, and the total."""
     numbers: list[list[float | None]] = []
     for line in lines:
         numbers_of_line: list[float | None] = [
@@ -309,23 +316,29 @@ def format_lines(
         numbers_of_line += [sum(line.shares.get(cause, 0.0) for cause in small_causes)] * bool(small_causes)
         total = sum(line.shares.values()) if line.total is not None else None
         numbers.append([*numbers_of_line, total, line.total])
-    texts: list[list[str]] = [[] for _ in lines]
+    cells: list[list[Cell]] = [[] for _ in lines]
     for family, scale in find_family_scales(lines).items():
         members = [i for i, line in enumerate(lines) if find_family(line) == family]
         row = lines[members[0]].row
         size = certain.units.find(row.unit)[1]
-        number_style = certain.choose_style(f"{row.error_kind} {BY_CAUSE}", row.unit, scale)
+        kind = f"{row.error_kind} {BY_CAUSE}"
+        number_style, error = certain.choose_style(kind, row.unit, scale), size * certain.error_of(kind, row.unit)
         flat = iter(write_numbers([size * x for i in members for x in numbers[i] if x is not None], number_style))
         for i in members:
-            texts[i] = ["" if x is None else mark_unknown(x, next(flat), lines[i], certain) for x in numbers[i]]
-    return texts
+            cells[i] = [
+                None if x is None else make_cell(NumberCell(size * x, error, None, next(flat)), x, lines[i], certain)
+                for x in numbers[i]
+            ]
+    return cells
 
 
-def mark_unknown(value: float, text: str, line: ShareLine, certain: StatedErrors) -> str:
-    """Replace the text of a number that is beyond the horizon or uncertain."""
+def make_cell(cell: NumberCell, value: float, line: ShareLine, certain: StatedErrors) -> Cell:
+    """Return the cell of a number, or a word where it is beyond the horizon or uncertain; value: SI."""
     if line.is_beyond_horizon:
-        return format_unclaimed(value, line.row.unit, certain, text)
-    return UNKNOWN if text == OPEN and line.is_uncertain else text
+        return format_unclaimed(value, line.row.unit, certain, cell.text)
+    if cell.text == OPEN:
+        return UNKNOWN if line.is_uncertain else OPEN
+    return cell
 
 
 def make_notes(lines: Sequence[ShareLine], heads: set[str], words: set[str]) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
 from heuncli.output.documents.text_table import INDENT, select_columns
-from heuncli.output.tables.name_ranges import join_ranges
+from heuncli.output.tables.nouns import join_ranges
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, make_cells
 from heuncli.results.results import Array, Extremes
 from heuncli.study.quantities.digits import (

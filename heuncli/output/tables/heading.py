@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.results.results import ErrorEstimate, Results
 from heuncli.study.quantities.digits import LOADS, format_error
 

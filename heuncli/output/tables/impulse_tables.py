@@ -1,36 +1,42 @@
-"""Tables of impacts, in newton seconds: what met when, and for each impact the jumps of velocity and the impulses.
-
-An impulse block has the shape of the time blocks without the axis of instants. With that axis restored, it is laid out
-as one instant. If there are many impacts, all are listed, and tables are shown of those with the largest impulses.
-"""
+"""Tables of impacts, in newton seconds: what met when, and for each impact the jumps of velocity and the impulses."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.document import OutputColumn, OutputTable
+from heuncli.output.documents.document import (
+    Cell,
+    NumberCell,
+    OutputColumn,
+    OutputTable,
+    format_cell,
+    is_zero_cell,
+    make_number_cells,
+)
 from heuncli.output.tables import cut_runs
 from heuncli.output.tables.certain_sums import make_sums_table
-from heuncli.output.tables.impact_table import make_impact_table
-from heuncli.output.tables.instants_tables import make_instants_tables
-from heuncli.output.tables.table_blocks import TableBlock, build_block
+from heuncli.output.tables.instants_tables import make_group_cells, make_instants_tables
+from heuncli.output.tables.table_blocks import RowGroup, TableBlock, build_block
 from heuncli.output.tables.table_plans import IMPULSES
 from heuncli.results.path_words import IMPULSE_BLOCKS, IMPULSE_UNITS, find_quantity
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
-from heuncli.results.results_schema import SHARES
+from heuncli.results.results_schema import SHARES, XYZ
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.quantities.cut_runs import CutRun, collect_runs
 from heuncli.study.quantities.digits import (
+    OPEN,
     UNKNOWN,
+    UNKNOWN_NOTE,
+    ZERO_NOTE,
     StatedErrors,
     add_axis_errors,
     largest_magnitude,
-    write_numbers,
     write_times,
 )
 from heuncli.study.quantities.labels import Labels
@@ -101,12 +107,17 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
     energies = {key: np.array([float(impulse.get(key, np.nan)) for impulse in impulses]) for key in ENERGIES}
     si_units = (UNIT, IMPULSE_UNITS["N·m"])
     (energy_unit, joules), *impulse_units = (certain.units.find(unit) for unit in ("J", *si_units))
-    energy = write_numbers(
+    energy = make_number_cells(
         (joules * np.concatenate(list(energies.values()))).tolist(),
         certain.choose_style("energy", "J", max(map(largest_magnitude, energies.values()))),
+        joules * certain.error_of("energy", "J"),
     )
     impulse, moment = (
-        write_numbers((size * values).tolist(), certain.choose_style("reactions", unit, largest_magnitude(values)))
+        make_number_cells(
+            (size * values).tolist(),
+            certain.choose_style("reactions", unit, largest_magnitude(values)),
+            size * certain.error_of("reactions", unit),
+        )
         for values, unit, (_, size) in zip(sizes.T, si_units, impulse_units, strict=True)
     )
     clock = write_times(times.tolist(), float(np.ptp(report.results.time)) or float(np.ptp(times)))
@@ -114,13 +125,16 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
     rows = []
     listed = impulses if show_all else impulses[:MAX_LISTED]
     for i, block in enumerate(listed):
-        cells = [impulse[i], moment[i], *energy[i :: len(impulses)]]
+        cells: list[Cell] = [impulse[i], moment[i], *energy[i :: len(impulses)]]
         if horizon is not None and times[i] >= horizon:
             cells = [UNKNOWN] * len(cells)
-        rows.append((str(i), clock[i], ", ".join(block["names"]), *cells))
-    heads = [f"largest [{unit}]" for unit, _ in impulse_units]
-    heads += [f"{word} [{energy_unit}]" for word in ("energy before", "after", "change")]
-    columns = (OutputColumn(""), OutputColumn("t [s]"), OutputColumn("cause", "text"), *map(OutputColumn, heads))
+        instant = NumberCell(float(times[i]), cached_text=clock[i])
+        rows.append((i, instant, ", ".join(block["names"]), *cells))
+    columns = (
+        OutputColumn(""), OutputColumn("t", "instant", "s"), OutputColumn("cause", "text"),
+        *(OutputColumn("largest", unit=unit) for unit, _ in impulse_units),
+        *(OutputColumn(word, unit=energy_unit) for word in ("energy before", "after", "change")),
+    )  # fmt: skip
     numbers = ", ".join(map(str, shown_numbers.tolist()))
     note = f"details below: {numbers} (the largest); all: --all or --format csv"
     hidden_note = f"{len(impulses) - len(listed)} further, the last at t = {clock[-1]} s"
@@ -209,3 +223,84 @@ def add_time_axis(keys: tuple[str, ...], value: Any) -> Any:
         return {key: add_time_axis((*keys, key), member) for key, member in value.items()}
     row = find_quantity(keys)
     return np.asarray(value, dtype=np.float64)[None] if row is not None and row.is_timed else value
+
+
+LEADING_COLUMNS = 3  # name, label and unit
+NUMBER_HEADS = (*XYZ, "value")  # the value of a vector is its magnitude
+
+
+def make_impact_table(
+    heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, certain: StatedErrors
+) -> OutputTable:
+    """Combine the blocks of one impact in a single table, without rows and columns that are zero.
+
+    times: the instant of the impact, (1,)
+    """
+    rows: list[tuple[Cell, ...] | str] = []
+    notes, complete = list[str](), True
+    for block in blocks:
+        row_cells = [line for group in block.groups for line in _iter_rows(block, group, times, horizon, certain)]
+        nonzero = [line for line in row_cells if not all(map(is_zero_cell, line[LEADING_COLUMNS:-1]))]
+        complete &= len(nonzero) == len(row_cells)
+        if nonzero:
+            rows += [block.heading, *_blank_repeated_names(nonzero)]
+            notes += block.notes
+        words = {format_cell(cell) for line in nonzero for cell in line}
+        notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in words]
+    if not rows:
+        return OutputTable(heading, notes=("all values 0",))
+    table = _drop_empty_columns(OutputTable(heading, _make_columns(), tuple(rows)))
+    numbers = {column.title for column in table.columns} & set(NUMBER_HEADS)
+    notes += [ZERO_NOTE] if not complete or len(numbers) < len(NUMBER_HEADS) else []
+    return table._replace(notes=tuple(dict.fromkeys(notes)))
+
+
+def _make_columns() -> tuple[OutputColumn, ...]:
+    leading = [OutputColumn("", "text")] * LEADING_COLUMNS
+    return (
+        *leading,
+        *(OutputColumn(head, vector="numbers") for head in NUMBER_HEADS),
+        OutputColumn("", "text", is_optional=True),
+    )
+
+
+def _iter_rows(
+    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: StatedErrors
+) -> Iterator[tuple[Cell, ...]]:
+    """Yield for each vector, and each other number: name, label, unit, components, value, and the group's note."""
+    cell_of_label = {
+        label: cells_of_label[0]
+        for label, cells_of_label in make_group_cells(block, group, times, horizon, certain).items()
+    }
+    texts = {label: format_cell(cell) for label, cell in cell_of_label.items()}
+    magnitudes = {row.family: texts[row.label] for row in group.rows if row.is_magnitude and row.vector}
+    for _, vector_rows in groupby(group.rows, key=lambda row: row.vector or row.label):
+        rows = list(vector_rows)
+        if not _repeats_magnitude(rows[0], texts, magnitudes):
+            cells = [cell_of_label[row.label] for row in rows]
+            before = [None] * (len(NUMBER_HEADS) - len(cells))
+            # the heading holds the key: "energy after" becomes "after"
+            label = rows[0].vector or rows[0].label.removeprefix(f"{block.key} ")
+            yield (group.caption, label, certain.units.find(rows[0].unit)[0], *before, *cells, group.note)
+
+
+def _repeats_magnitude(row: Channel, texts: Mapping[str, str], magnitudes: Mapping[str, str]) -> bool:
+    """Return whether the row only repeats the vector's magnitude, as a radial force without an axial one."""
+    known = texts[row.label] not in (OPEN, UNKNOWN)
+    return known and not row.vector and row.is_magnitude and texts[row.label] == magnitudes.get(row.family)
+
+
+def _blank_repeated_names(lines: Sequence[tuple[Cell, ...]]) -> Iterator[tuple[Cell, ...]]:
+    """Show the name and note of consecutive rows of one object only in the first of them."""
+    before = None
+    for line in lines:
+        yield line if line[0] != before or not before else ("", *line[1:-1], "")
+        before = line[0]
+
+
+def _drop_empty_columns(table: OutputTable) -> OutputTable:
+    """Drop the columns that are empty or zero in every row."""
+    cells = [row for row in table.rows if not isinstance(row, str)]
+    shown_columns = [i for i in range(len(table.columns)) if not all(is_zero_cell(row[i]) for row in cells)]
+    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
+    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, table.notes)

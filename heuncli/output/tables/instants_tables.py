@@ -58,7 +58,7 @@ def _layout_single_instant(
     has_notes = any(group.note for group in groups)
     rows: list[tuple[Cell, ...] | str] = []
     for group in groups:
-        leading_cells = [group.name] * has_names + [group.note] * has_notes
+        leading_cells = [group.caption] * has_names + [group.note] * has_notes
         rows.append((*leading_cells, *(cells[group.name].get(label, [""])[0] for label in labels)))
     return [OutputColumn(block.what, "text")] * has_names + [
         OutputColumn("", "text", is_shown_once=has_names)

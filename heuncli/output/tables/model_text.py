@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from heuncli.output.documents.document import Facts, Listing, Part
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 
 MAX_NAMES = 12
 PLANE = {"found": "detected", "declared": "declared"}  # how a model came to be planar -> its text

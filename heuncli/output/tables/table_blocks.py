@@ -45,10 +45,14 @@ class RowGroup(NamedTuple):
     label: str = ""
 
     @property
+    def caption(self) -> str:
+        """Label and name."""
+        return f"{self.label} ({self.name})" if self.label else self.name
+
+    @property
     def title(self) -> str:
         """Label, name and note as one line."""
-        name = f"{self.label} ({self.name})" if self.label else self.name
-        return f"{name}  {self.note}".rstrip()
+        return f"{self.caption}  {self.note}".rstrip()
 
 
 class TableBlock(NamedTuple):

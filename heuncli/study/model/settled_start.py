@@ -17,7 +17,7 @@ from heuncli.base.records import replace
 from heuncli.motion.integration.run.runner import make_runner
 from heuncli.multibody.mechanism.couplings import Coupling
 from heuncli.multibody.mechanism.model import Joint, Mechanism
-from heuncli.multibody.stages import Stages
+from heuncli.multibody.stage_cache import Stages
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, lay_out_scene
 from heuncli.results.results import Array

@@ -9,17 +9,18 @@ from functools import partial
 from itertools import starmap
 from pathlib import Path
 
-from heuncli.app.cli import memory, timeout
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError, format_problems, run_contained
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.solving import format_warnings
 from heuncli.app.commands.check import goldens
-from heuncli.app.commands.check.check_result import CheckResult
 from heuncli.app.commands.check.folders import FoundSpec
-from heuncli.app.commands.check.golden_outcomes import NO_FILE, compare_golden
+from heuncli.app.commands.check.goldens import NO_FILE, compare_golden
 from heuncli.app.commands.check.request import CheckRequest
+from heuncli.app.commands.check.results import CheckResult
 from heuncli.base.errors import Finding, HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.process import result_memory
 from heuncli.base.text_safety import escape
 from heuncli.output.snapshots.golden_file import (
     FORMAT,
@@ -126,7 +127,7 @@ def _compare_spec(task: CheckTask, request: CheckRequest, jobs: int, items: list
 def _solve_scene(spec: Spec, task: CheckTask, request: CheckRequest, jobs: int) -> Study:
     """Solve a scene for all that is compared."""
     selection = _select_results(spec, task.file is not None)
-    available, bytes_each = memory.result_memory("table")
+    available, bytes_each = result_memory("table")
     options = Options(
         requested_reports=selection.reports,
         entries=selection.entries,

@@ -15,11 +15,10 @@ from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.target import choose_format, require_writable
 from heuncli.app.commands.check import goldens
-from heuncli.app.commands.check.check_result import FAILED, CheckResult
 from heuncli.app.commands.check.checking import CheckTask, check_spec
 from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs, select_specs
-from heuncli.app.commands.check.page import CheckSummary, make_document, render_github
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
+from heuncli.app.commands.check.results import FAILED, CheckResult, CheckSummary, make_document, render_github
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.text_safety import escape

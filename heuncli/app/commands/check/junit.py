@@ -9,8 +9,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from pathlib import PurePath
 
-from heuncli.app.commands.check.check_result import CheckResult
-from heuncli.app.commands.check.page import format_failure
+from heuncli.app.commands.check.results import CheckResult, format_failure
 from heuncli.output.snapshots.outcomes import Outcome
 
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold

@@ -14,10 +14,9 @@ from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explai
 from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.target import choose_format
-from heuncli.app.commands.check.check_result import CheckResult
-from heuncli.app.commands.check.page import CheckSummary, render_github
 from heuncli.app.commands.check.references_page import ReferenceResult, iter_outcomes, make_document
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
+from heuncli.app.commands.check.results import CheckResult, CheckSummary, render_github
 from heuncli.base import files
 from heuncli.base.errors import HeunError, Problem
 from heuncli.base.spelling import suggest

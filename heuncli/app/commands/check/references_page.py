@@ -8,7 +8,7 @@ from typing import Any
 
 from heuncli.analyses.published.cases import KINDS, PublishedCase
 from heuncli.analyses.published.comparison import AGREES, NumberComparison, TableComparison
-from heuncli.app.commands.check.check_result import CheckResult
+from heuncli.app.commands.check.results import CheckResult
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import (
     Cell,
@@ -22,7 +22,7 @@ from heuncli.output.documents.document import (
     make_text_columns,
 )
 from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 
 REFERENCE = "reference"
 CASES = ("case", "description", "numbers", "kind", "digits", "in last digits", "relative", "verdict")

@@ -9,10 +9,7 @@ FORMATS = ("table", "json", "markdown", "github")
 
 
 class CheckRequest(NamedTuple):
-    """Check specs, and folders of specs, against their `expect` values and golden files.
-
-    With --references: check published cases against their published results.
-    """
+    """The options and arguments of `heun check`."""
 
     paths: Annotated[
         tuple[str, ...],

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from typing import Annotated
 
 from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.options import OUTPUT, Option
 from heuncli.app.cli.pager import write_paged
 from heuncli.app.cli.registry import find_command
 from heuncli.app.commands.explain.pages import (
@@ -17,10 +19,27 @@ from heuncli.app.commands.explain.pages import (
     read_sections,
     read_summary,
 )
-from heuncli.app.commands.explain.request import ExplainRequest
 from heuncli.base.errors import Problem
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar, list_words
 from heuncli.results.path_words import TREE
+
+
+class ExplainRequest(NamedTuple):
+    """The options and arguments of `heun explain`."""
+
+    topic: Annotated[
+        str | None,
+        Option(
+            (),
+            "A page, 'PAGE SECTION', a word, a command, a code, a result path or an equation's number. "
+            "Default: list the pages.",
+            "TOPIC",
+        ),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    no_pager: Annotated[bool, Option(("--no-pager",), "Do not use a pager on a terminal.")] = False
+
 
 OTHERS = (
     ("SECTION", 'A section of a page, such as "format stops".'),

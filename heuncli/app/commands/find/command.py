@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Annotated
 
 from heuncli.analyses.find.results import IntervalFindings
 from heuncli.analyses.find.study import find_meetings
@@ -14,20 +15,71 @@ from heuncli.analyses.variants.samples import Sample, make_sample
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.options import FORMATS
+from heuncli.app.cli.options import (
+    CASE,
+    FORMAT,
+    FORMATS,
+    OUTPUT,
+    QUIET,
+    SET,
+    SPEC,
+    TIME_LIMIT,
+    TOLERANCE,
+    UNITS,
+    Option,
+)
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, require_tolerance
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units
 from heuncli.app.cli.variant_workers import print_variant_warnings
 from heuncli.app.commands.find.page import FindPage, make_document
-from heuncli.app.commands.find.request import FindRequest
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure_uncertainty import find_unit
+
+
+class FindRequest(NamedTuple):
+    """The options and arguments of `heun find`."""
+
+    spec: Annotated[str, SPEC]
+    unknown: Annotated[
+        str, Option((), "Parameter or dotted key, and the ends of its interval: n=500:6000rpm.", "NAME=A:B")
+    ]
+    condition: Annotated[
+        str,
+        Option(
+            (), "A measure, =, <, <=, > or >=, and a value with its unit: 'max joints.main.force = 10 kN'.", "CONDITION"
+        ),
+    ]
+    set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
+    scan: Annotated[
+        int | None,
+        Option(
+            ("--scan",),
+            "Number of values solved first. Default: 7; more values find crossings that lie closer together.",
+            "N",
+        ),
+    ] = None
+    evaluations: Annotated[int | None, Option(("--evaluations",), "Maximum number of variants. Default: 300.", "N")] = (
+        None
+    )
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    format: Annotated[str | None, FORMAT] = None
+    output: Annotated[str | None, OUTPUT] = None
+    units: Annotated[str | None, UNITS] = None
+    strict: Annotated[
+        bool,
+        Option(("--strict",), "Exit with 1 if the condition is met nowhere, or part of the interval is not solved."),
+    ] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False
+
 
 DEFAULT_SCAN, DEFAULT_EVALUATIONS = 7, 300  # default numbers of variants: of the scan, in all
 FORM = "expected MEASURE = VALUE, or <, >, <=, >= in place of ="

@@ -22,7 +22,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
 from heuncli.output.documents.as_csv import make_columns
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputDocument, OutputTable, append_unit
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.study.quantities.digits import format_error, format_with_error
 from heuncli.study.quantities.table_units import Units
 

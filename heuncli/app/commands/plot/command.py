@@ -8,9 +8,8 @@ from heuncli.app.cli.figure_options import render_text, require_figure_form, req
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit, save
 from heuncli.app.cli.target import parse_units
-from heuncli.app.commands.plot.kinds import require_applicable_options
-from heuncli.app.commands.plot.plot_target import parse_words
 from heuncli.app.commands.plot.request import PlotRequest
+from heuncli.app.commands.plot.target import KINDS, parse_words, require_applicable_options
 from heuncli.output.drawing.drawing_files import encode_drawing
 from heuncli.output.drawing.figure import Figure
 from heuncli.study.quantities.given_captions import check_text
@@ -24,8 +23,8 @@ def main(request: PlotRequest) -> int:
     form = require_figure_form(request.output, "-o") if request.output is not None else None
     require_width(request.width)
     parse_units(request.units)  # raises UsageError before the work
-    draw = import_module(f"heuncli.app.commands.plot.{target.kind}").draw
-    figure: Figure = draw(target, request)
+    module = import_module(f"heuncli.app.commands.plot.{KINDS[target.kind].module}")
+    figure: Figure = getattr(module, f"draw_{target.kind}")(target, request)
     if request.title is not None:
         figure = figure._replace(title=check_text("--title", request.title))
     if form is None or request.output is None:

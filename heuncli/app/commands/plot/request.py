@@ -22,7 +22,7 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class PlotRequest(NamedTuple):
-    """Plot loads and motion (over time, along a bar, polar), the machine, a sweep, modes or orders."""
+    """The options and arguments of `heun plot`."""
 
     words: Annotated[
         tuple[str, ...],

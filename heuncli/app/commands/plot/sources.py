@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from heuncli.app.cli import timeout
-from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_cases, require_choice
-from heuncli.app.commands.plot.plot_target import PlotTarget
+from heuncli.app.cli.spec_options import apply_captions, apply_captions_to_cases
 from heuncli.app.commands.plot.request import PlotRequest
+from heuncli.app.commands.plot.target import PlotTarget
 from heuncli.base.errors import Problem
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES

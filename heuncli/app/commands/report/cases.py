@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from heuncli.app.cli import memory, timeout
-from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
+from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
+from heuncli.app.cli.spec_options import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.report.request import ReportRequest
 from heuncli.base.errors import Finding, HeunError, Problem
+from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
 from heuncli.output.client_report.report_data import (
@@ -156,7 +157,7 @@ def _solve_case(name: str, spec: Spec, options: Options, *, is_reported: bool) -
         requested_reports=selection.reports,
         entries=selection.entries,
         time_limit=timeout.remaining_time(),
-        memory_budget=MemoryBudget(*memory.result_memory("table")),
+        memory_budget=MemoryBudget(*result_memory("table")),
     )
     try:
         with attach_locations(spec):

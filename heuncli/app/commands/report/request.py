@@ -23,7 +23,7 @@ PAPERS = ("a4", "letter")
 
 
 class ReportRequest(NamedTuple):
-    """Write a client report: loads, sections, checks, the machine, and the accuracy of the results."""
+    """The options and arguments of `heun report`."""
 
     spec: Annotated[str, SPEC]
     output: Annotated[

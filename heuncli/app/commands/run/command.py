@@ -7,17 +7,18 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from heuncli.app.api import read
-from heuncli.app.cli import memory, timeout
-from heuncli.app.cli.captions import apply_captions, apply_captions_to_cases
+from heuncli.app.cli import timeout
 from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, require_choice
+from heuncli.app.cli.spec_options import apply_captions, apply_captions_to_cases
 from heuncli.app.cli.target import TABLES, choose_format, note_si_format, parse_units
 from heuncli.app.commands.run.request import FORMATS, RunRequest
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
+from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
-from heuncli.output.snapshots.selection import find_default_reports, parse_choice, select_reports
+from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.output.tables.page import EXPORT_DEFAULT
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
@@ -39,11 +40,7 @@ def main(request: RunRequest) -> int:
         watch(request, main)
     require_other_file(request.output, [request.spec])
     form = choose_format(request.format, request.output, FORMATS)
-    measures: list[MeasureRequest] = []
-    if request.measure:
-        from heuncli.output.snapshots import measure  # with paths and JSON 2 ms that tables do not need
-
-        measures = measure.parse_measures(request.measure)
+    measures = _parse_measures(request)
     collectives = _parse_collectives(request)
     only_selection = parse_choice(request.only.split(",")) if request.only is not None else None
     units_shown = parse_units(request.units)
@@ -52,28 +49,16 @@ def main(request: RunRequest) -> int:
         from heuncli.app.commands.run import overview
 
         overview.require_alone(request)
-    axes = "world"  # hardpoints are turned afterwards, and may have the axes of any body
-    if request.axes is not None and not request.hardpoints:
-        axes = require_choice("--axes", request.axes, JOINT_AXES)
-    options = replace(make_solver_options(request), axes=axes)
+    options = replace(make_solver_options(request), axes=_choose_axes(request))
     start = time.perf_counter()
     spec, cases = read(request.spec, parse_overrides(request.set), request.case)
     spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - start, time_limit=timeout.remaining_time())
-    options = replace(
-        options, memory_budget=MemoryBudget(*memory.result_memory("table" if measures or collectives else form))
-    )
+    options = replace(options, memory_budget=MemoryBudget(*result_memory("table" if measures or collectives else form)))
     paths = _require_paths(request, spec, measures, collectives)
     is_table = form in TABLES or is_overview
-    if request.hardpoints:
-        require_choice("--axes", request.axes or "world", (*JOINT_AXES, *spec.bodies))
-        selection = Selection(HARDPOINT_REPORTS)
-    elif paths:
-        selection = select_paths(paths, spec)
-    else:
-        default = find_default_reports(spec) if is_table or spec.report.results is not None else EXPORT_DEFAULT
-        selection = select_reports(only_selection, spec, default, by_cause=request.by_cause)
+    selection = _select_results(request, spec, paths, only_selection, is_table=is_table)
     is_export = not (is_table or paths) and request.at is None and request.case != ALL_CASES
     options = replace(options, requested_reports=selection.reports, entries=selection.entries, in_parts=is_export)
     task = RunTask(request, form, options, selection, measures, units_shown, collectives)
@@ -90,6 +75,37 @@ def main(request: RunRequest) -> int:
     else:
         note_si_format(request.units, form, request.quiet)
     return finish(task, spec, study)
+
+
+def _parse_measures(request: RunRequest) -> list[MeasureRequest]:
+    """Parse the requested measures. Raises UsageError."""
+    if not request.measure:
+        return []
+    from heuncli.output.snapshots import measure  # with paths and JSON 2 ms that tables do not need
+
+    return measure.parse_measures(request.measure)
+
+
+def _choose_axes(request: RunRequest) -> str:
+    """Return the axes of joint loads; hardpoints are turned afterwards, and may have the axes of any body. Raises
+    UsageError.
+    """
+    if request.axes is None or request.hardpoints:
+        return "world"
+    return require_choice("--axes", request.axes, JOINT_AXES)
+
+
+def _select_results(
+    request: RunRequest, spec: Spec, paths: Sequence[str], chosen: ReportChoice | None, *, is_table: bool
+) -> Selection:
+    """Select the results to compute: those of hardpoints, those that paths need, or the chosen or default reports."""
+    if request.hardpoints:
+        require_choice("--axes", request.axes or "world", (*JOINT_AXES, *spec.bodies))
+        return Selection(HARDPOINT_REPORTS)
+    if paths:
+        return select_paths(paths, spec)
+    default = find_default_reports(spec) if is_table or spec.report.results is not None else EXPORT_DEFAULT
+    return select_reports(chosen, spec, default, by_cause=request.by_cause)
 
 
 def _parse_collectives(request: RunRequest) -> CollectiveTask | None:
@@ -110,10 +126,10 @@ def _require_paths(
     not fit.
     """
     if measures:
-        from heuncli.output.snapshots import measure, measure_units
+        from heuncli.output.snapshots import measure
 
         measure.require_known_paths(measures, spec)
-        measure_units.require_fitting_units(measures, spec, parse_units(request.units), request.units)
+        measure.require_fitting_units(measures, spec, parse_units(request.units), request.units)
     if collectives is None:
         return [each.path for each in measures]
     from heuncli.app.commands.run.collective import require_paths

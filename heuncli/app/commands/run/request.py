@@ -23,7 +23,7 @@ FORMATS = ("table", "json", "csv", "markdown")
 
 
 class RunRequest(NamedTuple):
-    """Solve a spec and report its loads and motion."""
+    """The options and arguments of `heun run`."""
 
     spec: Annotated[str, SPEC]
     format: Annotated[

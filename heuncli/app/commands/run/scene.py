@@ -107,21 +107,21 @@ def render_parts(task: RunTask, parts: RunParts) -> list[str]:
 
 def _render_measures(task: RunTask, study: Study) -> str:
     """Render the measured numbers, in the units of --units where these apply."""
-    from heuncli.output.snapshots import measure, measure_units
+    from heuncli.output.snapshots import measure
 
-    shown = measure_units.choose_units(task.measures, study, task.units, task.request.units)
+    shown = measure.choose_units(task.measures, study, task.units, task.request.units)
     return measure.format_measures(task.measures, study, task.form, [size for _, size in shown])
 
 
 def note_measure_units(task: RunTask, study: Study) -> None:
     """Print the units of the measured numbers to standard error, or that JSON stays in SI."""
-    from heuncli.output.snapshots import measure_units
+    from heuncli.output.snapshots import measure
 
     if task.form == "json" or task.request.quiet:
         note_si_format(task.request.units, task.form, task.request.quiet)
         return
-    shown = measure_units.choose_units(task.measures, study, task.units, task.request.units)
-    for line in measure_units.describe_units(task.measures, shown):
+    shown = measure.choose_units(task.measures, study, task.units, task.request.units)
+    for line in measure.describe_units(task.measures, shown):
         print_stderr(escape(line))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from typing import Annotated
 
 from heuncli.analyses.sensitivity import NoisyDerivative, compute_derivative
 from heuncli.analyses.tolerance_analysis import NumberSpread, combine_tolerances, parse_spreads
@@ -15,18 +16,60 @@ from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.options import FORMATS
+from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import collect_results, parse_overrides, require_tolerance
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units
 from heuncli.app.cli.variant_workers import choose_job_count, print_variant_warnings, require_job_count, solve_contained
 from heuncli.app.commands.sensitivity.page import MeasureFindings, SensitivityPage, make_document
-from heuncli.app.commands.sensitivity.request import SensitivityRequest
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
 from heuncli.study.queries.measure_uncertainty import find_unit
+
+
+class SensitivityRequest(NamedTuple):
+    """The options and arguments of `heun sensitivity`."""
+
+    words: Annotated[
+        tuple[str, ...],
+        Option(
+            (),
+            "YAML file of the spec, and parameters or dotted keys. Default: all parameters given as numbers.",
+            "SPEC NAME...",
+            completes="spec",
+        ),
+    ]
+    measure: Annotated[
+        tuple[str, ...],
+        Option(
+            ("--measure",),
+            "Result to differentiate: 'max abs sections.middle.M1', 'final energy.kinetic'. May be repeated.",
+            "WHAT",
+            completes="measure",
+        ),
+    ] = ()
+    spread: Annotated[
+        str | None,
+        Option(
+            ("--spread",), "Tolerances (±) of parameters; show their combined effect on the results.", "NAME=VALUE,..."
+        ),
+    ] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    format: Annotated[str | None, FORMAT] = None
+    output: Annotated[str | None, OUTPUT] = None
+    units: Annotated[str | None, UNITS] = None
+    jobs: Annotated[
+        int | None, Option(("--jobs", "-j"), "Number of processes; each solves the variants of one parameter.", "N")
+    ] = None
+    strict: Annotated[bool, Option(("--strict",), "Exit with 1 if a derivative cannot be given.")] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False
+
 
 VARIANTS_PER_NUMBER = 10  # usual number
 NO_ERROR = Reason("no-error", "the run states no error for it (as for counts), so no step can be chosen")

@@ -19,7 +19,7 @@ from heuncli.output.documents.document import (
     append_unit,
     format_head,
 )
-from heuncli.output.tables.plurals import format_count
+from heuncli.output.tables.nouns import format_count
 from heuncli.study.quantities.digits import format_error, format_with_error
 from heuncli.study.quantities.table_units import Units
 

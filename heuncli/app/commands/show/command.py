@@ -2,31 +2,88 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import PurePath
+from typing import Annotated
 
 from heuncli.app.cli import timeout
-from heuncli.app.cli.captions import apply_captions_to_cases
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
+from heuncli.app.cli.options import (
+    CASE,
+    LABEL,
+    LEAST_NORM,
+    METHOD,
+    NO_REDUCE,
+    QUIET,
+    SET,
+    SPEC,
+    STEP,
+    TIME_LIMIT,
+    TITLE,
+    TOLERANCE,
+    Option,
+)
 from heuncli.app.cli.output import emit, save
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_cases
+from heuncli.app.cli.spec_options import apply_captions_to_cases
 from heuncli.app.cli.target import parse_units, require_writable
 from heuncli.app.commands.show.film import FORMATS, FilmFormat, draw_film, find_format, find_programs, make_film
-from heuncli.app.commands.show.moving_glb import make_glb
-from heuncli.app.commands.show.request import ShowRequest
+from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.files import STDOUT
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.output.figures.courses import require_claimed
+from heuncli.output.figures.courses import choose_instants, require_claimed
+from heuncli.output.machine_geometry.gltf import encode_gltf
+from heuncli.output.machine_geometry.poses import compute_poses, find_up_direction
 from heuncli.output.tables.page import TABLE_DEFAULT
 from heuncli.output.web_page.frames import MAX_PAGE_FRAMES
+from heuncli.output.web_page.geometry import make_page_machine
 from heuncli.output.web_page.moving_page import render_film_page, render_moving_page
 from heuncli.scene.file_format.load import load, load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.study.model.setup import attach_locations
 from heuncli.study.queries.study import Study
+from heuncli.study.search.columns import find_largest_turns
 from heuncli.study.workflow import solve
+
+
+class ShowRequest(NamedTuple):
+    """The options and arguments of `heun show`."""
+
+    spec: Annotated[str, SPEC]
+    output: Annotated[
+        str | None,
+        Option(
+            ("--output", "-o"),
+            "Output file: page x.html, or x.png, x.gif, x.mp4 made by programs on PATH; - is standard output.",
+            "FILE",
+        ),
+    ] = None
+    glb: Annotated[str | None, Option(("--glb",), "Also write the moving bodies as animated glTF: x.glb.", "FILE")] = (
+        None
+    )
+    frames: Annotated[
+        int | None, Option(("--frames",), "Maximum number of instants on the page. Default: 600.", "NUMBER")
+    ] = None
+    at: Annotated[
+        float | None, Option(("--at",), "Instant of x.png [s]. Default: when the joint forces are greatest.", "T")
+    ] = None
+    units: Annotated[str | None, Option(("--units",), "Units of the page, such as kN,mm,deg,rpm.", "UNIT,...")] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    title: Annotated[str | None, TITLE] = None
+    label: Annotated[tuple[str, ...], LABEL] = ()
+    case: Annotated[str | None, CASE] = None
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False
+
 
 PAGE_ENDINGS = (".html", ".htm")
 ENDINGS = (*PAGE_ENDINGS, *FORMATS)
@@ -158,3 +215,17 @@ def _require_few_bodies(spec: Spec) -> None:
     if len(spec.bodies) > MAX_BODIES:
         message = f"the model has {len(spec.bodies):,} bodies; a page shows at most {MAX_BODIES}"
         raise LimitError(Problem("output-size", message, hint="heun run reports the loads of any number of bodies"))
+
+
+WARNING = "--glb: a body rotates up to {:.0f}° between two instants; the animation between them is not accurate"
+
+
+def make_glb(study: Study) -> bytes:
+    """Make the glTF file of a solved motion; adds a warning to the study if its instants are too far apart."""
+    times = choose_instants(study)
+    if not study.has_one_instant and len(times) > 1:
+        turned = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
+        if turned > tolerances.MAX_INTERPOLATED_TURN:
+            study.later_warnings[WARNING.format(math.degrees(turned))] = None
+    poses = compute_poses(study, times)
+    return encode_gltf(make_page_machine(study.spec, study.setup.scene), poses, find_up_direction(study.spec, poses))

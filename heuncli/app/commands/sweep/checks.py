@@ -12,7 +12,7 @@ from contextlib import suppress
 from heuncli.analyses.variants.evaluation import SPELLING_CODES, VariantEvaluator, varies_cases
 from heuncli.analyses.variants.parameters import CASE, format_value
 from heuncli.analyses.variants.spec_numbers import SpecNumbers
-from heuncli.app.commands.sweep.axis_arguments import AxisArgument
+from heuncli.app.commands.sweep.axes import AxisArgument
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.parameters import parse_path

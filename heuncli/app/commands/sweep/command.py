@@ -19,21 +19,20 @@ from heuncli.analyses.variants.plans import (
     make_draws,
     make_imbalance_warning,
 )
-from heuncli.app.cli import jobs, memory
+from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, parse_units, require_writable
 from heuncli.app.cli.variant_workers import require_job_count
-from heuncli.app.commands.sweep.axis_arguments import AxisArgument, parse_axis, parse_shard
+from heuncli.app.commands.sweep.axes import AxisArgument, parse_axis, parse_shard, read_axes
 from heuncli.app.commands.sweep.checks import find_problems, find_warnings
 from heuncli.app.commands.sweep.output.writer import SweepOutput, require_writable_form
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
-from heuncli.app.commands.sweep.running import SweepTask, run_sweep
-from heuncli.app.commands.sweep.showing import show_stored
-from heuncli.app.commands.sweep.table import read_axes
+from heuncli.app.commands.sweep.running import SweepTask, run_sweep, show_stored
 from heuncli.base.errors import Problem, SpecError
+from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.output.snapshots import measure
 from heuncli.scene.file_format.source import read_text
@@ -84,7 +83,7 @@ def make_recipe(request: SweepRequest, path: str) -> Recipe:
     if request.jobs is not None and request.dask is not None:
         hint = "leave out --jobs: a cluster uses all its workers"
         raise UsageError(Problem("bad-option", "--jobs and --dask cannot be combined", hint=hint))
-    available, bytes_each = memory.result_memory("table")
+    available, bytes_each = result_memory("table")
     room_per_job = MemoryBudget(available / jobs.max_jobs(request.jobs), bytes_each) if request.dask is None else None
     options = replace(make_solver_options(request), time_limit=request.time_limit_each, memory_budget=room_per_job)
     measures = tuple(measure.parse_measures(request.measure))

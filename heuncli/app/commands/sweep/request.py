@@ -9,7 +9,7 @@ FORMATS = ("table", "json", "csv", "parquet")
 
 
 class SweepRequest(NamedTuple):
-    """Solve variants of a spec and list a result of each."""
+    """The options and arguments of `heun sweep`."""
 
     words: Annotated[
         tuple[str, ...],

@@ -1,7 +1,6 @@
 """Run a sweep: send missing variants to the workers, store every result, and write all of them at the end.
 
-Impure: writes the store and the results, listens to signals.
-"""
+`--show FILE` writes a sweep from its store; nothing is solved then. Impure: processes, files."""
 
 from __future__ import annotations
 
@@ -11,23 +10,26 @@ from collections.abc import Generator, Iterator
 from contextlib import closing
 
 from heuncli.analyses.sweep_rows import SweepHead
-from heuncli.analyses.sweep_store import Store, StoredRows
+from heuncli.analyses.sweep_store import Store, StoredRows, choose_sweep, format_sweep, open_store, split_store_argument
 from heuncli.analyses.sweep_store_file import write_head
 from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.analyses.variants.measures import VariantResult
 from heuncli.app.cli import jobs
-from heuncli.app.cli.entry import BUG
+from heuncli.app.cli.entry import BUG, UsageError
+from heuncli.app.cli.guard import is_same_file
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.progress import ReportProgress, show_progress
 from heuncli.app.cli.target import note_si_format
+from heuncli.app.commands.sweep.axes import parse_shard
 from heuncli.app.commands.sweep.output.sweep_warnings import SweepWarnings, collect_warnings, print_warnings_summary
 from heuncli.app.commands.sweep.output.writer import SweepOutput, write_sweep
 from heuncli.app.commands.sweep.request import SweepRequest
 from heuncli.app.commands.sweep.workers import solve_variants
-from heuncli.base.errors import OutputError, SpecError
+from heuncli.base.errors import OutputError, Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.signals import GracefulStop
+from heuncli.base.text_safety import escape
 from heuncli.study.queries.measure import NotOneNumber
 
 REPORT_INTERVAL = 0.1  # seconds between progress reports
@@ -204,3 +206,43 @@ def _raise_common_error(sweep: SweepTask, rows: StoredRows) -> None:
     except SpecError as error:
         if error.problems[0].code == first.result.code:
             raise
+
+
+EXCLUDED_OPTIONS = (
+    "words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance", "zip",
+    "samples", "seed", "indices",
+)  # fmt: skip
+
+
+def show_stored(request: SweepRequest, output: SweepOutput) -> int:
+    """Write a sweep of a store; returns the exit code. Raises UsageError, OutputError."""
+    assert request.show is not None
+    _require_alone(request)
+    name, sweep_number = split_store_argument(request.show, "--show")
+    shard = parse_shard(request.shard)
+    if request.output is not None and is_same_file(name, request.output):
+        raise UsageError(Problem("bad-option", "--show and -o name the same file", hint="name another file"))
+    store = open_store(name)
+    with closing(store.connection):
+        sweeps = list(store.iter_sweeps())
+        sweep = choose_sweep(name, sweep_number, sweeps, "--show")
+        if len(sweeps) > 1 and sweep_number is None and not request.quiet:
+            for one in sweeps:
+                print_stderr(f"heun: {escape(name)}:{one.number}  {format_sweep(one)}")
+        rows = store.find_rows(sweep.number, sweep.head.plan, shard)
+        write_sweep(sweep.head, rows, output)
+        note_si_format(request.units, output.form, request.quiet)
+        if sweep.variant_count < sweep.head.plan.size and not request.quiet:
+            print_stderr(f"heun: {sweep.variant_count} of {sweep.head.plan.size} variants are done")
+        sweep_warnings = collect_warnings(sweep.head, rows)
+        print_warnings_summary(sweep_warnings, request.quiet)
+        return choose_exit_code(sweep_warnings, request.strict)
+
+
+def _require_alone(request: SweepRequest) -> None:
+    """Raise UsageError for options that would solve something."""
+    for name in EXCLUDED_OPTIONS:
+        if getattr(request, name):
+            word = " ".join(request.words) if name == "words" else f"--{name.removesuffix('_each').replace('_', '-')}"
+            hint = "leave it out; --show solves nothing. Or name the store with --store"
+            raise UsageError(Problem("bad-option", f"--show and {word} cannot be combined", hint=hint))

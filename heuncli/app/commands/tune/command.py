@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 from heuncli.analyses.tune.results import TuneResults
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import Trials
-from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
-from heuncli.app.cli import timeout
+from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
+from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.guard import is_same_file, require_other_file
@@ -16,18 +20,17 @@ from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tolerance
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_writable
-from heuncli.app.cli.variant_workers import require_job_count
+from heuncli.app.cli.variant_workers import choose_job_count, make_death_result, require_job_count, solve_contained
+from heuncli.app.commands.tune.options import FORMATS, TuneRequest, TuningOptions, make_task, parse_options
 from heuncli.app.commands.tune.page import make_document
-from heuncli.app.commands.tune.request import FORMATS, TuneRequest
 from heuncli.app.commands.tune.result_block import TunedScene, format_command, make_history
-from heuncli.app.commands.tune.trial_solver import TrialSolver
-from heuncli.app.commands.tune.tuning_options import TuningOptions, make_task, parse_options
-from heuncli.base.errors import LimitError, Problem, SolveError
+from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.base.files import STDOUT
 from heuncli.output.documents.as_csv import iter_csv
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
+from heuncli.study.queries.measure import NotOneNumber
 
 LIMIT_REACHED, NOT_GOOD = 4, 1
 
@@ -115,3 +118,58 @@ def finish(request: TuneRequest, results: TuneResults, spec: Spec) -> int:
     if results.ending == "time":
         return LIMIT_REACHED
     return NOT_GOOD if request.strict and results.ending != "converged" else 0
+
+
+NO_NUMBER = "bad-option"  # the code of a measure that is not one number
+MIN_REMAINING = 1e-9  # s; less than this left means that the limit is reached
+
+
+class TrialSolver:
+    """Solves several variants at once, and returns the outcomes in their order."""
+
+    def __init__(self, evaluator: VariantEvaluator, jobs: int | None) -> None:
+        """jobs: number of processes; None: one per processor, if a variant takes long enough"""
+        self.evaluator, self.jobs = evaluator, jobs
+        self.seconds = 0.0  # solving time of the scene as it is
+
+    def solve_base(self) -> VariantResult:
+        """Solve the scene as it is. Raises UsageError if a measure is not a single number in it."""
+        start = time.perf_counter()
+        try:
+            return self.evaluator.measure({})
+        except NotOneNumber as error:
+            (problem,) = error.problems
+            raise UsageError(problem) from None
+        except HeunError as error:
+            return make_failed_result(error)
+        finally:
+            self.seconds = time.perf_counter() - start
+
+    def __call__(self, variants: Sequence[Values]) -> Iterator[VariantResult]:
+        """Yield the outcomes of variants, by their values. Raises UsageError if a measure is not a single
+        number.
+        """
+        job_count = choose_job_count(self.jobs, len(variants), self.seconds) if len(variants) > 1 else 1
+        work: Callable[[Values], VariantResult] = partial(
+            solve_in_worker if job_count > 1 else solve_variant, self.evaluator
+        )
+        for result in jobs.run_in_order(work, variants, job_count, lambda _, death: make_death_result(death)):
+            if result.code == NO_NUMBER:
+                raise UsageError(Problem(result.code, result.reason, hint="for example 'max foundation.force'"))
+            yield result
+
+
+def solve_variant(evaluator: VariantEvaluator, values: Values) -> VariantResult:
+    """Solve a variant in this process, where the time limit interrupts whatever is going on."""
+    remaining = timeout.remaining_time()
+    if remaining is not None and remaining <= MIN_REMAINING:
+        return VariantResult(code=TIME_LIMIT_CODE)
+    try:
+        return timeout.run_interruptible(partial(evaluator.answer, values))
+    except timeout.TimeUp:  # SciPy calls this, and lets no exception pass unchanged
+        return VariantResult(code=TIME_LIMIT_CODE)
+
+
+def solve_in_worker(evaluator: VariantEvaluator, values: Values) -> VariantResult:
+    """Solve a variant in a worker process under the time limit set here."""
+    return solve_contained(evaluator, values, "tune", timeout.remaining_time())

@@ -16,7 +16,7 @@ from heuncli.analyses.tune.results import (
 from heuncli.analyses.variants.evaluation import Recipe
 from heuncli.analyses.variants.measures import VariantResult
 from heuncli.analyses.variants.parameters import format_value
-from heuncli.app.commands.tune.tuning_options import TuningOptions
+from heuncli.app.commands.tune.options import TuningOptions
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_head
 from heuncli.version import VERSION

@@ -3,7 +3,7 @@
     solve_variants(recipe, plan, numbers, address)  ->  (number, VariantResult), in the order of completion
 
 This process receives every result, and it alone writes; workers need neither the spec nor its files. Each batch of
-variants (batches.py) is a task for one worker, and each worker has two at most. So it is known which variants a worker
+variants (workers.py) is a task for one worker, and each worker has two at most. So it is known which variants a worker
 had when it goes away, no more tasks are under way than are useful, and results do not pile up on the cluster. The
 remaining batches of a worker that went away go to others; a variant that ends workers repeatedly gets that as its
 result. At the end, also after an error or a signal, nothing is left on the cluster.
@@ -27,10 +27,17 @@ from heuncli.analyses.variants.files import add_files, add_named_files
 from heuncli.analyses.variants.measures import WORKER_DIED, VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.commands.sweep.cluster.batches import WORKERS, BatchQueue, VariantBatch
 from heuncli.app.commands.sweep.cluster.connection import PATIENCE, ClusterGone, connect
 from heuncli.app.commands.sweep.cluster.worker import PartialResults, Variant, format_exception
-from heuncli.app.commands.sweep.cluster.workers import ClusterTask, ClusterWorker, WorkerPool, format_addresses
+from heuncli.app.commands.sweep.cluster.workers import (
+    WORKERS,
+    BatchQueue,
+    ClusterTask,
+    ClusterWorker,
+    VariantBatch,
+    WorkerPool,
+    format_addresses,
+)
 from heuncli.base.errors import Problem
 from heuncli.version import VERSION
 

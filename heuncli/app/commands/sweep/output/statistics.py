@@ -1,17 +1,14 @@
-"""The statistics of a random sweep, for each combination of its other axes and each measure.
-
-Variants that could not be solved, or whose measure is unknown, are left out and counted. If Sobol indices are
-requested, the statistics are those of the matrices A and B, which are independent; a sample is left out of the indices
-if one of its d + 2 variants has no value.
-"""
+"""The measures of a sweep as columns of numbers, and the statistics of a random sweep, for each combination of axes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from array import array
+from collections import Counter
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from heuncli.analyses.sweep_rows import SweepHead
+from heuncli.analyses.sweep_rows import SweepHead, SweptRow
 from heuncli.analyses.variants.plans import Plan
 from heuncli.analyses.variants.sample_statistics import (
     SampleStatistics,
@@ -19,10 +16,59 @@ from heuncli.analyses.variants.sample_statistics import (
     compute_sobol_indices,
     compute_statistics,
 )
-from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 from heuncli.scene.file_format.quantity import ParameterValue
+
+
+class ColumnBuffer:
+    """The columns of the rows so far: numbers of the variants in their order, and their measures; nan if there is
+    none.
+    """
+
+    def __init__(self, measure_count: int) -> None:
+        """measure_count: number of measures of each variant"""
+        self._numbers = array("q")
+        self._values = [array("d") for _ in range(measure_count)]
+        self._errors = [array("d") for _ in range(measure_count)]
+        self.failures: Counter[str] = Counter()  # by code
+
+    def record(self, rows: Iterable[SweptRow]) -> Iterator[SweptRow]:
+        """Yield the rows, and add each to the columns."""
+        for row in rows:
+            self.add(row)
+            yield row
+
+    def add(self, row: SweptRow) -> None:
+        """Add a variant."""
+        self._numbers.append(row.number)
+        if row.result.code:
+            self.failures[row.result.code] += 1
+        results = row.result.measures or (None,) * len(self._values)
+        for place, one in enumerate(results):
+            self._values[place].append(np.nan if one is None or one.value is None else one.value)
+            self._errors[place].append(np.nan if one is None or one.error is None else one.error)
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    @property
+    def numbers(self) -> Array:
+        """Numbers of the variants, (n,)."""
+        return np.frombuffer(self._numbers, dtype=np.int64) if self._numbers else np.empty(0, dtype=np.int64)
+
+    def values(self, measure: int) -> Array:
+        """Return the values of a measure, (n,) in SI."""
+        return _to_array(self._values[measure])
+
+    def errors(self, measure: int) -> Array:
+        """Return the stated errors of a measure, (n,) in SI; 0 if a run states none."""
+        return np.nan_to_num(_to_array(self._errors[measure]))
+
+
+def _to_array(numbers: array[float]) -> Array:
+    return np.frombuffer(numbers) if numbers else np.empty(0)
+
 
 INDEPENDENT = 2  # of the variants of a sample for Sobol indices: A and B
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
 from heuncli.analyses.sweep_rows import SweepHead, SweptRow
-from heuncli.app.commands.sweep.output.column_buffer import ColumnBuffer
+from heuncli.app.commands.sweep.output.statistics import ColumnBuffer
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 

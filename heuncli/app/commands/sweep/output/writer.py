@@ -14,7 +14,7 @@ from heuncli.base import files
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.as_csv import format_line
-from heuncli.output.documents.document import OutputDocument
+from heuncli.output.documents.document import OutputDocument, OutputTable
 from heuncli.study.quantities.table_units import Units
 
 
@@ -69,11 +69,32 @@ def iter_pieces(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) 
 
 
 def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> Iterator[str]:
-    from heuncli.app.commands.sweep.output.page import make_tables
-
     on_terminal = output.output is None and terminal.is_terminal()
     tables = make_tables(head, rows, output.units, output.all, sys.stdout.encoding if on_terminal else None)
     yield from render_document(OutputDocument(parts=tables), "table", output.output)
+
+
+def make_tables(
+    head: SweepHead, rows: Iterable[SweptRow], units: Units, all_of_them: bool, encoding: str | None = None
+) -> list[OutputTable]:
+    """Make the tables: the selected rows, the measures with their extremes, and statistics of random draws.
+
+    all_of_them: show every row
+    encoding: of the terminal; None for UTF-8
+    """
+    from heuncli.app.commands.sweep.output.statistics import iter_statistics
+    from heuncli.app.commands.sweep.output.statistics_tables import make_statistics_tables
+    from heuncli.app.commands.sweep.output.tables import make_row_table, make_summary_table
+    from heuncli.app.commands.sweep.output.top_k import select_rows
+    from heuncli.output.tables.sparkline import choose_characters
+
+    selection = select_rows(head, rows, all_of_them)
+    statistics = list(iter_statistics(head, selection.columns))
+    return [
+        make_row_table(head, selection, units),
+        make_summary_table(head, selection, units, choose_characters(encoding), all_of_them),
+        *make_statistics_tables(head, statistics, units, all_of_them),
+    ]
 
 
 def iter_csv(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:

@@ -1,0 +1,179 @@
+"""The results of checks as plain values, their document, a table of failures first, and lines for a GitHub workflow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from heuncli.app.commands.check.folders import SkippedFolder
+from heuncli.base.errors import Problem
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
+from heuncli.output.documents.document import OutputDocument, OutputTable, Sentence, Verbatim, make_text_columns
+from heuncli.output.snapshots.outcomes import GOLDEN, Outcome
+from heuncli.output.tables.nouns import format_count
+from heuncli.output.tables.workflow_lines import Annotation, iter_lines
+
+FAILED = 1
+
+
+class GoldenUpdate(NamedTuple):
+    """The golden file of a spec: its path, and its new text if it is to be written."""
+
+    path: str
+    text: str | None = None
+    is_new: bool = False
+
+
+class CheckResult(NamedTuple):
+    """The result of one file: its outcomes, or the problems that kept it from being solved, with their exit code.
+
+    messages: lines for standard error
+    is_usage_error: the command line itself is wrong; the command ends with a usage error
+    """
+
+    path: str
+    outcomes: tuple[Outcome, ...] = ()
+    problems: tuple[Problem, ...] = ()
+    error: int = 0
+    seconds: float = 0.0
+    messages: tuple[str, ...] = ()
+    golden: GoldenUpdate | None = None
+    is_usage_error: bool = False
+
+    @property
+    def exit_code(self) -> int:
+        """The exit code that this file alone would give."""
+        return self.error or (0 if all(outcome.has_passed for outcome in self.outcomes) else FAILED)
+
+
+HEADS = ("file", "of", "at", "expected", "found", "why it fails")
+CHANGED = ("file", "of", "at", "golden", "found", "what is rewritten")
+
+
+class CheckSummary(NamedTuple):
+    """All results of the command.
+
+    results: one result per file
+    skipped_folders: folders that were not searched
+    orphans: golden files without a spec
+    strict: whether orphans fail
+    """
+
+    results: Sequence[CheckResult]
+    skipped_folders: Sequence[SkippedFolder] = ()
+    orphans: Sequence[str] = ()
+    strict: bool = False
+
+
+def make_document(check_summary: CheckSummary, form: str) -> OutputDocument:
+    """Make the document of the results: a page of failures and of golden files written that ends with its summary, or
+    the summary of a job in Markdown that begins with it.
+    """
+    tables, summary = _make_tables(check_summary), Sentence(format_summary(check_summary))
+    if form != "markdown":
+        return OutputDocument(parts=[*tables, summary], make_block=lambda: _make_summary_block(check_summary))
+    failed = any(one.exit_code for one in check_summary.results) or (
+        check_summary.strict and bool(check_summary.orphans)
+    )
+    notes = [Sentence(f"{one.path}: {outcome.note}") for one, outcome in _iter_outcomes(check_summary) if outcome.note]
+    errors = [Verbatim(str(problem)) for one in check_summary.results for problem in one.problems]
+    title = f"heun check: {'failed' if failed else 'passed'}"
+    return OutputDocument(title, parts=[summary, *notes, *tables, *errors], level=3)
+
+
+def _make_tables(check_summary: CheckSummary) -> list[OutputTable]:
+    failed = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if not outcome.has_passed]
+    written_rows = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if _is_written(outcome)]
+    tables = (("FAILED", HEADS, failed), ("CHANGED", CHANGED, written_rows))
+    return [OutputTable(name, make_text_columns(heads), rows) for name, heads, rows in tables if rows]
+
+
+def _is_written(outcome: Outcome) -> bool:
+    return outcome.kind == GOLDEN and outcome.is_warning and bool(outcome.block.get("written"))
+
+
+def _iter_outcomes(check_summary: CheckSummary) -> Iterator[tuple[CheckResult, Outcome]]:
+    for one in check_summary.results:
+        for outcome in one.outcomes:
+            yield one, outcome
+
+
+def _make_row(one: CheckResult, outcome: Outcome) -> tuple[str, ...]:
+    place = f"{one.path}:{outcome.line}"
+    name = f"{outcome.case}: {outcome.subject}" if outcome.case else outcome.subject
+    return (place, name, outcome.when, outcome.expected_text, outcome.found_text, outcome.failure or "")
+
+
+def format_summary(check_summary: CheckSummary) -> str:
+    """Format how many expectations passed and failed, and how many specs were not solved or have no checks."""
+    outcomes = [outcome for _, outcome in _iter_outcomes(check_summary) if not outcome.is_skipped]
+    met = [outcome for outcome in outcomes if outcome.failure is None]
+    failed = [outcome for outcome in outcomes if not outcome.has_passed]
+    errors = sum(bool(one.error) for one in check_summary.results)
+    unchecked = sum(not one.outcomes and not one.error for one in check_summary.results)
+    parts = [
+        format_count(len(check_summary.results), "spec"),
+        f"{format_count(len(met), 'check')} passed",
+        f"{len(failed)} failed",
+    ]
+    parts += [f"{format_count(errors, 'spec')} not solved"] if errors else []
+    parts += [f"{format_count(unchecked, 'spec')} {'has' if unchecked == 1 else 'have'} no checks"] if unchecked else []
+    without_golden = sum(
+        outcome.kind == GOLDEN and outcome.is_warning and not _is_written(outcome) for outcome in outcomes
+    )
+    parts += [f"{format_count(without_golden, 'spec')} without a golden file"] if without_golden else []
+    parts += [f"{escape(folder.path)} skipped" for folder in check_summary.skipped_folders]
+    return ", ".join(parts)
+
+
+def _make_summary_block(check_summary: CheckSummary) -> dict[str, Any]:
+    """Return every outcome as the JSON has it, and the error of each spec that was not solved."""
+    cases: list[dict[str, Any]] = []
+    for one in check_summary.results:
+        if one.error:
+            message = "\n".join(map(str, one.problems))
+            cases.append({"file": one.path, "passed": False, "exit": one.error, "message": message})
+        elif not one.outcomes:
+            cases.append({"file": one.path, "passed": True, "message": "no acceptance checks are defined"})
+        cases += [{"file": one.path} | dict(outcome.block) for outcome in one.outcomes if not outcome.is_skipped]
+    cases += [
+        {"golden": path, "passed": not check_summary.strict, "message": "a golden file without a spec"}
+        for path in check_summary.orphans
+    ]
+    passed = sum(bool(case["passed"]) for case in cases)
+    return {"passed": passed, "failed": len(cases) - passed, "cases": cases}
+
+
+def render_github(check_summary: CheckSummary) -> str:
+    """Render one workflow line per failure and per problem, and the summary."""
+    return "".join(iter_lines(_iter_annotations(check_summary))) + format_summary(check_summary) + "\n"
+
+
+def _iter_annotations(check_summary: CheckSummary) -> Iterator[Annotation]:
+    for one in check_summary.results:
+        for problem in one.problems:
+            where = problem.location
+            place = (where.file, where.line, where.column) if where is not None else (one.path, 1, 1)
+            hint = f"\nhint: {problem.hint}" if problem.hint else ""
+            yield Annotation("error", f"heun: {problem.code}", f"{problem.message}{hint}", *place)
+        for outcome in one.outcomes:
+            if outcome.note:
+                yield Annotation("notice", "heun: golden", outcome.note, one.path)
+            if outcome.failure is None or outcome.is_skipped:
+                continue
+            kind = "warning" if outcome.is_warning else "error"
+            yield Annotation(
+                kind, f"heun: {outcome.name}", format_failure(outcome), one.path, outcome.line, outcome.column
+            )
+    for path in check_summary.orphans:
+        yield Annotation(
+            "error" if check_summary.strict else "warning", "heun: golden", "a golden file without a spec", path
+        )
+
+
+def format_failure(outcome: Outcome) -> str:
+    """Format an outcome: why it fails, the expected, the found and the allowed value, one per line."""
+    values = (("expected", outcome.expected_text), ("found", outcome.found_text), ("allowed", outcome.tolerance_text))
+    parts = [f"{name} {value}" for name, value in values if value]
+    return "\n".join([outcome.failure or "", *parts])
