@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from heuncli.output.figures.courses import NumberCourse
-from heuncli.output.figures.curve_points import N_INTERVALS, find_visible_points
+from heuncli.output.figures.curves import N_INTERVALS, PanelCourse, find_visible_points
 from heuncli.output.figures.histories import _make_y_axis
-from heuncli.output.figures.history_curves import PanelCourse
 from heuncli.results.results import Array
 from heuncli.study.quantities.reader_numbers import ReaderStyle
 from heuncli.study.queries.measure import Peak

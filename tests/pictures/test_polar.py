@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.style import FAINT
+from heuncli.output.drawing.style import FAINT, find_pen
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.plotted import SVG, PlottedPanel, far_from, polar_panel_of, texts_of

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.pens import find_shade
+from heuncli.output.drawing.style import find_shade
 from tests.shared.command import HANGING, Heun
 from tests.shared.plotted import SVG, PlottedPanel, panels_of, points_of, texts_of
 

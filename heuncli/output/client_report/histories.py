@@ -15,8 +15,8 @@ from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import AT_WORST, ReportData, ReportedRun
 from heuncli.output.client_report.summary_table import ReportedLoad, find_crank, list_loads
 from heuncli.output.documents.document import Drawing, Part
+from heuncli.output.drawing.axes import choose_ends
 from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, Trace
-from heuncli.output.drawing.ticks import choose_ends
 from heuncli.output.figures.courses import choose_instants, is_claimed
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values

@@ -9,9 +9,8 @@ from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.client_report.summary_table import find_crank, list_loads
 from heuncli.output.documents.document import Drawing, Part
 from heuncli.output.drawing.figure import Item, Panel, Spot
-from heuncli.output.figures.courses import FigureSource, is_claimed
+from heuncli.output.figures.courses import FigureSource, NotDrawable, is_claimed
 from heuncli.output.figures.polar import make_polar_figure
-from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
 

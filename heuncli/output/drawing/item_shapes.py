@@ -10,6 +10,7 @@ import numpy as np
 
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing import style
+from heuncli.output.drawing.axes import PanelBox
 from heuncli.output.drawing.figure import (
     Arrow,
     Band,
@@ -27,12 +28,10 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
-from heuncli.output.drawing.pens import find_colour, find_pen, find_shade, mix_with_white
-from heuncli.output.drawing.scales import PanelBox
-from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text
-from heuncli.output.drawing.space_key import draw_arrow
+from heuncli.output.drawing.labels import estimate_width
+from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, draw_arrow
+from heuncli.output.drawing.style import find_colour, find_pen, find_shade, mix_with_white
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
-from heuncli.output.drawing.words import estimate_width
 from heuncli.results.results import Array
 
 CELL_OVERLAP = 0.5  # pixels by which cells overlap, else the background shows between them

@@ -30,7 +30,7 @@ from heuncli.output.drawing.figure import (
     Words,
 )
 from heuncli.output.drawing.label_placement import count_columns
-from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.style import find_pen
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
 

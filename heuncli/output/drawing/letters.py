@@ -13,6 +13,7 @@ import numpy as np
 
 from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape
+from heuncli.output.drawing.axes import MINUS, choose_ticks
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import (
     Band,
@@ -26,11 +27,9 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
 )
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
+from heuncli.output.drawing.labels import order_items
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
-from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.style import PANEL_HEIGHT
-from heuncli.output.drawing.ticks import MINUS, choose_ticks
-from heuncli.output.drawing.words import order_items
+from heuncli.output.drawing.style import PANEL_HEIGHT, find_pen
 
 ROWS, MIN_ROWS = 12, 5  # of a panel of default height, minimum
 ASPECT = 2.0  # height of a cell in widths

@@ -12,12 +12,8 @@ from heuncli.output.drawing.figure import Item, Link, Polygon, Strokes, Symbol
 from heuncli.output.drawing.style import ARM_WIDTH, DASH_DOT, LINK_WIDTH, OUTLINE_WIDTH, RIM_WIDTH, THIN_WIDTH
 from heuncli.output.figures.posed_machine import PosedMachine, compute_area, to_pair
 from heuncli.output.machine_geometry.machine import BodyGeometry
-from heuncli.output.machine_geometry.silhouettes import (
-    SolidEdges,
-    compute_convex_hull,
-    find_silhouette,
-    select_visible_edges,
-)
+from heuncli.output.machine_geometry.silhouettes import SolidEdges, find_silhouette, select_visible_edges
+from heuncli.output.machine_geometry.solids import compute_convex_hull
 from heuncli.scene.file_format.names import GROUND
 
 MAX_CENTRES = 40  # bodies; with more of them no centres of mass are marked

@@ -8,10 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.axes import choose_ends, choose_ticks, format_short
 from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
 from heuncli.output.drawing.style import HATCH_WIDTH, LEFT, RIGHT, SIGN_SIZE, WIDTH
-from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
-from heuncli.output.figures.curve_points import is_visible
+from heuncli.output.figures.curves import is_visible
 from heuncli.results.results import Array, Mask
 from heuncli.study.quantities.digits import OPEN
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style

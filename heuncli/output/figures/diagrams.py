@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from heuncli.output.drawing.axes import choose_ends, format_short
 from heuncli.output.drawing.figure import (
     Arrow,
     Blank,
@@ -32,7 +33,6 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
-from heuncli.output.drawing.ticks import choose_ends, format_short
 from heuncli.output.figures.courses import FigureSource, make_title, require_claimed
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS

@@ -10,11 +10,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from heuncli.output.drawing.axes import choose_ends, format_short, is_zero_near
 from heuncli.output.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, VerticalMark, share_x_axis
 from heuncli.output.drawing.style import PANEL_HEIGHT
-from heuncli.output.drawing.ticks import choose_ends, format_short, is_zero_near
 from heuncli.output.figures.courses import (
     FigureSource,
+    NotDrawable,
     NumberCourse,
     choose_instants,
     describe_number,
@@ -25,10 +26,16 @@ from heuncli.output.figures.courses import (
     make_title,
     require_one_number,
 )
-from heuncli.output.figures.curve_points import MeasuredPoints, draw_points, find_visible_points
+from heuncli.output.figures.curves import (
+    HorizontalAxis,
+    MeasuredPoints,
+    PanelCourse,
+    draw_case_bars,
+    draw_curves,
+    draw_points,
+    find_visible_points,
+)
 from heuncli.output.figures.event_marks import make_marks
-from heuncli.output.figures.history_curves import HorizontalAxis, PanelCourse, draw_case_bars, draw_curves
-from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array
 from heuncli.study.compose.warnings import has_smoothed_friction
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style

@@ -8,8 +8,8 @@ import numpy as np
 
 from heuncli.analyses.balancing.results import BalanceResults, OrderRow, format_cycle, format_reference_point, get_unit
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.axes import choose_ends, format_short
 from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot, share_x_axis
-from heuncli.output.drawing.ticks import choose_ends, format_short
 from heuncli.study.quantities.captions import make_readable
 from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units

@@ -11,10 +11,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.output.drawing.axes import choose_ends, choose_ticks, format_short
 from heuncli.output.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Strokes, Trace, Words
-from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
 from heuncli.output.figures.courses import FigureSource, describe_number, find_vectors, make_title
-from heuncli.output.figures.history_curves import draw_direction_arrows, format_number
+from heuncli.output.figures.curves import draw_direction_arrows, format_number
 from heuncli.output.figures.planes import project_vectors
 from heuncli.output.figures.tips import LargestVector, TipCurve, find_firings, find_largest, make_tip_curves
 from heuncli.output.figures.turning import TurningRun

@@ -8,14 +8,17 @@ from itertools import count, product
 import numpy as np
 
 from heuncli.base.joint_kinds import TYPES
+from heuncli.output.drawing.axes import format_short
 from heuncli.output.drawing.figure import PlaceLabel
 from heuncli.output.figures.posed_machine import LOAD_PEN, PosedMachine, to_pair
+from heuncli.output.figures.worst_instant import TIME_DIGITS
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels
 
 MAX_LABELS = 20  # with more of them, numbers stand for the words
 SEPARATOR = " / "  # between the names of one place
 SAME_PLACE = 0.004  # of the figure's side: closer places are one
+LATER_PEN = 7  # of the labels of later instants
 
 
 def choose_labels(
@@ -88,3 +91,25 @@ def make_mark_labels(posed_machine: PosedMachine, k: int) -> Iterator[PlaceLabel
         if mark.name:
             x, y = to_pair(posed_machine.size * posed_machine.view.project(mark.locate(posed_machine.poses)[0][k]))
             yield PlaceLabel(x, y, mark.name, mark.name)
+
+
+def label_instants(posed_machine: PosedMachine) -> Iterator[PlaceLabel]:
+    """Label the instants at the body that has moved most since the first."""
+    if len(posed_machine.poses.times) < 2:
+        return
+    places_of_body = {
+        body.name: np.array(
+            [
+                posed_machine.project(body.name, posed_machine.centers[body.name], k)
+                for k in range(len(posed_machine.poses.times))
+            ]
+        )
+        for body in posed_machine.machine.bodies
+    }
+    most_moved = max(
+        places_of_body, key=lambda name: (float(np.abs(places_of_body[name] - places_of_body[name][0]).max()), name)
+    )
+    times = posed_machine.poses.times.tolist()
+    for k, (t, (x, y)) in enumerate(zip(times, places_of_body[most_moved].tolist(), strict=True)):
+        text = f"{format_short(t, TIME_DIGITS)} s"
+        yield PlaceLabel(x, y, text, text, LATER_PEN, is_ghost=k > 0)

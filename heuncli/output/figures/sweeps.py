@@ -26,9 +26,8 @@ from heuncli.output.drawing.figure import (
     share_x_axis,
 )
 from heuncli.output.drawing.style import PANEL_HEIGHT, PENS
-from heuncli.output.figures.curve_points import is_visible
-from heuncli.output.figures.history_curves import format_number
-from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.courses import NotDrawable
+from heuncli.output.figures.curves import format_number, is_visible
 from heuncli.output.figures.sweep_axes import MAX_NAMES, draw_contours, find_cell_edges, make_axis, make_measure_axis
 from heuncli.output.figures.sweep_tables import (
     SweepNumbers,

@@ -11,7 +11,7 @@ from heuncli.app.commands.plot.plot_target import PlotTarget
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import load_specs, require_joint_paths, solve_source
 from heuncli.output.drawing.figure import Figure
-from heuncli.output.figures.curve_points import MeasuredPoints
+from heuncli.output.figures.curves import MeasuredPoints
 from heuncli.output.figures.histories import make_history
 from heuncli.output.snapshots import measure
 from heuncli.results.results_schema import EVENTS, IMPULSES
