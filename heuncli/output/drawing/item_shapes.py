@@ -149,7 +149,8 @@ def _draw_arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
     colour, name = find_colour(item.pen), escape(item.description or item.name)
     x0, y0 = box.to_pixel_x(item.x), box.to_pixel_y(item.y)
     x1, y1 = box.to_pixel_x(item.x + item.by_x), box.to_pixel_y(item.y + item.by_y)
-    yield from draw_arrow(x0, y0, x1 - x0, y1 - y0, colour, name, is_double=item.is_double)
+    width = style.THIN_WIDTH if item.is_thin else style.ARROW_WIDTH
+    yield from draw_arrow(x0, y0, x1 - x0, y1 - y0, colour, name, is_double=item.is_double, width=width)
     length = math.hypot(x1 - x0, y1 - y0)
     if item.name and length > 0.0:
         a, b = (x1 - x0) / length, (y1 - y0) / length
@@ -159,6 +160,8 @@ def _draw_arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
 
 
 def _draw_spot(item: Spot, box: PanelBox) -> Iterator[Shape]:
+    if not item.shape:
+        return
     colour = find_colour(item.pen)
     yield Mark(box.to_pixel_x(item.x), box.to_pixel_y(item.y), item.shape, colour, item.is_filled, style.MARK_SIZE)
 

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing import style
 from heuncli.output.drawing.axes import PanelBox
-from heuncli.output.drawing.figure import Item, PlaceLabel, Spot, VerticalMark
+from heuncli.output.drawing.figure import Item, PlaceLabel, Spot, VerticalMark, Words
 from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
 from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text
 from heuncli.output.drawing.style import (
@@ -28,13 +28,13 @@ from heuncli.output.drawing.style import (
 
 CELL_SIZE = 3.0  # pixels of a cell of the word field
 MARK_DISTANCE = 2.0  # pixels from a mark to its words
-MIN_LINE_WIDTH = 1.0  # of a line without a name that words avoid, as they avoid hatches
+MIN_LINE_WIDTH = style.ENVELOPE_WIDTH  # of a line without a name that words avoid, as they avoid hatches
 MAX_UNLINKED_DISTANCE = 16.0  # pixels from a mark to its words up to which no line connects them
 N_DIRECTIONS = 16  # in which places are tried
 DISTANCES = (9.0, 14.0, 20.0, 28.0, 38.0)  # pixels from the place to the words
 LABEL_LINE_DISTANCE = 18.0  # pixels from a place to its label up to which no line connects them
 DISTANCE_COST = 0.12  # cost of a pixel of distance, in cells of a curve
-CIRCLE_SIZE = 8.5  # pixels, half the size of the circle around a number
+CIRCLE_SIZE, CIRCLE_GAP = 9.5, 3.0  # pixels: half the size of the circle around a number, between two of them
 
 
 def place_words(items: Sequence[Item], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
@@ -106,7 +106,10 @@ def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> list[Shape
         style.MARK_SIZE + MARK_DISTANCE,
     )
     place = field.occupy_near(
-        _make_mark_box(mark), estimate_width(text, style.SMALL_SIZE), style.HEIGHT_FACTOR * style.SMALL_SIZE
+        _make_mark_box(mark),
+        estimate_width(text, style.SMALL_SIZE),
+        style.HEIGHT_FACTOR * style.SMALL_SIZE,
+        is_centred=not item.shape,
     )
     if place is None:
         return None
@@ -150,6 +153,21 @@ def _place_mark_words(item: VerticalMark, box: PanelBox, field: WordField) -> li
     return [words]
 
 
+def drop_covered_words(items: Sequence[Item], box: PanelBox) -> list[Item]:
+    """Drop the optional words that would stand over other words without a mark."""
+    shown_boxes, shown_items = list[WordBox](), list[Item]()
+    for item in items:
+        if isinstance(item, Words):
+            half = 0.5 * estimate_width(escape(item.text), style.SMALL_SIZE), 0.5 * style.SMALL_SIZE
+            x, y = box.to_pixel_x(item.x), box.to_pixel_y(item.y)
+            own = WordBox(x - half[0], y - half[1], x + half[0], y + half[1])
+            if item.is_optional and any(own.overlaps(other) for other in shown_boxes):
+                continue
+            shown_boxes.append(own)
+        shown_items.append(item)
+    return shown_items
+
+
 def drop_close_marks(items: Sequence[Item], box: PanelBox, min_distance: float) -> list[Item]:
     """Drop the vertical marks without words that are closer to another one than `min_distance` pixels."""
     last, shown_items = -np.inf, []
@@ -172,7 +190,7 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
         text, x, y = escape(label.number or label.text), box.to_pixel_x(label.x), box.to_pixel_y(label.y)
         width, height = estimate_width(text, SMALL_SIZE), HEIGHT_FACTOR * SMALL_SIZE
         if label.number:
-            width = height = 2.0 * CIRCLE_SIZE
+            width = height = 2.0 * CIRCLE_SIZE + CIRCLE_GAP
         place = field.occupy_best(_iter_candidate_boxes(x, y, width, height))
         if place is None:
             omitted += [] if label.is_optional else [label.text]

@@ -8,18 +8,26 @@ from heuncli.base.sentences import wrap_text
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing import style
 from heuncli.output.drawing.axes import PanelBox, lay_out_axes
-from heuncli.output.drawing.figure import Bars, Figure, LegendEntry, Panel, PlaceLabel, VerticalMark
+from heuncli.output.drawing.figure import BAR, Bars, Figure, LegendEntry, Panel, PlaceLabel, VerticalMark
 from heuncli.output.drawing.item_shapes import draw_item
 from heuncli.output.drawing.label_placement import WordBox, make_omitted_note
-from heuncli.output.drawing.labels import drop_close_marks, estimate_width, make_field, place_labels, place_words
+from heuncli.output.drawing.labels import (
+    drop_close_marks,
+    drop_covered_words,
+    estimate_width,
+    make_field,
+    place_labels,
+    place_words,
+)
 from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, VectorDrawing
 from heuncli.output.drawing.space_key import choose_sheet_width, lay_out_key
 from heuncli.output.drawing.style import find_pen
 
-MARGIN = 8.0  # pixels at the edge, for words beside a panel without axes
+MARGIN = style.INDENT  # pixels at the edge of a row of panels
 MIN_MARK_DISTANCE = 2.0  # pixels between vertical marks
 GAP = 14.0  # pixels between panels of a row
 SAMPLE = 28.0  # pixels of the stroke before a name in a legend
+BAR_SAMPLE = ((-6.0, -5.0), (6.0, -5.0), (6.0, 5.0), (-6.0, 5.0))  # corners of the piece of a bar there
 BOLD = 1.08  # width of bold letters
 DRAWING_ORDER = {Area: 0, Line: 1, Mark: 2, Text: 3}  # later ones cover earlier ones
 LAYERED_ORDER = {Area: 0, Line: 0, Mark: 0, Text: 1}
@@ -77,7 +85,10 @@ def _lay_out_legend(entries: Sequence[LegendEntry], left: float, y: float, width
         if x > left and x + entry_width > width - style.INDENT:
             x, y = left, y + style.LINE_HEIGHT
         pen = find_pen(number)
-        if mark:
+        if mark == BAR:
+            corners = [(x + 0.5 * SAMPLE + a, y - 4.5 + b) for a, b in BAR_SAMPLE]
+            shapes.append(Area(tuple(corners), pen.colour, style.BAR_OPACITY))
+        elif mark:
             shapes.append(Mark(x + 0.5 * SAMPLE, y - 4.5, mark, pen.colour, False, style.MARK_SIZE))
         else:
             shapes.append(Line(((x, y - 4.5), (x + SAMPLE, y - 4.5)), pen.colour, style.CURVE_WIDTH, pen.dash))
@@ -127,7 +138,7 @@ def _lay_out_head(panel: Panel, left: float, top: float, right: float) -> tuple[
             y += style.LINE_HEIGHT
             shapes.append(Text(left, y - 4.0, text, size, is_bold=not k))
     if panel.legend:
-        mark = "square" if any(isinstance(item, Bars) for item in panel.items) else ""
+        mark = BAR if any(isinstance(item, Bars) for item in panel.items) else ""
         entries = [(name, number, mark) for name, number in panel.legend]
         legend, base = _lay_out_legend(entries, left, y + style.LINE_HEIGHT - 4.0, right + style.INDENT)
         shapes += legend
@@ -153,7 +164,7 @@ def _lay_out_panel(panel: Panel, box: PanelBox, cell: WordBox) -> tuple[list[Sha
 
     cell: the area for words of a panel without axes
     """
-    items = drop_close_marks(panel.items, box, MIN_MARK_DISTANCE)
+    items = drop_covered_words(drop_close_marks(panel.items, box, MIN_MARK_DISTANCE), box)
     drawn_shapes = [shape for item in items for shape in draw_item(item, box)]
     order = LAYERED_ORDER if panel.is_layered else DRAWING_ORDER
     drawn_shapes.sort(key=lambda shape: order[type(shape)])

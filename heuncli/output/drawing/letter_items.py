@@ -45,7 +45,7 @@ def choose_mark(shape: str, style: TerminalStyle, number: int) -> str:
     """Return the character of a marked place; points of one curve have the letter of their pen if there are no
     colours.
     """
-    if shape != "circle" and number >= 0:
+    if shape not in ("", "circle") and number >= 0:
         return "+" if style.has_colours else find_pen(number).letter
     return "•" if style.has_braille else "o"
 

@@ -185,6 +185,7 @@ def draw_arrow(
     name: str,
     *,
     is_double: bool = False,
+    width: float = ARROW_WIDTH,
 ) -> Iterator[Line | Area]:
     """Draw an arrow from a place by (a, b) [pixels]; is_double: with two heads."""
     length = math.hypot(a, b)
@@ -194,7 +195,7 @@ def draw_arrow(
     head = min(ARROW_HEAD, (0.4 if is_double else 0.6) * length)
     tips = [length, length - head] if is_double else [length]
     back = tips[-1] - head
-    yield Line(((x, y), (x + back * a, y + back * b)), colour, ARROW_WIDTH, name=name)
+    yield Line(((x, y), (x + back * a, y + back * b)), colour, width, name=name)
     for k, tip in enumerate(tips):
         root_x, root_y, side = x + (tip - head) * a, y + (tip - head) * b, 0.4 * head
         corners = (

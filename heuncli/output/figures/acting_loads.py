@@ -18,6 +18,7 @@ from heuncli.loads.kinetostatics.actions import AppliedLoad
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.multibody.mechanism.loads import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.loads import PointLoad
+from heuncli.output.figures.curves import choose_number_style
 from heuncli.output.machine_geometry.coupling_forces import iter_coupling_forces
 from heuncli.output.machine_geometry.joint_symbols import find_guided_actuators
 from heuncli.output.machine_geometry.machine import Machine
@@ -26,7 +27,7 @@ from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.compose.recovery import Recovery
-from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_reader_style
+from heuncli.study.quantities.reader_numbers import ReaderStyle
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
@@ -34,7 +35,6 @@ JOINTS_PEN, APPLIED_PEN, COUPLED_PEN = 1, 3, 5
 JOINT_REPORTS = frozenset({"joints"})
 MIN_LOAD = 1e-4  # of the largest load: smaller ones are not drawn
 MIN_MOMENT = 0.01  # of the largest moment: smaller ones are not drawn
-READABLE = (0.1, 1e4)  # the largest number in chosen units; beyond, the unit is chosen by size
 
 
 class ActingLoad(NamedTuple):
@@ -90,12 +90,10 @@ class ActingLoads(NamedTuple):
         return max((load.magnitude for load in self.select(moments=moments)), default=0.0)
 
     def choose_style(self, units: Units, *, moments: bool) -> ReaderStyle:
-        """Choose how the magnitudes are written: in the chosen units unless these make the numbers long or small."""
+        """Choose how the magnitudes are written."""
         unit, largest = "N·m" if moments else "N", self.find_largest(moments=moments)
         unit = IMPULSE_UNITS[unit] if self.is_impact else unit
-        style = choose_reader_style(unit, largest, units)
-        is_readable = READABLE[0] <= style.size * largest < READABLE[1]
-        return style if is_readable or unit not in PREFIXES else choose_reader_style(unit, largest, Units())
+        return choose_number_style(unit, largest, units)
 
     def drop_slight_moments(self, size: float) -> ActingLoads:
         """Drop the moments of joints and bushings that are slight beside the forces on a machine of a size [m]."""

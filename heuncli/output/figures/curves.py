@@ -18,15 +18,29 @@ from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.output.figures.courses import FigureSource, NumberCourse, find_values, is_varying
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import UNKNOWN, format_error
-from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_reader_style
+from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure import Peak
 
-MAX_PERIODS, MAX_STRETCHES = 30, 240  # with more periods the curve is an envelope of at most so many stretches
+MAX_PERIODS, MAX_STRETCHES = 60, 240  # with more periods the curve is an envelope of at most so many stretches
 ARROW_PLACES, ARROW_SHARE = (0.2, 0.55, 0.9), 0.03  # of a closed curve's points, and of the panel's width
 GROUP_WIDTH = 0.8  # share of a load case that its bars take
 N_INTERVALS = 1500  # nearly two a pixel of a panel
 MIN_HALF_WIDTH = 0.5  # pixels: half width of a band
+# The largest number of a panel; beyond, the unit is chosen by size: at five digits for a product of chosen units.
+MIN_READABLE, MAX_READABLE, MAX_PRODUCT = 0.1, 1e5, 1e4
 MAX_SPOTS = 150  # more points are drawn as a line
+
+
+def choose_number_style(unit: str, largest: float, units: Units) -> ReaderStyle:
+    """Choose how the numbers of a panel are written: in the units chosen, unless these make them long or small.
+
+    unit: SI unit; largest: magnitude, SI
+    """
+    chosen, by_size = choose_reader_style(unit, largest, units), choose_reader_style(unit, largest, Units())
+    high = MAX_PRODUCT if "·" in unit else MAX_READABLE
+    is_short, is_shorter = (MIN_READABLE <= style.size * largest < high for style in (chosen, by_size))
+    return by_size if unit in PREFIXES and is_shorter and not is_short else chosen
 
 
 class PanelCourse(NamedTuple):
@@ -176,7 +190,7 @@ def draw_case_bars(curves: Sequence[PanelCourse], style: ReaderStyle) -> Iterato
         for place, value, curve in zip(x.tolist(), values, own, strict=True):
             if math.isfinite(value):
                 text = format_number(value, curve.course.error or 0.0, style).removesuffix(f" {style.unit}")
-                yield Spot(place, style.size * value, text, pen, is_filled=True)
+                yield Spot(place, style.size * value, text, pen, "")
 
 
 def find_visible_points(values: Array, n_intervals: int = N_INTERVALS) -> NDArray[np.intp]:

@@ -33,6 +33,7 @@ LONGEST_ARROW = 0.2  # share of the figure's larger side: largest force
 LONGEST_MOMENT = 0.14  # share: largest moment
 HIGHEST_DISTRIBUTED = 0.08  # share: largest density of a distributed load
 MIN_ARROW = 0.004  # share: a shorter arrow is not drawn, or is seen from its end
+MIN_REACTION = 0.02  # share: a shorter arrow of the reaction to a load is not drawn
 MIN_VISIBLE_PART = 0.2  # of an arrow's length: with less it is seen from its end
 MIN_LABELLED = 0.01  # of the largest load: smaller ones have no value
 MIN_FACING = 0.95  # cosine to the line of sight, from which a moment is drawn as a turn
@@ -87,6 +88,8 @@ def draw_loads(drawing: LoadDrawing) -> Iterator[Arrow | Strokes | Symbol]:
         place, arrow = drawing.find_place(load), drawing.find_arrow(load)
         depth, length = float(drawing.view.compute_depth(load.vector)), drawing.find_scale(load) * load.magnitude
         description = f"{'moment' if load.is_moment else 'force'}: {load.name}"
+        if load.is_reaction and length < MIN_REACTION * drawing.side:
+            continue
         if drawing.faces_viewer(load):
             symbol = "turning" if depth > 0.0 else "turning back"
             yield Symbol(*to_pair(place), symbol, (1.0, 0.0), load.pen, f"moment of {load.name}")

@@ -152,7 +152,7 @@ def make_machine_figure(
     names = [
         *make_machine_labels(posed_machine, 0, labels, {label.letter for label in load_labels}),
         *make_mark_labels(posed_machine, 0),
-        *(traces.make_labels(posed_machine, point_paths) if has_point_names else ()),
+        *(traces.label_paths(posed_machine, point_paths, labels) if has_point_names else ()),
     ]
     place_labels, numbers = choose_labels(load_labels, names, side)
     items: list[Item] = [
