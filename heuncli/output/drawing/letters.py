@@ -236,8 +236,8 @@ def format_key(key: SpaceKey, columns_per_unit: float, style: TerminalStyle) -> 
     rule, ends, head = ("─", "├┤", "▶") if style.has_braille else ("-", "||", ">")
     bar = rule * max(0, round(columns_per_unit * key.bar[0]) - 2)
     lines = [f"{ends[0]}{bar}{ends[1]} {escape(key.bar[1])}"]
-    ways = [f"{name} {way}" for name, a, b in key.axes if (way := _find_way(a, b))]
-    lines[0] += f"   {', '.join(ways)}" if ways else ""
+    sides = [f"{name} {side}" for name, a, b in key.axes if (side := _find_side(a, b))]
+    lines[0] += f"   {', '.join(sides)}" if sides else ""
     for arrow in key.arrows:
         heads = head * (1 + arrow.is_double)
         shaft = rule * max(0, round(columns_per_unit * arrow.length) - len(heads)) + heads
@@ -247,8 +247,8 @@ def format_key(key: SpaceKey, columns_per_unit: float, style: TerminalStyle) -> 
     return lines
 
 
-def _find_way(a: float, b: float) -> str:
-    """Return the direction of a world axis along a side of the drawing; empty for any other."""
+def _find_side(a: float, b: float) -> str:
+    """Return the side of the drawing to which a world axis points; empty if it points to none."""
     if max(abs(a), abs(b)) < ALONG_AXIS:
         return ""
     return ("right" if a > 0.0 else "left") if abs(a) > abs(b) else "up" if b > 0.0 else "down"

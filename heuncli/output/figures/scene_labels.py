@@ -68,10 +68,10 @@ def make_machine_labels(
     """
     if not posed_machine.has_names:
         return
-    for number, look in enumerate(posed_machine.machine.joints, 1):
-        ends = posed_machine.project(look.b, look.q, k), posed_machine.project(look.a, look.p, k)
-        place = 0.5 * (ends[0] + ends[1]) if TYPES[look.kind].keeps_distance else ends[0]
-        text = describe_object("joints", look.name, labels)
+    for number, joint in enumerate(posed_machine.machine.joints, 1):
+        ends = posed_machine.project(joint.b, joint.q, k), posed_machine.project(joint.a, joint.p, k)
+        place = 0.5 * (ends[0] + ends[1]) if TYPES[joint.kind].keeps_distance else ends[0]
+        text = describe_object("joints", joint.name, labels)
         if text not in labelled:
             yield PlaceLabel(*to_pair(place), text, str(number))
     for letter, line in zip(iter_letters("a"), posed_machine.machine.lines, strict=False):

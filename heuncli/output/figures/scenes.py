@@ -189,14 +189,12 @@ def _draw_first_instant(posed_machine: PosedMachine, drawn_names: Collection[str
 
 def _draw_later_instant(posed_machine: PosedMachine, k: int) -> list[Item]:
     """Draw a later instant in thin, pale lines."""
-    items = body_items.draw_bodies(posed_machine, k, thin=True)
+    items = body_items.draw_bodies(posed_machine, k)
     items += [
-        item
-        for line in posed_machine.machine.lines
-        for item in joint_items.draw_force_line(posed_machine, line, k, thin=True)
+        item for line in posed_machine.machine.lines for item in joint_items.draw_force_line(posed_machine, line, k)
     ]
-    items += joint_items.draw_ropes(posed_machine, k, thin=True)
-    return items + joint_items.draw_joints(posed_machine, k, thin=True)
+    items += joint_items.draw_ropes(posed_machine, k)
+    return items + joint_items.draw_joints(posed_machine, k)
 
 
 def _make_key(
