@@ -19,7 +19,6 @@ from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text
 from heuncli.output.drawing.style import (
     BASE_FACTOR,
     GHOST_LABEL,
-    GREY,
     HEIGHT_FACTOR,
     SMALL_SIZE,
     find_colour,
@@ -29,10 +28,9 @@ from heuncli.output.drawing.style import (
 CELL_SIZE = 3.0  # pixels of a cell of the word field
 MARK_DISTANCE = 2.0  # pixels from a mark to its words
 MIN_LINE_WIDTH = style.ENVELOPE_WIDTH  # of a line without a name that words avoid, as they avoid hatches
-MAX_UNLINKED_DISTANCE = 16.0  # pixels from a mark to its words up to which no line connects them
+MAX_UNLINKED_DISTANCE = 17.0  # pixels from a place to its words up to which no line connects them
 N_DIRECTIONS = 16  # in which places are tried
 DISTANCES = (9.0, 14.0, 20.0, 28.0, 38.0)  # pixels from the place to the words
-LABEL_LINE_DISTANCE = 18.0  # pixels from a place to its label up to which no line connects them
 DISTANCE_COST = 0.12  # cost of a pixel of distance, in cells of a curve
 CIRCLE_SIZE, CIRCLE_GAP = 9.5, 3.0  # pixels: half the size of the circle around a number, between two of them
 
@@ -122,11 +120,15 @@ def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> list[Shape
         colour=colour,
         has_halo=True,
     )
-    end = min(max(mark.x, place.left), place.right), min(max(mark.y, place.top), place.bottom)
-    is_near = math.hypot(end[0] - mark.x, end[1] - mark.y) <= MAX_UNLINKED_DISTANCE
-    if is_near or field.is_struck((mark.x, mark.y), end, except_boxes=(place, _make_mark_box(mark))):
-        return [words]
-    return [Line(((mark.x, mark.y), end), colour, style.GRID_WIDTH), words]
+    return [*_connect(mark.x, mark.y, place, field, colour, _make_mark_box(mark)), words]
+
+
+def _connect(x: float, y: float, place: WordBox, field: WordField, colour: str, *own_boxes: WordBox) -> Iterator[Shape]:
+    """Draw a line from a place to its words if these are far from it and no other words or marks are between."""
+    end = min(max(x, place.left), place.right), min(max(y, place.top), place.bottom)
+    is_far = math.hypot(end[0] - x, end[1] - y) > MAX_UNLINKED_DISTANCE
+    if is_far and not field.is_struck((x, y), end, except_boxes=(place, *own_boxes)):
+        yield Line(((x, y), end), colour, style.GRID_WIDTH)
 
 
 def _place_mark_words(item: VerticalMark, box: PanelBox, field: WordField) -> list[Shape] | None:
@@ -195,12 +197,10 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
         if place is None:
             omitted += [] if label.is_optional else [label.text]
             continue
-        nearest = min(max(x, place.left), place.right), min(max(y, place.top), place.bottom)
-        if math.hypot(nearest[0] - x, nearest[1] - y) > LABEL_LINE_DISTANCE:
-            lines.append(Line(((x, y), nearest), GREY, 0.6))
         colour, base = find_colour(label.pen), place.top + BASE_FACTOR * SMALL_SIZE
         if label.is_ghost:
             colour = mix_with_white(colour, GHOST_LABEL)
+        lines += _connect(x, y, place, field, colour)
         if label.number:
             middle = 0.5 * (place.left + place.right), 0.5 * (place.top + place.bottom)
             texts.append(Mark(*middle, "circle", colour, False, CIRCLE_SIZE))
