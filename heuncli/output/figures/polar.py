@@ -159,7 +159,8 @@ def thin_marks(spots: Sequence[Spot], mark_space: float, label_space: float) -> 
         if spot.is_filled:
             kept.append(spot)
         elif same is not None and spot.text and kept[same].text and not kept[same].is_filled:
-            kept[same] = kept[same]._replace(text=f"{kept[same].text}, {spot.text}")
+            if ", " not in kept[same].text:  # the ends of a cycle; a vector that rests has only two of its instants
+                kept[same] = kept[same]._replace(text=f"{kept[same].text}, {spot.text}")
         elif min(distances, default=math.inf) >= mark_space:
             is_labelled = not any(other.text and not other.is_filled for other in near)
             kept.append(spot if is_labelled else spot._replace(text=""))

@@ -10,6 +10,7 @@ import numpy as np
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.axes import format_short
+from heuncli.output.figures.curves import choose_number_style
 from heuncli.output.figures.posed_machine import PosedMachine
 from heuncli.output.summary.summary_rows import SummaryRow
 from heuncli.results.results import Results
@@ -17,7 +18,6 @@ from heuncli.results.results_paths import find_values
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import Channel, make_path_channel
 from heuncli.study.quantities.labels import make_labels
-from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
@@ -80,7 +80,7 @@ def describe_instants(posed_machine: PosedMachine, worst: WorstInstant | None, u
     times = posed_machine.poses.times.tolist()
     text = f"t = {format_short(times[0], TIME_DIGITS)} s"
     if worst is not None and worst.name and worst.time == times[0]:
-        style = choose_reader_style("N", worst.force, units)
+        style = choose_number_style("N", worst.force, units)
         name = describe_object(worst.kind, worst.name, make_labels(posed_machine.spec))
         text += (
             f", worst instant: greatest {WORST_WORDS[worst.kind]} force, {name} {style.write(worst.force)} {style.unit}"
