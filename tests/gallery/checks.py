@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 from typing import NamedTuple
 
+from heuncli.output.drawing.style import ENVELOPE_WIDTH, WIDTH
 from tests.shared.chromium import Tab
 from tests.shared.plotted import SVG, is_frame, points_of
 
@@ -25,8 +26,10 @@ SAMPLES = 60  # places along a side of a picture at which ink is looked for
 PATH = re.compile(r"\b(?:joints|forces|coordinates|bodies|couplings|foundation|points|sections|energy|stops)\.\w+")
 NOISE = re.compile(r"\d[eE][-−](?:[6-9]|\d\d)\b|\b0\.000\d+ (?!s\b)")
 DIGITS = re.compile(r"(?<![\w.])[-−]?(\d+\.?\d*)(?:e[-−+]?\d+)?(?![\w.])")
+LONG = re.compile(r"(?<![\w.])\d{6,}(?![\w.]*\.)")
 FOLDER = re.compile(r"(?:^|\s)/[\w.-]+/[\w./-]+")
 PREFIXES = {"k": 1e3, "M": 1e6}
+CAPITALS, TEXT_WIDTH, LEAST_HEIGHT = 0.72, 178.0, 2.49  # of a face; of an A4 report [mm]; of letters on it [mm]
 MOST_DIGITS = 5  # significant ones that a reader takes in
 
 
@@ -74,7 +77,10 @@ class Finding(NamedTuple):
 
 def find_in_svg(svg: str) -> list[Finding]:
     """Find all faults of a picture."""
-    finders = (find_label_overlaps, find_struck_text, find_text_outside, find_empty_thirds, find_unreadable_words)
+    finders = (
+        find_label_overlaps, find_struck_text, find_words_on_bands, find_text_outside, find_empty_thirds,
+        find_unreadable_words, find_long_numbers, find_small_text,
+    )  # fmt: skip
     return [finding for finder in finders for finding in finder(svg)]
 
 
@@ -103,6 +109,15 @@ def find_struck_text(svg: str) -> list[Finding]:
         if next(crossing, None) is not None:
             found.append(Finding("struck", box.words, box.left, box.top))
     return found
+
+
+def find_words_on_bands(svg: str) -> list[Finding]:
+    """Find words that stand on the thin line of a band, with or without a halo: their letters cut the line."""
+    root = tree.fromstring(svg.encode())
+    lines = [points_of(e) for e in root.iter(f"{SVG}polyline") if float(e.get("stroke-width", 1)) == ENVELOPE_WIDTH]
+    pieces = [(a, b) for points in lines for a, b in pairwise(points.tolist())]
+    on_line = (box for box in text_boxes(root) if any(crosses(box.shrunk(), a, b) for a, b in pieces))
+    return [Finding("band", box.words, box.left, box.top) for box in on_line]
 
 
 def find_text_outside(svg: str) -> list[Finding]:
@@ -134,6 +149,21 @@ def find_empty_thirds(svg: str) -> list[Finding]:
 def find_unreadable_words(svg: str) -> list[Finding]:
     """Find paths in place of names, noise, numbers of too many digits, folders of a machine."""
     return [finding for box in text_boxes(tree.fromstring(svg.encode())) for finding in judge_words(box)]
+
+
+def find_long_numbers(svg: str) -> list[Finding]:
+    """Find numbers with more digits before the point than a reader takes in, as of 254256 N·mm."""
+    boxes = text_boxes(tree.fromstring(svg.encode()))
+    return [Finding("long", box.words, box.left, box.top) for box in boxes if LONG.search(box.words)]
+
+
+def find_small_text(svg: str) -> list[Finding]:
+    """Find letters that are lower than 2.5 mm on a sheet that is printed across its text."""
+    root = tree.fromstring(svg.encode())
+    sizes = [float(element.get("font-size", 0)) for element in root.iter(f"{SVG}text")]
+    height = CAPITALS * TEXT_WIDTH / WIDTH
+    boxes = zip(text_boxes(root), sizes, strict=True)
+    return [Finding("small", box.words, box.left, box.top) for box, size in boxes if size * height < LEAST_HEIGHT]
 
 
 def judge_words(box: Box) -> Iterator[Finding]:

@@ -10,6 +10,9 @@ from __future__ import annotations
 PLOTS = ("scene", "history", "sections", "polar", "modes", "balance", "sweep", "chart")
 MENDED: dict[str, tuple[str, ...]] = {
     "overlap": (*PLOTS, "page", "report"),  # words over words
+    "band": PLOTS,  # words on the thin line of a band
+    "long": PLOTS,  # six digits before the point
+    "small": PLOTS,  # letters below 2.5 mm on paper
     "struck": PLOTS,  # a stroke through words
     "outside": (*PLOTS, "page", "report"),  # words beyond the picture or the window
     "empty": PLOTS,  # a third of the picture without ink

@@ -7,7 +7,7 @@ import pytest
 
 from heuncli.loads.kinetostatics.cuts import make_first_axis
 from heuncli.output.drawing.canvas import TerminalStyle
-from heuncli.output.drawing.figure import Blank, Trace
+from heuncli.output.drawing.figure import Arrow, Blank, Symbol, Trace
 from heuncli.output.drawing.letters import draw_text as in_letters
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
@@ -163,3 +163,11 @@ def test_moments_are_drawn_on_the_side_in_tension(
     assert all(float(text.replace("−", "-")) == pytest.approx(-at) for at, text in panel.y.tick_texts), (
         "the axis tells the values themselves"
     )
+
+
+def test_a_couple_on_a_bar_is_sketched_as_a_turn_and_a_force_as_an_arrow() -> None:
+    couple = "p: {type: couple, on: bar.end, vector: [0, 0, 5]}"
+    for force, counts in ((couple, (1, 0)), ("p: {type: force, on: bar.end, vector: [0, -7, 0]}", (0, 1))):
+        sketch = drawn(study(CANTILEVER.format(forces=force)), "along").panels[0]
+        turns = [item for item in sketch.items if isinstance(item, Symbol) and item.symbol == "turning"]
+        assert (len(turns), sum(isinstance(item, Arrow) for item in sketch.items)) == counts

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 
 from heuncli.output.figures.courses import NumberCourse
-from heuncli.output.figures.curve_points import N_INTERVALS, find_visible_points
+from heuncli.output.figures.curves import N_INTERVALS, PanelCourse, choose_number_style, find_visible_points
 from heuncli.output.figures.histories import _make_y_axis
-from heuncli.output.figures.history_curves import PanelCourse
 from heuncli.results.results import Array
 from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.quantities.table_units import read_display_units
 from heuncli.study.queries.measure import Peak
 from tests.shared.command import Heun
 from tests.shared.drawn_panels import DrawnPanel, edges, heights, read
 from tests.shared.folders import ROOT
-from tests.shared.plotted import texts_of
+from tests.shared.plotted import panels_of, texts_of
 
 TURNING = """\
 heun: 1
@@ -168,14 +168,16 @@ def test_what_is_constant_is_told_once(heun: Heun, folder: Path) -> None:
     assert panel.texts() == ["6.283 rad/s at all times"] and len(panel.marks) == 1
 
 
-def test_of_one_instant_each_case_is_a_mark(heun: Heun, folder: Path) -> None:
+def test_of_one_instant_each_case_is_a_bar(heun: Heun, folder: Path) -> None:
     (panel,) = drawn(heun, folder, spec("axle_loads"), "joints.front.force", "--case", "all")
+    (plotted,) = panels_of((folder / "picture.svg").read_text())
+    tops = np.array([bar[:, 1].max() for bar in plotted.areas("joints.front.force")])
     cases = [
         case["joints"]["front"]["force"][0]
         for case in results(heun, spec("axle_loads"), "--case", "all")["cases"].values()
     ]
     for value in np.linalg.norm(np.array(cases), axis=1):
-        assert np.abs(panel.marks[:, 1] - value).min() <= panel.pixel
+        assert np.abs(tops - value).min() <= panel.pixel and len(tops) == len(cases)
         assert f"{value:.0f}" in panel.texts()
 
 
@@ -197,7 +199,7 @@ def test_of_many_turns_none_is_lost(heun: Heun, folder: Path) -> None:
     low, high = edges(panel.areas["range of coordinates.guide.travel"], np.linspace(0.0, 15.0, 301))
     assert np.abs(high + 1.0).max() <= panel.pixel  # 200/2π periods a second
     assert np.abs(low + 1.0 + 2.0 * 9.81 / 40000.0).max() <= panel.pixel
-    assert not panel.curves.get("coordinates.guide.travel") and any("30 periods" in text for text in notes(folder))
+    assert not panel.curves.get("coordinates.guide.travel") and any("60 periods" in text for text in notes(folder))
 
 
 @pytest.mark.parametrize("count", [100, 6001, 50_000, 123_457])
@@ -247,3 +249,16 @@ def test_what_is_less_than_its_error_stays_in_its_panel() -> None:
         of = PanelCourse("p", 0, None, course.times, course)  # type: ignore[arg-type]
         scaling = _make_y_axis("force", ReaderStyle("N", 1.0, 0), [of], [])
         assert scaling.low <= value - error and value + error <= scaling.high
+
+
+@pytest.mark.parametrize(
+    ("unit", "largest", "given", "shown"),
+    [
+        ("N·m", 865.881, "N,mm", "865.9 N·m"), ("N·m", 8.65881, "N,mm", "8659 N·mm"), ("N", 12510.0, "N,mm", "12510 N"),
+        ("N", 125100.0, "N,mm", "125.1 kN"), ("N", 19.2, "kN", "19.20 N"), ("N", 0.0, "kN", "0 kN"),
+        ("rad/s", 1e6, "rpm", "9549297 rpm"), ("N", 1e18, "MN", "1000000000000 MN"),
+    ],
+)  # fmt: skip
+def test_a_unit_that_makes_numbers_long_gives_way(unit: str, largest: float, given: str, shown: str) -> None:
+    style = choose_number_style(unit, largest, read_display_units("--units", given))
+    assert f"{style.write(largest)} {style.unit}" == shown

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.style import find_pen
 from tests.shared.command import Heun
 from tests.shared.plotted import SVG, PlottedPanel, panels_of, points_of, texts_of
 

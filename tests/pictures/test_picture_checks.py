@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import pytest
 
+from heuncli.output.drawing.style import ENVELOPE_WIDTH
 from tests.gallery.checks import (
     find_empty_thirds,
     find_in_svg,
     find_label_overlaps,
+    find_long_numbers,
     find_other_numbers,
+    find_small_text,
     find_struck_text,
     find_text_outside,
     find_unreadable_words,
+    find_words_on_bands,
     text_width,
 )
 
 SOUND = (
     '<polyline points="20,20 200,150 380,280" fill="none" stroke="#0072b2" stroke-width="1.5"/>',
     '<polyline points="20,280 380,20" fill="none" stroke="#e6e6e6" stroke-width="0.8"/>',
-    '<text x="200" y="40" font-size="12" text-anchor="middle">Main bearing, radial force</text>',
-    '<text x="40" y="250" font-size="12" text-anchor="start">24.56 kN at 0.0415 s</text>',
+    '<text x="200" y="40" font-size="14" text-anchor="middle">Main bearing, radial force</text>',
+    '<text x="40" y="250" font-size="14" text-anchor="start">24.56 kN at 0.0415 s</text>',
 )
 STROKE = '<polyline points="0,246 400,246" fill="none" stroke="#444444" stroke-width="1"/>'
 HALO = 'paint-order="stroke" stroke="#ffffff" stroke-width="3"'
@@ -32,7 +36,7 @@ def drawing(*more: str, sound: tuple[str, ...] = SOUND) -> str:
 
 
 def words(text: str, x: float = 250.0, y: float = 200.0, more: str = "") -> str:
-    return f'<text x="{x}" y="{y}" font-size="12" text-anchor="start" {more}>{text}</text>'
+    return f'<text x="{x}" y="{y}" font-size="14" text-anchor="start" {more}>{text}</text>'
 
 
 def test_a_sound_picture_has_no_findings() -> None:
@@ -61,6 +65,20 @@ def test_a_stroke_through_words_is_found_and_a_halo_before_it_helps() -> None:
 def test_a_sign_on_a_line_is_found_despite_its_halo() -> None:
     sign = words("−", 250.0, 250.0, HALO)
     assert [f.what for f in find_struck_text(drawing(STROKE, sign, sound=()))] == ["−"]
+
+
+def test_words_on_the_line_of_a_band_are_found_despite_their_halo() -> None:
+    line = STROKE.replace('width="1"', f'width="{ENVELOPE_WIDTH}"')
+    on_line, above = words("-940 N", 250.0, 250.0, HALO), words("-940 N", 250.0, 238.0, HALO)
+    assert [f.what for f in find_words_on_bands(drawing(line, on_line, sound=()))] == ["-940 N"]
+    assert find_words_on_bands(drawing(line, above, sound=())) == []
+
+
+def test_six_digits_before_the_point_and_low_letters_are_found() -> None:
+    long = [words(text, 10.0) for text in ("254256 N·mm", "-865881 N·mm", "25774 N·mm", "254.3 N·m")]
+    assert [f.what for f in find_long_numbers(drawing(*long, sound=()))] == ["254256 N·mm", "-865881 N·mm"]
+    low = '<text x="9" y="9" font-size="13" text-anchor="start">2.1 mm</text>'
+    assert [f.what for f in find_small_text(drawing(low))] == ["2.1 mm"]
 
 
 def test_words_beyond_the_edge_are_found() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.target import COMMON_OPTIONS, KINDS
-from heuncli.output.drawing import matplotlib_file, svg_converters
+from heuncli.output.drawing import drawing_files, matplotlib_file
 from tests.shared.command import HANGING, Heun
 
 SECTIONED = (
@@ -92,7 +92,7 @@ def test_without_matplotlib_it_is_said_how_to_install_it(
     heun: Heun, files: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
-    monkeypatch.setattr(svg_converters, "CONVERTERS", ())
+    monkeypatch.setattr(drawing_files, "CONVERTERS", ())
     done = heun("plot", "hanging.yaml", PATH, "-o", "x.png")
     assert done.returncode == 2 and "heuncli[plot]" in done.stderr and not (files / "x.png").exists()
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.style import FAINT
+from heuncli.output.drawing.figure import Spot
+from heuncli.output.drawing.style import FAINT, find_pen
+from heuncli.output.figures.polar import thin_marks
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.plotted import SVG, PlottedPanel, far_from, polar_panel_of, texts_of
@@ -211,3 +212,23 @@ def test_panels_over_one_angle_share_their_grid(heun: Heun, folder: Path) -> Non
         grids.setdefault(top, []).append(x)
     assert len(grids) == 2
     assert len({tuple(grid) for grid in grids.values()}) == 1
+
+
+def test_marks_that_would_cover_each_other_are_thinned() -> None:
+    """Of a cluster the labelled ones stay; one place has one label; what fires stays with its name."""
+    marks = [
+        Spot(0.0, 0.0, "0°"),
+        Spot(0.0, 0.0, "720°"),
+        Spot(0.1, 0.0),
+        Spot(0.5, 0.0, "90°"),
+        Spot(3.0, 0.0, "180°"),
+    ]
+    firing = Spot(0.05, 0.0, "gas fires, 5°", 1, "diamond", is_filled=True)
+    shown = {(spot.x, spot.text) for spot in thin_marks([*marks, firing], mark_space=0.04, label_space=1.0)}
+    assert shown == {(0.0, "0°, 720°"), (0.1, ""), (0.5, ""), (3.0, "180°"), (0.05, "gas fires, 5°")}
+
+
+def test_bodies_are_named_as_a_reader_names_them(heun: Heun, folder: Path) -> None:
+    turned = CRANK.replace("crank", "upper_arm").replace("LAW", "6.283185307179586*t")
+    (folder / "arm.yaml").write_text(turned)
+    assert "reaction of ground on upper arm" in drawn(heun, "arm.yaml", "polar", "joints.main")[1]

@@ -12,14 +12,14 @@ import pytest
 
 from heuncli.output.drawing.canvas import make_terminal_style
 from heuncli.output.drawing.figure import Figure, Link, PlaceLabel, Polygon, Strokes
+from heuncli.output.drawing.labels import estimate_width
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
 from heuncli.output.drawing.shapes import Text, to_svg
 from heuncli.output.drawing.style import HEIGHT_FACTOR
-from heuncli.output.drawing.words import estimate_width
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.scenes import make_assembly_figure, make_scene_figure
-from heuncli.output.machine_geometry.hulls import make_hull
+from heuncli.output.machine_geometry.solids import make_hull
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units

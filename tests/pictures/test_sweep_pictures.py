@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.drawing.pens import find_shade
+from heuncli.output.drawing.style import find_shade
+from heuncli.output.figures.sweeps import describe_measure
 from tests.shared.command import HANGING, Heun
 from tests.shared.plotted import SVG, PlottedPanel, panels_of, points_of, texts_of
 
@@ -239,3 +240,10 @@ def test_it_is_the_same_every_time_and_in_letters(heun: Heun, swept: Heun) -> No
     assert Path("one.svg").read_bytes() == Path("two.svg").read_bytes()
     text = heun("plot", "s.sqlite", "--width", "60").stdout
     assert max(map(len, text.splitlines())) <= 60 and set("·░▒▓█") <= set(text)
+
+
+def test_a_measure_is_named_in_words() -> None:
+    measures = ("max joints.main.force", "rms foundation.force.z", "max abs joints.main.moment", "mass of the rod")
+    assert [describe_measure(measure) for measure in measures] == [
+        "Main, greatest force", "Foundation, effective Fz", "Main, greatest magnitude of moment", "mass of the rod",
+    ]  # fmt: skip

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from heuncli.output.drawing.axes import choose_ticks
 from heuncli.output.drawing.figure import Scaling
-from heuncli.output.drawing.ticks import choose_ticks
 
 AXES = [
     Scaling("", 0.0, 1.0), Scaling("", -3e-7, 2.5e-6), Scaling("", 1e5, 1.5e6), Scaling("", 1013240.0, 1013252.0),

@@ -11,11 +11,11 @@ import pytest
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace, VerticalMark
 from heuncli.output.drawing.label_placement import WordBox
+from heuncli.output.drawing.labels import estimate_width
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
 from heuncli.output.drawing.shapes import Mark, Text
 from heuncli.output.drawing.style import BASE_FACTOR, HEIGHT_FACTOR, LEFT, RIGHT, SMALL_SIZE, WIDTH
-from heuncli.output.drawing.words import estimate_width
 
 NARROW = WordBox(LEFT, 0.0, WIDTH - RIGHT, 400.0)
 

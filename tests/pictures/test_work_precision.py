@@ -17,8 +17,8 @@ from heuncli.output.documents.document import make_panels
 from heuncli.output.drawing import matplotlib_file
 from heuncli.output.drawing.figure import Figure, Panel, Spot, Strokes, Trace
 from heuncli.output.drawing.layout import lay_out
-from heuncli.output.drawing.pens import find_pen
 from heuncli.output.drawing.shapes import Area, Line, VectorDrawing, to_svg
+from heuncli.output.drawing.style import find_pen
 from heuncli.output.figures.work_precision import FAILURES_TITLE, REFERENCE_LABEL, make_work_precision_figure
 from tests.shared.fake_charts import FAILS, REFERENCE, TOO_LONG, chart, run
 

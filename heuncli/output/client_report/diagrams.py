@@ -18,11 +18,10 @@ from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import AT_WORST, ReportData, ReportedRun
 from heuncli.output.client_report.summary_table import ReportedLoad, find_crank, list_loads
 from heuncli.output.documents.document import Drawing, Part
+from heuncli.output.drawing.axes import choose_ends
 from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, Trace
-from heuncli.output.drawing.ticks import choose_ends
-from heuncli.output.figures.courses import FigureSource, choose_instants, is_claimed
+from heuncli.output.figures.courses import FigureSource, NotDrawable, choose_instants, is_claimed
 from heuncli.output.figures.polar import make_polar_figure
-from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
 from heuncli.results.results_schema import XYZ

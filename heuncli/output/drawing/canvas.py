@@ -12,7 +12,7 @@ from heuncli.output.drawing.figure import (
     Scaling,
 )
 from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
-from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.style import find_pen
 
 BRAILLE = 0x2800
 DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # by row and column of a cell

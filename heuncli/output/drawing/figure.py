@@ -83,6 +83,7 @@ class Arrow(NamedTuple):
     name: label at its tip
     description: title shown to readers
     is_double: whether it has two heads, as of a moment
+    is_thin: whether it is less important than the curves beside it
     """
 
     x: float
@@ -93,10 +94,11 @@ class Arrow(NamedTuple):
     name: str = ""
     description: str = ""
     is_double: bool = False
+    is_thin: bool = False
 
 
 class Spot(NamedTuple):
-    """A marked place with its words; shape: one of output/drawing/shapes.py.
+    """A marked place with its words; shape: one of output/drawing/shapes.py, "" for none, as at the end of a bar.
 
     note: text listed under the panels if the words find no room there; if empty, the words themselves
     """
@@ -111,13 +113,18 @@ class Spot(NamedTuple):
 
 
 class Words(NamedTuple):
-    """A few words at a place, without a mark; is_sign: a + or − in a white disc."""
+    """A few words at a place, without a mark.
+
+    is_sign: a + or − in a white disc
+    is_optional: whether they are left out where they would stand over others that come before them
+    """
 
     x: float
     y: float
     text: str
     pen: int | None = None
     is_sign: bool = False
+    is_optional: bool = False
 
 
 class Symbol(NamedTuple):
@@ -308,7 +315,8 @@ def share_x_axis(panels: Sequence[Panel]) -> list[Panel]:
     return [*(panel._replace(x=panel.x._replace(hides_label=True)) for panel in panels[:-1]), *panels[-1:]]
 
 
-LegendEntry = tuple[str, int, str]  # a name, its pen, and the shape of its mark; "" for a stroke
+LegendEntry = tuple[str, int, str]  # a name, its pen, and the shape of its mark: "" for a stroke, BAR for a bar
+BAR = "bar"
 
 
 class Figure(NamedTuple):

@@ -10,6 +10,7 @@ import numpy as np
 
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing import style
+from heuncli.output.drawing.axes import PanelBox
 from heuncli.output.drawing.figure import (
     Arrow,
     Band,
@@ -27,12 +28,10 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
-from heuncli.output.drawing.pens import find_colour, find_pen, find_shade, mix_with_white
-from heuncli.output.drawing.scales import PanelBox
-from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text
-from heuncli.output.drawing.space_key import draw_arrow
+from heuncli.output.drawing.labels import estimate_width
+from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, draw_arrow
+from heuncli.output.drawing.style import find_colour, find_pen, find_shade, mix_with_white
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
-from heuncli.output.drawing.words import estimate_width
 from heuncli.results.results import Array
 
 CELL_OVERLAP = 0.5  # pixels by which cells overlap, else the background shows between them
@@ -150,7 +149,8 @@ def _draw_arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
     colour, name = find_colour(item.pen), escape(item.description or item.name)
     x0, y0 = box.to_pixel_x(item.x), box.to_pixel_y(item.y)
     x1, y1 = box.to_pixel_x(item.x + item.by_x), box.to_pixel_y(item.y + item.by_y)
-    yield from draw_arrow(x0, y0, x1 - x0, y1 - y0, colour, name, is_double=item.is_double)
+    width = style.THIN_WIDTH if item.is_thin else style.ARROW_WIDTH
+    yield from draw_arrow(x0, y0, x1 - x0, y1 - y0, colour, name, is_double=item.is_double, width=width)
     length = math.hypot(x1 - x0, y1 - y0)
     if item.name and length > 0.0:
         a, b = (x1 - x0) / length, (y1 - y0) / length
@@ -160,6 +160,8 @@ def _draw_arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
 
 
 def _draw_spot(item: Spot, box: PanelBox) -> Iterator[Shape]:
+    if not item.shape:
+        return
     colour = find_colour(item.pen)
     yield Mark(box.to_pixel_x(item.x), box.to_pixel_y(item.y), item.shape, colour, item.is_filled, style.MARK_SIZE)
 

@@ -105,19 +105,25 @@ class WordField:
             self.occupy(best_box)
         return best_box
 
-    def occupy_near(self, mark: WordBox, width: float, height: float) -> WordBox | None:
-        """Occupy a box of a size near a mark and return it; None if there is no room."""
-        return self.occupy_best(self._iter_candidate_boxes(mark, width, height))
+    def occupy_near(self, mark: WordBox, width: float, height: float, *, is_centred: bool = False) -> WordBox | None:
+        """Occupy a box of a size near a mark and return it; None if there is no room.
 
-    def _iter_candidate_boxes(self, mark: WordBox, width: float, height: float) -> Iterator[tuple[float, WordBox]]:
+        is_centred: whether a place in the middle above it is better than one beside it, as for a bar
+        """
+        return self.occupy_best(self._iter_candidate_boxes(mark, width, height, is_centred))
+
+    def _iter_candidate_boxes(
+        self, mark: WordBox, width: float, height: float, is_centred: bool
+    ) -> Iterator[tuple[float, WordBox]]:
         """Yield boxes about a mark after their costs: above, below, to its right and left, then farther away."""
         middle = 0.5 * (mark.top + mark.bottom - height)
         centred = 0.5 * (mark.left + mark.right - width)
         centred = max(min(centred, self.box.right - width), self.box.left)
+        sides = (centred, mark.right, mark.left - width) if is_centred else (mark.right, mark.left - width, centred)
         for line in range(MAX_LINES):
             cost = COST_PER_LINE * line
             for top in (mark.top - height * (line + 1), mark.bottom + height * line):
-                for left in (mark.right, mark.left - width, centred):
+                for left in sides:
                     yield cost, WordBox(left, top, left + width, top + height)
             if not line:
                 for left in (mark.right, mark.left - width):

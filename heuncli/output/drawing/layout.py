@@ -7,21 +7,27 @@ from collections.abc import Sequence
 from heuncli.base.spelling import wrap_text
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing import style
-from heuncli.output.drawing.figure import Bars, Figure, LegendEntry, Panel, PlaceLabel, Scaling, VerticalMark
+from heuncli.output.drawing.axes import PanelBox, lay_out_axes
+from heuncli.output.drawing.figure import BAR, Bars, Figure, LegendEntry, Panel, PlaceLabel, VerticalMark
 from heuncli.output.drawing.item_shapes import draw_item
 from heuncli.output.drawing.label_placement import WordBox, make_omitted_note
-from heuncli.output.drawing.labels import place_labels
-from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.scales import PanelBox
+from heuncli.output.drawing.labels import (
+    drop_close_marks,
+    drop_covered_words,
+    estimate_width,
+    make_field,
+    place_labels,
+    place_words,
+)
 from heuncli.output.drawing.shapes import Area, Line, Mark, Shape, Text, VectorDrawing
 from heuncli.output.drawing.space_key import choose_sheet_width, lay_out_key
-from heuncli.output.drawing.ticks import choose_ticks
-from heuncli.output.drawing.words import drop_close_marks, estimate_width, make_field, place_words
+from heuncli.output.drawing.style import find_pen
 
-MARGIN = 8.0  # pixels at the edge, for words beside a panel without axes
+MARGIN = style.INDENT  # pixels at the edge of a row of panels
 MIN_MARK_DISTANCE = 2.0  # pixels between vertical marks
 GAP = 14.0  # pixels between panels of a row
 SAMPLE = 28.0  # pixels of the stroke before a name in a legend
+BAR_SAMPLE = ((-6.0, -5.0), (6.0, -5.0), (6.0, 5.0), (-6.0, 5.0))  # corners of the piece of a bar there
 BOLD = 1.08  # width of bold letters
 DRAWING_ORDER = {Area: 0, Line: 1, Mark: 2, Text: 3}  # later ones cover earlier ones
 LAYERED_ORDER = {Area: 0, Line: 0, Mark: 0, Text: 1}
@@ -79,7 +85,10 @@ def _lay_out_legend(entries: Sequence[LegendEntry], left: float, y: float, width
         if x > left and x + entry_width > width - style.INDENT:
             x, y = left, y + style.LINE_HEIGHT
         pen = find_pen(number)
-        if mark:
+        if mark == BAR:
+            corners = [(x + 0.5 * SAMPLE + a, y - 4.5 + b) for a, b in BAR_SAMPLE]
+            shapes.append(Area(tuple(corners), pen.colour, style.BAR_OPACITY))
+        elif mark:
             shapes.append(Mark(x + 0.5 * SAMPLE, y - 4.5, mark, pen.colour, False, style.MARK_SIZE))
         else:
             shapes.append(Line(((x, y - 4.5), (x + SAMPLE, y - 4.5)), pen.colour, style.CURVE_WIDTH, pen.dash))
@@ -129,7 +138,7 @@ def _lay_out_head(panel: Panel, left: float, top: float, right: float) -> tuple[
             y += style.LINE_HEIGHT
             shapes.append(Text(left, y - 4.0, text, size, is_bold=not k))
     if panel.legend:
-        mark = "square" if any(isinstance(item, Bars) for item in panel.items) else ""
+        mark = BAR if any(isinstance(item, Bars) for item in panel.items) else ""
         entries = [(name, number, mark) for name, number in panel.legend]
         legend, base = _lay_out_legend(entries, left, y + style.LINE_HEIGHT - 4.0, right + style.INDENT)
         shapes += legend
@@ -155,7 +164,7 @@ def _lay_out_panel(panel: Panel, box: PanelBox, cell: WordBox) -> tuple[list[Sha
 
     cell: the area for words of a panel without axes
     """
-    items = drop_close_marks(panel.items, box, MIN_MARK_DISTANCE)
+    items = drop_covered_words(drop_close_marks(panel.items, box, MIN_MARK_DISTANCE), box)
     drawn_shapes = [shape for item in items for shape in draw_item(item, box)]
     order = LAYERED_ORDER if panel.is_layered else DRAWING_ORDER
     drawn_shapes.sort(key=lambda shape: order[type(shape)])
@@ -163,40 +172,5 @@ def _lay_out_panel(panel: Panel, box: PanelBox, cell: WordBox) -> tuple[list[Sha
     field = make_field(drawn_shapes, cell if panel.is_bare else WordBox(box.left, box.top, box.right, box.bottom))
     texts, omitted = place_words(items, box, field)
     labels, without_names = place_labels([item for item in items if isinstance(item, PlaceLabel)], box, field)
-    grid, axes = ([], []) if panel.is_bare else _lay_out_axes(box)
+    grid, axes = ([], []) if panel.is_bare else lay_out_axes(box)
     return [*grid, *drawn_shapes[:n_filled], *axes, *drawn_shapes[n_filled:], *texts, *labels], omitted + without_names
-
-
-def _lay_out_axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
-    """Return the grid, which is below all else, and the zero lines, the axes with their numbers, and the labels."""
-    width, height = box.right - box.left, box.bottom - box.top
-    max_ticks = max(3, int(width / style.PER_TICK_X)), max(2, int(height / style.PER_TICK_Y))
-    grid: list[Shape] = []
-    axes: list[Shape] = []
-    for value, text in choose_ticks(box.x_scaling, max_ticks[0]):
-        x = box.to_pixel_x(value)
-        is_zero = _is_zero(value, box.x_scaling)
-        colour = style.GREY if is_zero else style.FAINT
-        (axes if is_zero else grid).append(Line(((x, box.top), (x, box.bottom)), colour, style.GRID_WIDTH))
-        axes.append(Line(((x, box.bottom), (x, box.bottom + style.TICK_LENGTH)), style.GREY, style.GRID_WIDTH))
-        if box.x_scaling.shown_label:
-            axes.append(Text(x, box.bottom + 18.0, escape(text), style.SMALL_SIZE, "middle"))
-    for value, text in choose_ticks(box.y_scaling, max_ticks[1]):
-        y = box.to_pixel_y(value)
-        is_zero = _is_zero(value, box.y_scaling)
-        colour = style.GREY if is_zero else style.FAINT
-        (axes if is_zero else grid).append(Line(((box.left, y), (box.right, y)), colour, style.GRID_WIDTH))
-        axes.append(Text(box.left - 7.0, y + 4.0, escape(text), style.SMALL_SIZE, "end"))
-    corners = (box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)
-    axes.append(Line(corners, style.BLACK, style.AXIS_WIDTH))
-    if box.x_scaling.shown_label:
-        middle = (box.left + box.right) / 2.0
-        axes.append(Text(middle, box.bottom + 36.0, escape(box.x_scaling.shown_label), style.NAME_SIZE, "middle"))
-    if box.y_scaling.label:
-        label_place = max(box.left - 64.0, 16.0), (box.top + box.bottom) / 2.0
-        axes.append(Text(*label_place, escape(box.y_scaling.label), style.NAME_SIZE, "middle", is_vertical=True))
-    return grid, axes
-
-
-def _is_zero(value: float, scaling: Scaling) -> bool:
-    return value == 0.0 and not scaling.is_logarithmic and not scaling.tick_texts

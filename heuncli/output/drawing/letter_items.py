@@ -30,7 +30,7 @@ from heuncli.output.drawing.figure import (
     Words,
 )
 from heuncli.output.drawing.label_placement import count_columns
-from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.style import find_pen
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
 
@@ -45,7 +45,7 @@ def choose_mark(shape: str, style: TerminalStyle, number: int) -> str:
     """Return the character of a marked place; points of one curve have the letter of their pen if there are no
     colours.
     """
-    if shape != "circle" and number >= 0:
+    if shape not in ("", "circle") and number >= 0:
         return "+" if style.has_colours else find_pen(number).letter
     return "•" if style.has_braille else "o"
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from heuncli.base.spelling import wrap_text
 from heuncli.base.text_safety import escape
+from heuncli.output.drawing.axes import MINUS, choose_ticks
 from heuncli.output.drawing.canvas import NO_PEN, RESET, Canvas, TerminalStyle
 from heuncli.output.drawing.figure import (
     Band,
@@ -26,11 +27,9 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
 )
 from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
+from heuncli.output.drawing.labels import order_items
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
-from heuncli.output.drawing.pens import find_pen
-from heuncli.output.drawing.style import PANEL_HEIGHT
-from heuncli.output.drawing.ticks import MINUS, choose_ticks
-from heuncli.output.drawing.words import order_items
+from heuncli.output.drawing.style import PANEL_HEIGHT, find_pen
 
 ROWS, MIN_ROWS = 12, 5  # of a panel of default height, minimum
 ASPECT = 2.0  # height of a cell in widths
@@ -237,8 +236,8 @@ def format_key(key: SpaceKey, columns_per_unit: float, style: TerminalStyle) -> 
     rule, ends, head = ("─", "├┤", "▶") if style.has_braille else ("-", "||", ">")
     bar = rule * max(0, round(columns_per_unit * key.bar[0]) - 2)
     lines = [f"{ends[0]}{bar}{ends[1]} {escape(key.bar[1])}"]
-    ways = [f"{name} {way}" for name, a, b in key.axes if (way := _find_way(a, b))]
-    lines[0] += f"   {', '.join(ways)}" if ways else ""
+    sides = [f"{name} {side}" for name, a, b in key.axes if (side := _find_side(a, b))]
+    lines[0] += f"   {', '.join(sides)}" if sides else ""
     for arrow in key.arrows:
         heads = head * (1 + arrow.is_double)
         shaft = rule * max(0, round(columns_per_unit * arrow.length) - len(heads)) + heads
@@ -248,8 +247,8 @@ def format_key(key: SpaceKey, columns_per_unit: float, style: TerminalStyle) -> 
     return lines
 
 
-def _find_way(a: float, b: float) -> str:
-    """Return the direction of a world axis along a side of the drawing; empty for any other."""
+def _find_side(a: float, b: float) -> str:
+    """Return the side of the drawing to which a world axis points; empty if it points to none."""
     if max(abs(a), abs(b)) < ALONG_AXIS:
         return ""
     return ("right" if a > 0.0 else "left") if abs(a) > abs(b) else "up" if b > 0.0 else "down"

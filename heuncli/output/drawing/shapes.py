@@ -1,12 +1,23 @@
-"""A drawing as shapes in pixels, x to the right and y down, and its text as SVG without external fonts or scripts."""
+"""A drawing as shapes in pixels, x to the right and y down, and as SVG without external fonts or scripts."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.drawing.style import BLACK, FONT, HALO, MARK_EDGE, MARK_SIZE, NAME_SIZE, WHITE
+from heuncli.output.drawing.style import (
+    ARROW_HEAD,
+    ARROW_WIDTH,
+    BLACK,
+    FONT,
+    HALO,
+    MARK_EDGE,
+    MARK_SIZE,
+    NAME_SIZE,
+    WHITE,
+)
 
 MARKER_SHAPES: dict[
     str, tuple[tuple[float, float], ...]
@@ -163,3 +174,31 @@ def is_xml_character(c: str) -> bool:
     """Return whether XML 1.0 allows a character."""
     code = ord(c)
     return c == "\t" or 0x20 <= code < 0x7F or 0xA0 <= code <= 0xD7FF or 0xE000 <= code <= 0xFFFD or code >= 0x10000
+
+
+def draw_arrow(
+    x: float,
+    y: float,
+    a: float,
+    b: float,
+    colour: str,
+    name: str,
+    *,
+    is_double: bool = False,
+    width: float = ARROW_WIDTH,
+) -> Iterator[Line | Area]:
+    """Draw an arrow from a place by (a, b) [pixels]; is_double: with two heads."""
+    length = math.hypot(a, b)
+    if not length > 0.0:
+        return
+    a, b = a / length, b / length
+    head = min(ARROW_HEAD, (0.4 if is_double else 0.6) * length)
+    tips = [length, length - head] if is_double else [length]
+    back = tips[-1] - head
+    yield Line(((x, y), (x + back * a, y + back * b)), colour, width, name=name)
+    for k, tip in enumerate(tips):
+        root_x, root_y, side = x + (tip - head) * a, y + (tip - head) * b, 0.4 * head
+        corners = (
+            (x + tip * a, y + tip * b), (root_x - side * b, root_y + side * a), (root_x + side * b, root_y - side * a)
+        )  # fmt: skip
+        yield Area(corners, colour, 1.0, "" if k else name)

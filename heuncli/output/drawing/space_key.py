@@ -7,19 +7,17 @@ from collections.abc import Iterator
 
 from heuncli.base.text_safety import escape
 from heuncli.output.drawing.figure import Figure, KeyArrow, Panel, SpaceKey
-from heuncli.output.drawing.pens import find_colour
-from heuncli.output.drawing.shapes import Area, Line, Shape, Text
+from heuncli.output.drawing.labels import estimate_width
+from heuncli.output.drawing.shapes import Line, Shape, Text, draw_arrow
 from heuncli.output.drawing.style import (
-    ARROW_HEAD,
-    ARROW_WIDTH,
     BLACK,
     GREY,
     INDENT,
     LINE_HEIGHT,
     SMALL_SIZE,
     SYMBOL_WIDTH,
+    find_colour,
 )
-from heuncli.output.drawing.words import estimate_width
 
 MIN_WIDTH = 420.0  # pixels of a sheet, for its title and key
 AXES_LENGTH, GRAVITY_LENGTH = 20.0, 26.0  # pixels of a unit vector
@@ -106,31 +104,3 @@ def _draw_key_arrow(arrow: KeyArrow, x: float, y: float, length: float, text: st
     colour = find_colour(arrow.pen)
     yield from draw_arrow(x, y, length, 0.0, colour, text, is_double=arrow.is_double)
     yield Text(x + length + 6.0, y + 4.5, text, SMALL_SIZE, colour=colour)
-
-
-def draw_arrow(
-    x: float,
-    y: float,
-    a: float,
-    b: float,
-    colour: str,
-    name: str,
-    *,
-    is_double: bool = False,
-    width: float = ARROW_WIDTH,
-) -> Iterator[Line | Area]:
-    """Draw an arrow from a place by (a, b) [pixels]; is_double: with two heads."""
-    length = math.hypot(a, b)
-    if not length > 0.0:
-        return
-    a, b = a / length, b / length
-    head = min(ARROW_HEAD, (0.4 if is_double else 0.6) * length)
-    tips = [length, length - head] if is_double else [length]
-    back = tips[-1] - head
-    yield Line(((x, y), (x + back * a, y + back * b)), colour, ARROW_WIDTH, name=name)
-    for k, tip in enumerate(tips):
-        root_x, root_y, side = x + (tip - head) * a, y + (tip - head) * b, 0.4 * head
-        corners = (
-            (x + tip * a, y + tip * b), (root_x - side * b, root_y + side * a), (root_x + side * b, root_y - side * a)
-        )  # fmt: skip
-        yield Area(corners, colour, 1.0, "" if k else name)

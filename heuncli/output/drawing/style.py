@@ -1,18 +1,21 @@
-"""The style sheet of all pictures: sizes, strokes, colours and spacing, for SVG, matplotlib and the terminal alike.
+"""The style sheet of all pictures: sizes, strokes, colours and spacing, for SVG, matplotlib and the terminal alike,
+and how colours are chosen: of the pen of a curve, mixed with white, of a field from low to high.
 
-A picture is 720 pixels wide. Printed 160 mm wide a pixel is 0.222 mm, and capitals (0.72 of a face) are 2.9 mm
-high in titles, 2.2 mm in names and 2.1 mm in numbers, above the 1.8 mm that DIN EN ISO 3098 allows as the smallest.
+A picture is 720 pixels wide. Printed as wide as the text of an A4 report, 178 mm, a pixel is 0.247 mm, and capitals
+(0.72 of a face) are 3.2 mm high in titles, 2.7 mm in names and 2.5 mm in numbers, a height of DIN EN ISO 3098.
 Colours are those of Okabe and Ito (2008), darkened until they are legible on white; curves differ by dashes, too, so
 that a picture is readable in grey and by colour-blind readers.
 """
 
 from __future__ import annotations
 
+from string import ascii_lowercase
+
 from heuncli.base.named_tuples import NamedTuple
 
 # Letters: font sizes in pixels, and the shape of the face in font sizes.
 FONT = "sans-serif"
-TITLE_SIZE, NAME_SIZE, SMALL_SIZE = 18.0, 14.0, 13.0  # of titles, of names and axes, of numbers and notes
+TITLE_SIZE, NAME_SIZE, SMALL_SIZE = 18.0, 15.0, 14.0  # of titles, of names and axes, of numbers and notes
 WIDTH_FACTOR, LETTER_WIDTH = 0.6, 0.54  # largest and usual mean width of letters
 HEIGHT_FACTOR, BASE_FACTOR = 1.2, 0.92  # height of a line; from its top to its base
 HALO = 3.0  # width of the white outline of words
@@ -67,3 +70,33 @@ PENS = (
     Pen("#2a9fd6", (12.0, 3.0, 2.0, 3.0, 2.0, 3.0), "g", "36"),
     Pen("#666666", (1.5, 3.0), "h", "90"),
 )
+
+
+def find_pen(number: int) -> Pen:
+    """Return the pen of a number; after the last pen the colours start again, with other dashes and letters."""
+    turn, k = divmod(number, len(PENS))
+    if not turn:
+        return PENS[k]
+    letter = ascii_lowercase[number % len(ascii_lowercase)]
+    return PENS[k]._replace(dash=PENS[(k + turn) % len(PENS)].dash, letter=letter)
+
+
+def find_colour(number: int | None) -> str:
+    """Return the colour of a pen; None stands for black."""
+    return BLACK if number is None else find_pen(number).colour
+
+
+def mix_with_white(colour: str, share: float) -> str:
+    """Mix a colour with white; share: of the colour."""
+    parts = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(255.0 + share * (part - 255.0)):02x}" for part in parts)
+
+
+def find_shade(share: float) -> str:
+    """Return the colour of a share of a field, 0 to 1."""
+    position = min(max(share, 0.0), 1.0) * (len(SHADE_COLOURS) - 1)
+    k = min(int(position), len(SHADE_COLOURS) - 2)
+    return "#" + "".join(
+        f"{round(a + (b - a) * (position - k)):02x}"
+        for a, b in zip(SHADE_COLOURS[k], SHADE_COLOURS[k + 1], strict=True)
+    )

@@ -1,4 +1,7 @@
-"""Draw the bodies of a machine from the farthest to the nearest, with point masses and centres of mass."""
+"""Draw the bodies of a machine from the farthest to the nearest, with point masses and centres of mass.
+
+Of instants later than the first (k > 0) they are thin, pale lines.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +15,8 @@ from heuncli.output.drawing.figure import Item, Link, Polygon, Strokes, Symbol
 from heuncli.output.drawing.style import ARM_WIDTH, DASH_DOT, LINK_WIDTH, OUTLINE_WIDTH, RIM_WIDTH, THIN_WIDTH
 from heuncli.output.figures.posed_machine import PosedMachine, compute_area, to_pair
 from heuncli.output.machine_geometry.machine import BodyGeometry
-from heuncli.output.machine_geometry.silhouettes import (
-    SolidEdges,
-    compute_convex_hull,
-    find_silhouette,
-    select_visible_edges,
-)
+from heuncli.output.machine_geometry.silhouettes import SolidEdges, find_silhouette, select_visible_edges
+from heuncli.output.machine_geometry.solids import compute_convex_hull
 from heuncli.scene.file_format.names import GROUND
 
 MAX_CENTRES = 40  # bodies; with more of them no centres of mass are marked
@@ -32,9 +31,9 @@ class DrawnPiece(NamedTuple):
     items: tuple[Item, ...]
 
 
-def draw_bodies(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> list[Item]:
+def draw_bodies(posed_machine: PosedMachine, k: int) -> list[Item]:
     """Draw the bodies at instant k, far ones first; of equally far ones the large ones first."""
-    pieces = [piece for body in posed_machine.machine.bodies for piece in _draw_pieces(posed_machine, body, k, thin)]
+    pieces = [piece for body in posed_machine.machine.bodies for piece in _draw_pieces(posed_machine, body, k)]
     depths = [piece.depth for piece in pieces if piece.depth > -np.inf]
     step = SAME_DEPTH * (max(depths) - min(depths)) if depths else 0.0
 
@@ -43,28 +42,28 @@ def draw_bodies(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> l
         return float(level), -piece.area
 
     pieces.sort(key=order)
-    circles = [] if thin else _draw_pitch_circles(posed_machine, k)
-    paths = (posed_machine.project(GROUND, path, k) for path in posed_machine.machine.paths if not thin)
+    circles = [] if k > 0 else _draw_pitch_circles(posed_machine, k)
+    paths = (posed_machine.project(GROUND, path, k) for path in posed_machine.machine.paths if k == 0)
     path_strokes: list[Item] = [Strokes(np.stack([ends[:-1], ends[1:]], axis=1), None, OUTLINE_WIDTH) for ends in paths]
     return [*path_strokes, *(item for piece in pieces for item in piece.items), *circles]
 
 
-def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int, thin: bool) -> Iterator[DrawnPiece]:
+def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int) -> Iterator[DrawnPiece]:
     """Yield the solids of a body, or the lines between its points."""
     pen = posed_machine.pens[body.name]
     for solid in posed_machine.solids[body.name]:
         places = posed_machine.poses.locate_points(body.name, solid.surface.corners, k)
         contour = compute_convex_hull(posed_machine.size * posed_machine.view.project(places))
         if not solid.surface.convex:
-            yield _draw_mesh(posed_machine, body, solid, k, thin)
+            yield _draw_mesh(posed_machine, body, solid, k)
             continue
         depth, is_large = float(posed_machine.view.compute_depth(places).mean()), posed_machine.is_large(contour)
         lines: tuple[Item, ...] = ()
-        if not thin:
+        if k == 0:
             edges = select_visible_edges(solid, posed_machine.poses.orientations[body.name][k], posed_machine.view)
             lines = (Strokes(posed_machine.project(body.name, edges, k), pen, OUTLINE_WIDTH, is_ghost=is_large),)
-        width = OUTLINE_WIDTH if thin or is_large else RIM_WIDTH
-        shape = Polygon(body.name, contour, pen, is_opaque=not thin, width=width, is_ghost=thin, is_light=is_large)
+        width = OUTLINE_WIDTH if k > 0 or is_large else RIM_WIDTH
+        shape = Polygon(body.name, contour, pen, is_opaque=k == 0, width=width, is_ghost=k > 0, is_light=is_large)
         yield DrawnPiece(-np.inf if is_large else depth, compute_area(contour), (shape, *lines))
     middle = max((posed_machine.find_depth(body.name, own.corners, k) for own in body.surfaces), default=-np.inf)
     is_link = not (body.surfaces or body.lines or body.pitch_circles)
@@ -75,7 +74,7 @@ def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int, thin: 
                 continue  # on the far side of the body
             ends = posed_machine.project(body.name, line, k)
             item: Item = Link(*to_pair(ends[0]), *to_pair(ends[-1]), "bar", pen, body.name)
-            if thin or not is_link:
+            if k > 0 or not is_link:
                 width = (
                     RIM_WIDTH
                     if number >= len(body.bars)
@@ -84,7 +83,7 @@ def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int, thin: 
                     else LINK_WIDTH
                 )
                 item = Strokes(
-                    np.stack([ends[:-1], ends[1:]], axis=1), pen, OUTLINE_WIDTH if thin else width, is_ghost=thin
+                    np.stack([ends[:-1], ends[1:]], axis=1), pen, OUTLINE_WIDTH if k > 0 else width, is_ghost=k > 0
                 )
             yield DrawnPiece(depth, 0.0, (item,))
 
@@ -100,7 +99,7 @@ def _draw_pitch_circles(posed_machine: PosedMachine, k: int) -> Iterator[Strokes
         yield Symbol(*place, "pitch point", (1.0, 0.0), None, f"{mesh.name}: pitch point")
 
 
-def _draw_mesh(posed_machine: PosedMachine, body: BodyGeometry, solid: SolidEdges, k: int, thin: bool) -> DrawnPiece:
+def _draw_mesh(posed_machine: PosedMachine, body: BodyGeometry, solid: SolidEdges, k: int) -> DrawnPiece:
     """Draw a body of any form: its silhouette, with see-through holes, and its edges on the near side."""
     pen = posed_machine.pens[body.name]
     R = posed_machine.poses.orientations[body.name][k]
@@ -110,17 +109,17 @@ def _draw_mesh(posed_machine: PosedMachine, body: BodyGeometry, solid: SolidEdge
     return_path = [line[:1] for line in lines[-2::-1]]  # the path between the lines and back has no width
     rims = [np.stack([line, np.roll(line, -1, axis=0)], axis=1) for line in lines]
     items: list[Item] = [
-        Polygon(body.name, np.concatenate([contour, *return_path]), pen, is_opaque=not thin, has_outline=False)
+        Polygon(body.name, np.concatenate([contour, *return_path]), pen, is_opaque=k == 0, has_outline=False)
     ]
     items.append(
         Strokes(
             np.concatenate([flat[:0].reshape(0, 2, 2), *rims]),
             pen,
-            OUTLINE_WIDTH if thin else RIM_WIDTH,
-            is_ghost=thin,
+            OUTLINE_WIDTH if k > 0 else RIM_WIDTH,
+            is_ghost=k > 0,
         )
     )
-    if not thin:
+    if k == 0:
         items.append(
             Strokes(
                 posed_machine.project(body.name, select_visible_edges(solid, R, posed_machine.view), k),

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.errors import HeunError, Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
-from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.labels import make_labels
@@ -128,3 +128,12 @@ def find_values(study: Study, path: str, times: Array) -> Array:
 def find_vectors(study: Study, path: str, times: Array) -> Array:
     """Return the vectors at a path at some instants of the run, (n, 3)."""
     return curves.sample_values(study, path, times)
+
+
+class NotDrawable(HeunError):
+    """The requested quantity cannot be drawn in this kind of figure."""
+
+    exit_code = 2
+
+    def __init__(self, message: str, hint: str) -> None:
+        super().__init__(Problem("bad-option", message, hint=hint))

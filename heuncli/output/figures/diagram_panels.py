@@ -8,13 +8,13 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.axes import choose_ends, choose_ticks, format_short
 from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
 from heuncli.output.drawing.style import HATCH_WIDTH, LEFT, RIGHT, SIGN_SIZE, WIDTH
-from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
-from heuncli.output.figures.curve_points import is_visible
+from heuncli.output.figures.curves import choose_number_style, is_visible
 from heuncli.results.results import Array, Mask
 from heuncli.study.quantities.digits import OPEN
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.quantities.reader_numbers import ReaderStyle
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.bar_curves import BarLine, BarRange, Extreme
 from heuncli.study.queries.bars import WholeBar
@@ -82,7 +82,7 @@ def make_panel(
 ) -> Panel:
     """Make the panel of a quantity; is_inverted: positive values point down."""
     magnitudes = [bar.find_magnitude(quantity) for bar in bars]
-    style = choose_reader_style(bars[0].bar.find_unit(quantity), np.nanmax([0.0, *magnitudes]), units)
+    style = choose_number_style(bars[0].bar.find_unit(quantity), np.nanmax([0.0, *magnitudes]), units)
     scales = DisplayScales(length, style, -1.0 if is_inverted else 1.0)
     y = _make_axis(quantity, bars, scales, f"{quantity} [{style.unit}]")
     items = [item for bar in bars for item in _draw_bar(bar, quantity, scales, y, alone=len(bars) == 1)]

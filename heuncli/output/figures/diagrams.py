@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from heuncli.output.drawing.axes import choose_ends, format_short
 from heuncli.output.drawing.figure import (
     Arrow,
     Blank,
@@ -32,7 +33,6 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
-from heuncli.output.drawing.ticks import choose_ends, format_short
 from heuncli.output.figures.courses import FigureSource, make_title, require_claimed
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
@@ -54,7 +54,7 @@ UPPER, LOWER = 44.0, 60.0  # pixels above and below the bar's axis
 HALF_DEPTH = 5.0  # of the bar
 ARROW_LENGTH = 24.0
 DIMENSION, TICK = 48.0, 4.0  # of the dimension line below the axis, and half of its ticks
-SYMBOLS = {"support": "foot", "clamp": "clamp", "joint": "circle", "mass": "mass"}  # other kinds are arrows
+SYMBOLS = {"support": "foot", "clamp": "clamp", "joint": "circle", "mass": "mass", "couple": "turning"}  # else arrows
 DOWN = (0.0, -1.0)
 
 
@@ -198,7 +198,7 @@ def _make_panels(
     sketched = _list_distinct_bars(bars)
     for source_name, bar in sketched.items():
         title = f"{name}: {source_name}" if len(sketched) > 1 else name * has_title
-        yield make_sketch(bar.attachments, x, bar.length, style.size, style.unit, title)
+        yield make_sketch(_mark_couples(bar), x, bar.length, style.size, style.unit, title)
     places = sorted({style.size * attachment.s for bar in sketched.values() for attachment in bar.attachments})
     for k, quantity in enumerate(quantities):
         panel = make_panel(quantity, bars, units, style, is_inverted=tension_side and quantity in INVERTED)
@@ -228,6 +228,17 @@ def _are_same(first: Sequence[BarAttachment], other: Sequence[BarAttachment]) ->
     if [attachment[1:] for attachment in first] != [attachment[1:] for attachment in other]:
         return False
     return bool(np.allclose([attachment.s for attachment in first], [attachment.s for attachment in other]))
+
+
+def _mark_couples(bar: WholeBar) -> list[BarAttachment]:
+    """Return what acts on a bar, with a kind of its own for couples, which are no forces."""
+    forces = bar.study.spec.forces
+    return [
+        attachment._replace(kind="couple")
+        if attachment.kind == "force" and attachment.name in forces and forces[attachment.name].type == "couple"
+        else attachment
+        for attachment in bar.attachments
+    ]
 
 
 def make_sketch(

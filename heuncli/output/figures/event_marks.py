@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.output.drawing.axes import format_short
 from heuncli.output.drawing.figure import VerticalMark
-from heuncli.output.drawing.ticks import format_short
 from heuncli.output.figures.courses import FigureSource, NumberCourse, find_jumps
 from heuncli.results.results import Array, Results
 

@@ -10,11 +10,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from heuncli.output.drawing.axes import choose_ends, format_short, is_zero_near
 from heuncli.output.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, VerticalMark, share_x_axis
 from heuncli.output.drawing.style import PANEL_HEIGHT
-from heuncli.output.drawing.ticks import choose_ends, format_short, is_zero_near
 from heuncli.output.figures.courses import (
     FigureSource,
+    NotDrawable,
     NumberCourse,
     choose_instants,
     describe_number,
@@ -25,10 +26,18 @@ from heuncli.output.figures.courses import (
     make_title,
     require_one_number,
 )
-from heuncli.output.figures.curve_points import MeasuredPoints, draw_points, find_visible_points
+from heuncli.output.figures.curves import (
+    MAX_PERIODS,
+    HorizontalAxis,
+    MeasuredPoints,
+    PanelCourse,
+    choose_number_style,
+    draw_case_bars,
+    draw_curves,
+    draw_points,
+    find_visible_points,
+)
 from heuncli.output.figures.event_marks import make_marks
-from heuncli.output.figures.history_curves import HorizontalAxis, PanelCourse, draw_case_bars, draw_curves
-from heuncli.output.figures.refusals import NotDrawable
 from heuncli.results.results import Array
 from heuncli.study.compose.warnings import has_smoothed_friction
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
@@ -83,7 +92,7 @@ def make_history(
         points_of_unit = [(len(courses) + k, c) for k, c in enumerate(c for c in measured_points if c.unit == unit)]
         entries += [(curve.name, pen, "square") for pen, curve in points_of_unit]
         style = _choose_style(unit, courses, x_axis if has_equal_scales else None, units)
-        label = courses[0].caption if has_equal_scales and len(courses) == 1 else QUANTITY_NAMES.get(unit, "")
+        label = courses[0].caption if has_equal_scales and len(courses) == 1 else _choose_axis_words(courses, unit)
         y = _make_y_axis(label, style, courses, [curve for _, curve in points_of_unit], is_path=has_equal_scales)
         words = marks if not panels else [VerticalMark(mark.x, "", is_tick=mark.is_tick) for mark in marks]
         items = [
@@ -135,6 +144,12 @@ def _choose_names(courses: Sequence[PanelCourse]) -> tuple[str, tuple[tuple[str,
     )
 
 
+def _choose_axis_words(courses: Sequence[PanelCourse], unit: str) -> str:
+    """Return the words of a vertical axis: for a length what it is, as a displacement, if all curves show the same."""
+    words = {curve.caption.rpartition(", ")[2] for curve in courses}
+    return words.pop() if unit == "m" and len(words) == 1 else QUANTITY_NAMES.get(unit, "")
+
+
 def _choose_x_axis(
     sources: Sequence[FigureSource], curves: Sequence[PanelCourse], x_path: str | None, units: Units
 ) -> HorizontalAxis:
@@ -151,7 +166,7 @@ def _choose_style(
 ) -> ReaderStyle:
     """Choose how the numbers of a panel are written; of a path in the unit of its horizontal axis."""
     peaks = [abs(peak.value) for curve in courses for peak in (curve.course.low, curve.course.high)]
-    style = choose_reader_style(unit, max((peak for peak in peaks if math.isfinite(peak)), default=0.0), units)
+    style = choose_number_style(unit, max((peak for peak in peaks if math.isfinite(peak)), default=0.0), units)
     return style if x_axis is None else style._replace(unit=x_axis.unit, size=x_axis.size)
 
 
@@ -295,7 +310,7 @@ def _make_notes(curves: Sequence[PanelCourse], panels: Sequence[Panel]) -> list[
     if any(name.startswith("stated error") for name in bands):
         notes.append("light bands: stated error")
     if any(name.startswith("range") for name in bands):
-        notes.append("bands between thin lines: the range of an oscillation of more than 30 periods")
+        notes.append(f"bands between thin lines: the range of an oscillation of more than {MAX_PERIODS} periods")
     return [*notes, *_warn_of_friction(curves)]
 
 

@@ -1,6 +1,7 @@
 """Draw what connects the bodies of a machine: joints with their ground and actions, loads between points, ropes, marks.
 
 The symbol of a joint follows from what it constrains and how it lets turn (joint_kinds.py), so that a new kind has one.
+Of instants later than the first (k > 0) only lines are drawn, thin and pale.
 """
 
 from __future__ import annotations
@@ -33,10 +34,12 @@ MIN_SEEN = 0.2  # visible share of a mark's direction; with less it is not drawn
 HOLD_SYMBOLS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("field", "table")}  # along, across
 
 
-def draw_joints(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> list[Item]:
+def draw_joints(posed_machine: PosedMachine, k: int) -> list[Item]:
     """Draw the joints, sliding ones below turning ones, so that a pin is in front of its slider."""
-    looks = sorted(posed_machine.machine.joints, key=lambda look: not find_joint_kind(look, posed_machine.spec).shifts)
-    return [item for look in looks for item in draw_joint(posed_machine, look, k, thin=thin)]
+    joints = sorted(
+        posed_machine.machine.joints, key=lambda joint: not find_joint_kind(joint, posed_machine.spec).shifts
+    )
+    return [item for joint in joints for item in draw_joint(posed_machine, joint, k)]
 
 
 def find_joint_kind(joint: JointGeometry, spec: Spec) -> JointKind:
@@ -51,23 +54,23 @@ def find_turn_key(kind: JointKind) -> str:
     return "axis" if kind.turn.condition == "free" and not kind.is_ball else kind.turn.condition
 
 
-def draw_joint(posed_machine: PosedMachine, look: JointGeometry, k: int, *, thin: bool = False) -> list[Item]:
-    """Draw the symbol of a joint, with the ground if it is mounted there; thin: only its line, if it has one."""
-    kind, name = find_joint_kind(look, posed_machine.spec), f"{look.name}: {look.kind}"
-    x, y = posed_machine.project(look.b, look.q, k).tolist()
+def draw_joint(posed_machine: PosedMachine, joint: JointGeometry, k: int) -> list[Item]:
+    """Draw the symbol of a joint, with the ground if it is mounted there; later only its line, if any."""
+    kind, name = find_joint_kind(joint, posed_machine.spec), f"{joint.name}: {joint.kind}"
+    x, y = posed_machine.project(joint.b, joint.q, k).tolist()
     if kind.keeps_distance:
-        return _draw_rod(posed_machine, look, k, thin)
-    if thin:
+        return _draw_rod(posed_machine, joint, k)
+    if k > 0:
         return []
-    if not posed_machine.has_names and GROUND not in (look.a, look.b):
+    if not posed_machine.has_names and GROUND not in (joint.a, joint.b):
         return [Symbol(x, y, "dot")]
-    axis = posed_machine.project_direction(look.a, look.axis / np.linalg.norm(look.axis), k)
+    axis = posed_machine.project_direction(joint.a, joint.axis / np.linalg.norm(joint.axis), k)
     is_seen_aside = int(float(np.hypot(*axis)) > MIN_AXIS_LENGTH)
     along = (float(axis[0]), float(axis[1])) if is_seen_aside else (1.0, 0.0)
-    if is_seen_aside and look.name in posed_machine.bearings:
-        symbol = "fixed bearing" if posed_machine.bearings[look.name] else "floating bearing"
+    if is_seen_aside and joint.name in posed_machine.bearings:
+        symbol = "fixed bearing" if posed_machine.bearings[joint.name] else "floating bearing"
         return [Symbol(x, y, symbol, along, None, name)]
-    items: list[Item] = [*_draw_ground(posed_machine, look, kind, along if is_seen_aside else None, k)]
+    items: list[Item] = [*_draw_ground(posed_machine, joint, kind, along if is_seen_aside else None, k)]
     if kind.hold.gap_type in HOLD_SYMBOLS:
         items.append(Symbol(x, y, HOLD_SYMBOLS[kind.hold.gap_type][is_seen_aside], along, None, name))
     # a ball in a bore, seen along the bore, constrains in the figure like a pin
@@ -77,16 +80,16 @@ def draw_joint(posed_machine: PosedMachine, look: JointGeometry, k: int, *, thin
 
 
 def _draw_ground(
-    posed_machine: PosedMachine, look: JointGeometry, kind: JointKind, seen_axis: tuple[float, float] | None, k: int
+    posed_machine: PosedMachine, joint: JointGeometry, kind: JointKind, seen_axis: tuple[float, float] | None, k: int
 ) -> Iterator[Symbol]:
     """Draw the ground at a joint that is mounted there.
 
     seen_axis: its axis in the view, None if it points to the viewer
     """
-    if GROUND not in (look.a, look.b) or kind.hold.gap_type == "curve":
+    if GROUND not in (joint.a, joint.b) or kind.hold.gap_type == "curve":
         return
-    other = look.b if look.a == GROUND else look.a
-    place = posed_machine.project(look.b, look.q, k)
+    other = joint.b if joint.a == GROUND else joint.a
+    place = posed_machine.project(joint.b, joint.q, k)
     ground_direction = posed_machine.find_ground_side(other, place, k)
     symbol = "foot"
     if kind.hold.gap_type in HOLD_SYMBOLS:
@@ -102,29 +105,29 @@ def _draw_ground(
             place - posed_machine.project(other, posed_machine.centers[other], k) if other != GROUND else np.zeros(2)
         )
         ground_direction = tuple(outward.tolist()) if outward.any() else DOWN
-    yield Symbol(*to_pair(place), symbol, ground_direction, None, f"{look.name}: on the ground")
+    yield Symbol(*to_pair(place), symbol, ground_direction, None, f"{joint.name}: on the ground")
 
 
-def _draw_rod(posed_machine: PosedMachine, look: JointGeometry, k: int, thin: bool) -> list[Item]:
+def _draw_rod(posed_machine: PosedMachine, joint: JointGeometry, k: int) -> list[Item]:
     """Draw a rod, a rope, or a rod whose length is driven."""
-    joint_spec = posed_machine.spec.joints[look.name]
+    joint_spec = posed_machine.spec.joints[joint.name]
     kind = "rope" if joint_spec.tension_only else "rod"
     pen: int | None = None
-    if any(drive.joint == look.name for drive in posed_machine.spec.drives.values()):
+    if any(drive.joint == joint.name for drive in posed_machine.spec.drives.values()):
         kind, pen = "actuator", DRIVE_PEN
-    what = "rope" if joint_spec.tension_only else look.kind
-    return _draw_link(posed_machine, LineGeometry(look.name, what, look.a, look.p, look.b, look.q), kind, pen, k, thin)
+    what = "rope" if joint_spec.tension_only else joint.kind
+    return _draw_link(posed_machine, LineGeometry(joint.name, what, joint.a, joint.p, joint.b, joint.q), kind, pen, k)
 
 
-def draw_force_line(posed_machine: PosedMachine, look: LineGeometry, k: int, *, thin: bool = False) -> list[Item]:
+def draw_force_line(posed_machine: PosedMachine, line: LineGeometry, k: int) -> list[Item]:
     """Draw a load between two points by its symbol, with or without damper, or one between two bodies."""
-    if look.name in posed_machine.guided_actuators:
+    if line.name in posed_machine.guided_actuators:
         return []  # drawn as what it exerts
-    kind = LOAD_KINDS[look.kind]
+    kind = LOAD_KINDS[line.kind]
     if kind.place == "bodies":
-        return _draw_bushing(posed_machine, look, k, thin)
-    is_damped = bool(getattr(posed_machine.spec.forces[look.name], "damping", 0.0))
-    return _draw_link(posed_machine, look, kind.symbols[-1 if is_damped else 0], LOAD_PEN, k, thin)
+        return _draw_bushing(posed_machine, line, k)
+    is_damped = bool(getattr(posed_machine.spec.forces[line.name], "damping", 0.0))
+    return _draw_link(posed_machine, line, kind.symbols[-1 if is_damped else 0], LOAD_PEN, k)
 
 
 def draw_belt_strands(posed_machine: PosedMachine, k: int) -> Iterator[Strokes]:
@@ -133,37 +136,35 @@ def draw_belt_strands(posed_machine: PosedMachine, k: int) -> Iterator[Strokes]:
         yield Strokes(posed_machine.project(belt.carrier, belt.strands, k), LOAD_PEN, ARM_WIDTH)
 
 
-def _draw_bushing(posed_machine: PosedMachine, look: LineGeometry, k: int, thin: bool) -> list[Item]:
+def _draw_bushing(posed_machine: PosedMachine, line: LineGeometry, k: int) -> list[Item]:
     """Draw two sleeves about the bushing's `to` point, with the ground if it is mounted there, and a line if it is
     displaced.
     """
-    first, second = (posed_machine.project(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
-    displacement_line = Strokes(np.array([[first, second]]), LOAD_PEN, OUTLINE_WIDTH, is_ghost=thin)
-    if thin:
+    first, second = (posed_machine.project(*end, k) for end in ((line.a, line.p), (line.b, line.q)))
+    displacement_line = Strokes(np.array([[first, second]]), LOAD_PEN, OUTLINE_WIDTH, is_ghost=k > 0)
+    if k > 0:
         return [displacement_line]
     items: list[Item] = [displacement_line]
-    for body, place in ((look.a, first), (look.b, second)):
+    for body, place in ((line.a, first), (line.b, second)):
         if body == GROUND:
-            other = look.b if body == look.a else look.a
+            other = line.b if body == line.a else line.a
             ground_direction = choose_ground_side(place, posed_machine.project(other, posed_machine.centers[other], k))
-            items.append(Symbol(*to_pair(place), "foot", ground_direction, None, f"{look.name}: on the ground"))
-    return [*items, Symbol(*to_pair(second), "bushing", (1.0, 0.0), LOAD_PEN, f"{look.name}: bushing")]
+            items.append(Symbol(*to_pair(place), "foot", ground_direction, None, f"{line.name}: on the ground"))
+    return [*items, Symbol(*to_pair(second), "bushing", (1.0, 0.0), LOAD_PEN, f"{line.name}: bushing")]
 
 
-def _draw_link(
-    posed_machine: PosedMachine, look: LineGeometry, kind: str, pen: int | None, k: int, thin: bool
-) -> list[Item]:
+def _draw_link(posed_machine: PosedMachine, line: LineGeometry, kind: str, pen: int | None, k: int) -> list[Item]:
     """Draw the link between two points, with the ground at those that are fixed to it."""
-    first, second = (posed_machine.project(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
-    if thin:
+    first, second = (posed_machine.project(*end, k) for end in ((line.a, line.p), (line.b, line.q)))
+    if k > 0:
         return [Strokes(np.array([[first, second]]), pen, OUTLINE_WIDTH, is_ghost=True)]
     items: list[Item] = []
-    for body, place, other in ((look.a, first, second), (look.b, second, first)):
+    for body, place, other in ((line.a, first, second), (line.b, second, first)):
         if body == GROUND:
             items.append(
-                Symbol(*to_pair(place), "foot", choose_ground_side(place, other), None, f"{look.name}: on the ground")
+                Symbol(*to_pair(place), "foot", choose_ground_side(place, other), None, f"{line.name}: on the ground")
             )
-    return [*items, Link(*to_pair(first), *to_pair(second), kind, pen, f"{look.name}: {look.kind}")]
+    return [*items, Link(*to_pair(first), *to_pair(second), kind, pen, f"{line.name}: {line.kind}")]
 
 
 def draw_joint_actions(posed_machine: PosedMachine, k: int, drawn_names: Collection[str] = ()) -> Iterator[Symbol]:
@@ -171,43 +172,43 @@ def draw_joint_actions(posed_machine: PosedMachine, k: int, drawn_names: Collect
 
     drawn_names: of loads that have an arrow, and need no symbol
     """
-    looks = {look.name: look for look in posed_machine.machine.joints}
+    joints = {joint.name: joint for joint in posed_machine.machine.joints}
     for action in posed_machine.machine.joint_symbols:
         if action.name in drawn_names:
             continue
-        look = looks[action.joint]
+        joint = joints[action.joint]
         axis = (
-            find_path_tangent(posed_machine, look, k)
-            if find_joint_kind(look, posed_machine.spec).follows_path
-            else look.axis
+            find_path_tangent(posed_machine, joint, k)
+            if find_joint_kind(joint, posed_machine.spec).follows_path
+            else joint.axis
         )
         axis = axis / np.linalg.norm(axis)
-        seen_axis = posed_machine.project_direction(look.a, axis, k)
-        symbol = action.symbols[int(posed_machine.find_depth_component(look.a, axis, k) < 0.0)]
+        seen_axis = posed_machine.project_direction(joint.a, axis, k)
+        symbol = action.symbols[int(posed_machine.find_depth_component(joint.a, axis, k) < 0.0)]
         symbol_axis = to_pair(seen_axis) if action.slides and seen_axis.any() else (1.0, 0.0)
         label = f"{action.name}: {action.load_kind} on {action.joint}"
-        yield Symbol(*to_pair(posed_machine.project(look.b, look.q, k)), symbol, symbol_axis, LOAD_PEN, label)
+        yield Symbol(*to_pair(posed_machine.project(joint.b, joint.q, k)), symbol, symbol_axis, LOAD_PEN, label)
 
 
-def find_path_tangent(posed_machine: PosedMachine, look: JointGeometry, k: int) -> Array:
+def find_path_tangent(posed_machine: PosedMachine, joint: JointGeometry, k: int) -> Array:
     """Return the tangent of a path at its point, in axes of its body; where the path crosses itself one of both."""
-    joint = posed_machine.spec.joints[look.name]
-    assert joint.path is not None
-    D = posed_machine.poses.locate_points(look.b, look.q, k) - posed_machine.poses.locate_points(look.a, look.p, k)
-    D = D if look.a == GROUND else D @ posed_machine.poses.orientations[look.a][k]
-    return np.asarray(joint.path.evaluate(float(joint.path.find_nearest(D)))[1])
+    path_joint = posed_machine.spec.joints[joint.name]
+    assert path_joint.path is not None
+    D = posed_machine.poses.locate_points(joint.b, joint.q, k) - posed_machine.poses.locate_points(joint.a, joint.p, k)
+    D = D if joint.a == GROUND else D @ posed_machine.poses.orientations[joint.a][k]
+    return np.asarray(path_joint.path.evaluate(float(path_joint.path.find_nearest(D)))[1])
 
 
-def draw_ropes(posed_machine: PosedMachine, k: int, *, thin: bool = False) -> Iterator[Strokes]:
-    """Draw all ropes at an instant; thin: for a later instant."""
+def draw_ropes(posed_machine: PosedMachine, k: int) -> Iterator[Strokes]:
+    """Draw all ropes at instant k."""
     for rope in posed_machine.machine.ropes:
         for line in iter_rope_lines(rope, posed_machine.poses, k):
             flat = posed_machine.size * posed_machine.view.project(line)
             yield Strokes(
                 np.stack([flat[:-1], flat[1:]], axis=1),
                 LOAD_PEN,
-                OUTLINE_WIDTH if thin else ARM_WIDTH,
-                is_ghost=thin,
+                OUTLINE_WIDTH if k > 0 else ARM_WIDTH,
+                is_ghost=k > 0,
             )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import Dimension, are_in_range, describe, parse_unit, range_error
-from heuncli.output.figures.curve_points import MeasuredPoints
+from heuncli.output.figures.curves import MeasuredPoints
 from heuncli.results.results import Array
 from heuncli.results.results_schema import parse_index
 from heuncli.scene.file_format.column_layout import (

@@ -17,9 +17,9 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.linearisation.oscillations import Mode
 from heuncli.multibody.mechanism.model import Body
+from heuncli.output.drawing.axes import write_minus
 from heuncli.output.drawing.figure import Figure, Item, Panel, Scaling, Spot, Strokes, Trace
-from heuncli.output.drawing.ticks import write_minus
-from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.courses import NotDrawable
 from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.views import SceneView
 from heuncli.output.tables.mode_words import describe_coordinate, describe_modes, format_mode, iter_notes

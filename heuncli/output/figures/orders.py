@@ -8,10 +8,10 @@ import numpy as np
 
 from heuncli.analyses.balancing.results import BalanceResults, OrderRow, format_cycle, format_reference_point, get_unit
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.drawing.figure import Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot, share_x_axis
-from heuncli.output.drawing.ticks import choose_ends, format_short
+from heuncli.output.drawing.axes import choose_ends, format_short
+from heuncli.output.drawing.figure import BAR, Bars, Figure, Item, Panel, PlaceLabel, Scaling, Spot, share_x_axis
+from heuncli.output.figures.curves import choose_number_style
 from heuncli.study.quantities.captions import make_readable
-from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 QUANTITY_TITLES = {
@@ -60,7 +60,7 @@ def make_orders_figure(sources: Sequence[BalancedScene], units: Units) -> Figure
     words = [*(sentence for source in sources for sentence in _describe_source(source)), BARS_SENTENCE]
     has_counterweights = any(source.results.counterbalance is not None for source in sources)
     names = (("without counterweights", PEN), (COUNTERBALANCED, COUNTERBALANCED_PEN)) if has_counterweights else ()
-    marks = [(name, pen, "square") for name, pen in names]
+    marks = [(name, pen, BAR) for name, pen in names]
     notes = [*cancelled, *(note for source in sources for note in source.results.notes)]
     if len({panel.x for panel in panels}) == 1:
         panels = share_x_axis(panels)
@@ -102,7 +102,7 @@ def _find_counterbalanced_orders(results: BalanceResults) -> Mapping[str, tuple[
 def _make_panel(source: BalancedScene, quantity: str, high: float, units: Units) -> Panel:
     """Make the panel of one quantity, a bar for each order."""
     results = source.results
-    style = choose_reader_style(get_unit(results, quantity), high, units)
+    style = choose_number_style(get_unit(results, quantity), high, units)
     size = style.size
     places = {order: float(k) for k, order in enumerate(results.shown_orders)}
     names = tuple((place, f"{order:g}") for order, place in places.items())
@@ -129,7 +129,7 @@ def _label_bars(sizes: Mapping[float, float], largest: float, pen: int) -> Itera
     """Label the bars that are large enough to be visible."""
     for place, value in sizes.items():
         if value > MIN_LABELLED * largest:
-            yield Spot(place, value, format_short(value, DIGITS), pen, is_filled=True)
+            yield Spot(place, value, format_short(value, DIGITS), pen, "")
 
 
 def _describe_source(source: BalancedScene) -> Iterator[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.courses import NotDrawable
 from heuncli.output.machine_geometry.poses import Poses, compute_poses
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec

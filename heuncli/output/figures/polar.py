@@ -11,17 +11,20 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.output.drawing.axes import choose_ends, choose_ticks, format_short
 from heuncli.output.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Strokes, Trace, Words
-from heuncli.output.drawing.ticks import choose_ends, choose_ticks, format_short
 from heuncli.output.figures.courses import FigureSource, describe_number, find_vectors, make_title
-from heuncli.output.figures.history_curves import draw_direction_arrows, format_number
+from heuncli.output.figures.curves import choose_number_style, draw_direction_arrows, format_number
 from heuncli.output.figures.planes import project_vectors
 from heuncli.output.figures.tips import LargestVector, TipCurve, find_firings, find_largest, make_tip_curves
 from heuncli.output.figures.turning import TurningRun
 from heuncli.output.figures.windows import clip_strokes
 from heuncli.results.results import Array
+from heuncli.scene.file_format.names import GROUND
+from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.digits import UNKNOWN
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.quantities.labels import make_labels
+from heuncli.study.quantities.reader_numbers import ReaderStyle
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.search.extremes import find_jump_sides
 
@@ -37,7 +40,10 @@ VISIBLE_JUMP = 0.01  # share of a panel's width: larger jumps are drawn as jumps
 RAY_STEP, ARC_STEP = 30, 3  # degrees
 N_RINGS = 5  # the largest number up to the farther side of the window
 RIM = 0.94  # share of a ray at which its angle stands
-LABEL_SPACE = np.array([0.08, 0.05])  # smallest distance of angles, in sides of the window
+MARK_SPACE, LABEL_SPACE = 0.02, 0.1  # smallest distances of marks along a curve, and of their labels, in window sides
+SAME_PLACE = 0.01  # of the distance of labels: marks that are closer share one
+MIN_RAY = 0.2  # of the farthest point of the window: a shorter ray has no angle
+MIN_RING_SPACE = 0.06  # of that: numbers of rings that are closer to a curve are worse than fewer numbers
 
 
 def make_polar_figure(
@@ -66,7 +72,7 @@ def _make_panel(
 ) -> Panel:
     """Make the panel of the curves of one unit in one plane, with equal scales about the origin."""
     known_largest = [largest_vector for curve in group if (largest_vector := largest[curve.pen]) is not None]
-    style = choose_reader_style(group[0].unit, max((vector.magnitude for vector in known_largest), default=0.0), units)
+    style = choose_number_style(group[0].unit, max((vector.magnitude for vector in known_largest), default=0.0), units)
     size = style.size
     unknown = size * max(
         (largest_vector.error for largest_vector in known_largest if largest_vector.magnitude <= largest_vector.error),
@@ -83,7 +89,7 @@ def _make_panel(
     items.append(Spot(0.0, 0.0, "", None, "square", is_filled=True))
     for curve in group:
         items += _draw_curve(curve, largest[curve.pen], style, (x, y))
-    items += _draw_marks(group, size)
+    items += _draw_marks(group, size, MARK_SPACE * (x.high - x.low), LABEL_SPACE * (x.high - x.low))
     captions = [curve.caption for curve in group]
     title = f"{captions[0]}: {describe_frame(group[0], axes)}" if len(group) == 1 else describe_frame(group[0], axes)
     legend = () if len(group) == 1 else tuple((curve.caption, curve.pen) for curve in group)
@@ -119,21 +125,46 @@ def _draw_curve(
     pixel_size = max((sides[0].high - sides[0].low) / MAX_WIDTH, (sides[1].high - sides[1].low) / HEIGHT)
     yield from draw_direction_arrows(x, y, curve.pen, ARROW_LENGTH * pixel_size)
     if largest is not None and largest.magnitude > 0.0 and not largest.is_constant:
-        yield Arrow(0.0, 0.0, style.size * largest.x, style.size * largest.y, curve.pen)
+        yield Arrow(0.0, 0.0, style.size * largest.x, style.size * largest.y, curve.pen, is_thin=True)
         text = f"{format_magnitude(largest, style)} at {describe_angle(curve, largest)}"
         yield Spot(style.size * largest.x, style.size * largest.y, text, curve.pen, "circle", is_filled=True)
 
 
-def _draw_marks(group: Sequence[TipCurve], size: float) -> Iterator[Spot]:
-    """Draw the marks along curves, with a label each quarter turn, and those of firing."""
+def _draw_marks(group: Sequence[TipCurve], size: float, mark_space: float, label_space: float) -> Iterator[Spot]:
+    """Draw the marks along curves, with a label each quarter turn, and those of firing.
+
+    mark_space, label_space: smallest distances of marks, and of marks with labels, in the unit of the figure; those at
+    one place share a label
+    """
     for curve in group:
         marks = [(time, text, "circle", curve.pen) for time, text in _find_marks(curve.turning)]
         marks += [(time, text, "diamond", FIRING_PEN) for time, text in find_firings(curve)]
         vectors = size * find_vectors(curve.study, curve.path, np.array([mark[0] for mark in marks]))
         places = zip(*(components.tolist() for components in curve.plane.project(vectors)), strict=True)
-        for (x, y), (_, text, shape, pen) in zip(places, marks, strict=True):
-            if math.isfinite(x + y):
-                yield Spot(x, y, text, pen, shape, is_filled=shape == "diamond")
+        spots = [
+            Spot(x, y, text, pen, shape, is_filled=shape == "diamond")
+            for (x, y), (_, text, shape, pen) in zip(places, marks, strict=True)
+            if math.isfinite(x + y)
+        ]
+        yield from thin_marks(spots, mark_space, label_space)
+
+
+def thin_marks(spots: Sequence[Spot], mark_space: float, label_space: float) -> list[Spot]:
+    """Drop marks and labels that are too close to others of a curve; labelled marks first, and all firings stay."""
+    kept: list[Spot] = []
+    for spot in sorted(spots, key=lambda spot: (not spot.is_filled, not spot.text)):
+        distances = [math.hypot(spot.x - other.x, spot.y - other.y) for other in kept]
+        near = [other for other, distance in zip(kept, distances, strict=True) if distance < label_space]
+        same = next((k for k, distance in enumerate(distances) if distance < SAME_PLACE * label_space), None)
+        if spot.is_filled:
+            kept.append(spot)
+        elif same is not None and spot.text and kept[same].text and not kept[same].is_filled:
+            if ", " not in kept[same].text:  # the ends of a cycle; a vector that rests has only two of its instants
+                kept[same] = kept[same]._replace(text=f"{kept[same].text}, {spot.text}")
+        elif min(distances, default=math.inf) >= mark_space:
+            is_labelled = not any(other.text and not other.is_filled for other in near)
+            kept.append(spot if is_labelled else spot._replace(text=""))
+    return kept
 
 
 def _break_at_jumps(times: Array, x: Array, y: Array, width: float) -> tuple[Array, Array]:
@@ -181,7 +212,7 @@ def make_polar_grid(
     for value, text in rings:
         arcs = np.stack([value * circle[:-1], value * circle[1:]], axis=1)
         items.append(Strokes(clip_strokes(arcs, low, high), is_faint=True, name=f"{text} {unit}"))
-    places: list[tuple[float, float]] = []
+    items += _label_rings(rings, low, high, curves, unit)
     for degrees in sorted(range(0, 360, RAY_STEP), key=lambda angle: angle % 90):  # those of the axes first
         direction = _make_direction(degrees)
         ray = clip_strokes(np.array([[(0.0, 0.0), tuple(2.0 * reach * direction)]]), low, high)
@@ -189,10 +220,9 @@ def make_polar_grid(
             items.append(Strokes(ray, is_faint=True))
             axis = {0: f"{names[0]} ", 90: f"{names[1]} "}.get(degrees, "")
             x, y = (RIM * ray[0, 1]).tolist()
-            if all(np.any(np.abs(np.array([x, y]) - place) > LABEL_SPACE * (high - low)) for place in places):
-                items.append(Words(x, y, f"{axis}{degrees}°"))
-                places.append((x, y))
-    return [*items, *_label_rings(rings, low, high, curves, unit)]
+            if math.hypot(x, y) > MIN_RAY * reach:
+                items.append(Words(x, y, f"{axis}{degrees}°", is_optional=True))
+    return items
 
 
 def _make_direction(degrees: float) -> Array:
@@ -205,18 +235,20 @@ def _label_rings(
     """Label the rings along the direction between two rays in which most of them are seen and the curves are far."""
     points = np.concatenate(curves)
     points = points[np.isfinite(points).all(axis=1)]
+    reach = float(np.max(np.abs([low, high])))
 
-    def find_room(degrees: int) -> tuple[int, float]:
+    def find_room(degrees: int) -> tuple[bool, int, float]:
         places = [value * _make_direction(degrees) for value, _ in rings]
         seen = [place for place in places if (place > low).all() and (place < high).all()]
         distances = [float(np.hypot(*(points - place).T).min(initial=np.inf)) for place in seen]
-        return len(seen), min(distances, default=0.0)
+        room = min(distances, default=0.0)
+        return room >= MIN_RING_SPACE * reach, len(seen), room
 
     best = max(range(RAY_STEP // 2, 360, RAY_STEP), key=find_room)
     for value, text in rings:
         place = value * _make_direction(best)
         if (place > low).all() and (place < high).all():
-            yield Words(float(place[0]), float(place[1]), f"{text} {unit}")
+            yield Words(float(place[0]), float(place[1]), f"{text} {unit}", is_optional=True)
 
 
 def describe_runs(sources: Sequence[FigureSource], curves: Sequence[TipCurve]) -> Iterator[str]:
@@ -232,8 +264,9 @@ def describe_frame(curve: TipCurve, axes: str) -> str:
     """Describe what a curve's loads act on, and in which axes they are drawn."""
     if curve.path.startswith("joints."):
         joint = curve.study.spec.joints[curve.path.split(".")[1]]
-        frame = "world axes" if axes == "world" else f"in the axes of {_find_body(curve, axes)}"
-        return f"reaction of {joint.a} on {joint.b}, {frame}"
+        first, second = (_describe_body(curve, body) for body in (joint.a, joint.b))
+        frame = "world axes" if axes == "world" else f"in the axes of {first if axes == 'from' else second}"
+        return f"reaction of {first} on {second}, {frame}"
     return "force on the foundation, world axes" if curve.path.startswith("foundation.") else "world axes"
 
 
@@ -253,15 +286,14 @@ def describe_angle(curve: TipCurve, largest: LargestVector) -> str:
     return _format_degrees(angle, 360.0 * turning.turns)
 
 
-def _find_body(curve: TipCurve, axes: str) -> str:
-    """Return the body in whose axes a joint's loads are given."""
-    joint = curve.study.spec.joints[curve.path.split(".")[1]]
-    return joint.a if axes == "from" else joint.b
+def _describe_body(curve: TipCurve, body: str) -> str:
+    """Return the words for a body or the ground."""
+    return describe_object("bodies" if body != GROUND else GROUND, body, make_labels(curve.study.spec))
 
 
 def make_notes(curve: TipCurve, largest: LargestVector | None, units: Units) -> Iterator[str]:
     """Yield the largest vector with its direction and instant, and what is not drawn."""
-    style = choose_reader_style(curve.unit, 0.0 if largest is None else largest.magnitude, units)
+    style = choose_number_style(curve.unit, 0.0 if largest is None else largest.magnitude, units)
     if largest is None:
         yield f"{curve.caption}: open or unknown, not drawn"
         return

@@ -8,14 +8,17 @@ from itertools import count, product
 import numpy as np
 
 from heuncli.base.joint_kinds import TYPES
+from heuncli.output.drawing.axes import format_short
 from heuncli.output.drawing.figure import PlaceLabel
 from heuncli.output.figures.posed_machine import LOAD_PEN, PosedMachine, to_pair
+from heuncli.output.figures.worst_instant import TIME_DIGITS
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels
 
 MAX_LABELS = 20  # with more of them, numbers stand for the words
 SEPARATOR = " / "  # between the names of one place
 SAME_PLACE = 0.004  # of the figure's side: closer places are one
+LATER_PEN = 7  # of the labels of later instants
 
 
 def choose_labels(
@@ -65,10 +68,10 @@ def make_machine_labels(
     """
     if not posed_machine.has_names:
         return
-    for number, look in enumerate(posed_machine.machine.joints, 1):
-        ends = posed_machine.project(look.b, look.q, k), posed_machine.project(look.a, look.p, k)
-        place = 0.5 * (ends[0] + ends[1]) if TYPES[look.kind].keeps_distance else ends[0]
-        text = describe_object("joints", look.name, labels)
+    for number, joint in enumerate(posed_machine.machine.joints, 1):
+        ends = posed_machine.project(joint.b, joint.q, k), posed_machine.project(joint.a, joint.p, k)
+        place = 0.5 * (ends[0] + ends[1]) if TYPES[joint.kind].keeps_distance else ends[0]
+        text = describe_object("joints", joint.name, labels)
         if text not in labelled:
             yield PlaceLabel(*to_pair(place), text, str(number))
     for letter, line in zip(iter_letters("a"), posed_machine.machine.lines, strict=False):
@@ -88,3 +91,25 @@ def make_mark_labels(posed_machine: PosedMachine, k: int) -> Iterator[PlaceLabel
         if mark.name:
             x, y = to_pair(posed_machine.size * posed_machine.view.project(mark.locate(posed_machine.poses)[0][k]))
             yield PlaceLabel(x, y, mark.name, mark.name)
+
+
+def label_instants(posed_machine: PosedMachine) -> Iterator[PlaceLabel]:
+    """Label the instants at the body that has moved most since the first."""
+    if len(posed_machine.poses.times) < 2:
+        return
+    places_of_body = {
+        body.name: np.array(
+            [
+                posed_machine.project(body.name, posed_machine.centers[body.name], k)
+                for k in range(len(posed_machine.poses.times))
+            ]
+        )
+        for body in posed_machine.machine.bodies
+    }
+    most_moved = max(
+        places_of_body, key=lambda name: (float(np.abs(places_of_body[name] - places_of_body[name][0]).max()), name)
+    )
+    times = posed_machine.poses.times.tolist()
+    for k, (t, (x, y)) in enumerate(zip(times, places_of_body[most_moved].tolist(), strict=True)):
+        text = f"{format_short(t, TIME_DIGITS)} s"
+        yield PlaceLabel(x, y, text, text, LATER_PEN, is_ghost=k > 0)

@@ -13,25 +13,17 @@ import numpy as np
 from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.drawing.figure import Arrow, Figure, Item, KeyArrow, Panel, PlaceLabel, Scaling, SpaceKey
-from heuncli.output.drawing.ticks import format_short
+from heuncli.output.drawing.axes import format_short
+from heuncli.output.drawing.figure import Arrow, Figure, Item, KeyArrow, Panel, Scaling, SpaceKey
 from heuncli.output.figures import body_items, joint_items, traces
-from heuncli.output.figures.acting_loads import (
-    NO_LOADS,
-    ActingLoads,
-    choose_scales,
-    collect_loads,
-    draw_loads,
-    iter_key_arrows,
-    label_loads,
-    round_down,
-)
+from heuncli.output.figures.acting_loads import NO_LOADS, ActingLoads, collect_loads
 from heuncli.output.figures.courses import FigureSource, require_claimed
+from heuncli.output.figures.load_arrows import draw_loads, iter_key_arrows, label_loads, round_down, scale_loads
 from heuncli.output.figures.posed_machine import PosedMachine, to_pair
-from heuncli.output.figures.scene_labels import choose_labels, make_machine_labels, make_mark_labels
+from heuncli.output.figures.scene_labels import choose_labels, label_instants, make_machine_labels, make_mark_labels
 from heuncli.output.figures.traces import PointPath
 from heuncli.output.figures.windows import Window, choose_window, clip_items
-from heuncli.output.figures.worst_instant import WorstInstant, find_worst_instant
+from heuncli.output.figures.worst_instant import describe_instants, find_worst_instant
 from heuncli.output.machine_geometry.machine import Machine, make_machine
 from heuncli.output.machine_geometry.poses import Poses, compute_poses, make_start_poses
 from heuncli.output.machine_geometry.solids import ROUND_FACES
@@ -41,14 +33,11 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.setup import build_with_cuts
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels, make_labels
-from heuncli.study.quantities.reader_numbers import choose_prefix, choose_reader_style
+from heuncli.study.quantities.reader_numbers import choose_prefix
 from heuncli.study.quantities.table_units import Units
 
-TIME_DIGITS = 4
-WORST_WORDS = {"joints": "joint", "forces": "bushing"}
 HEIGHT = 560.0  # pixels, maximum
 N_SMOOTH_FACES, MAX_SMOOTH_BODIES = 60, 40  # faces about an axis, and up to how many bodies
-LATER_PEN = 7  # of the labels of later instants
 MIN_VISIBLE_GRAVITY = 0.2  # visible part of gravity, with less it is not shown
 SCALE_SHARE = 0.25  # of the figure's width: the scale bar is not longer
 MAX_LISTED = 6  # names in a note
@@ -154,16 +143,16 @@ def make_machine_figure(
     )
     view, size, side = posed_machine.view, posed_machine.size, machine_window.side
     loads = loads.drop_slight_moments(side / size)
-    scales = choose_scales(loads, side)
-    load_items = list(draw_loads(loads, view, size, side, scales))
+    drawing = scale_loads(loads, view, size, side)
+    load_items = list(draw_loads(drawing))
     arrows = [item for item in load_items if isinstance(item, Arrow)]
     window = machine_window.extend_to_arrows(arrows)
     labels = make_labels(posed_machine.spec)
-    load_labels = list(label_loads(loads, view, size, side, scales, labels, units)) if posed_machine.has_names else []
+    load_labels = list(label_loads(drawing, labels, units)) if posed_machine.has_names else []
     names = [
         *make_machine_labels(posed_machine, 0, labels, {label.letter for label in load_labels}),
         *make_mark_labels(posed_machine, 0),
-        *(traces.make_labels(posed_machine, point_paths) if has_point_names else ()),
+        *(traces.label_paths(posed_machine, point_paths, labels) if has_point_names else ()),
     ]
     place_labels, numbers = choose_labels(load_labels, names, side)
     items: list[Item] = [
@@ -172,14 +161,14 @@ def make_machine_figure(
         *clip_items(first, window),
         *load_items,
         *place_labels,
-        *_label_instants(posed_machine),
+        *label_instants(posed_machine),
     ]
     unit, (x_name, y_name) = units.find("m")[0], view.format_axes()
     x_axis, y_axis = (
         Scaling(f"{axis} [{unit}]", low, high)
         for axis, low, high in zip((x_name, y_name), window.low.tolist(), window.high.tolist(), strict=True)
     )
-    key = _make_key(posed_machine, window, units, [*iter_key_arrows(loads, arrows, scales, units)], numbers)
+    key = _make_key(posed_machine, window, units, [*iter_key_arrows(drawing, arrows, units)], numbers)
     panel = Panel(x_axis, y_axis, tuple(items), HEIGHT, True, True, name, True, key)
     notes = [*window.notes, *_make_notes(posed_machine, loads)]
     words = [describe_instants(posed_machine, None, units)]
@@ -200,36 +189,12 @@ def _draw_first_instant(posed_machine: PosedMachine, drawn_names: Collection[str
 
 def _draw_later_instant(posed_machine: PosedMachine, k: int) -> list[Item]:
     """Draw a later instant in thin, pale lines."""
-    items = body_items.draw_bodies(posed_machine, k, thin=True)
+    items = body_items.draw_bodies(posed_machine, k)
     items += [
-        item
-        for line in posed_machine.machine.lines
-        for item in joint_items.draw_force_line(posed_machine, line, k, thin=True)
+        item for line in posed_machine.machine.lines for item in joint_items.draw_force_line(posed_machine, line, k)
     ]
-    items += joint_items.draw_ropes(posed_machine, k, thin=True)
-    return items + joint_items.draw_joints(posed_machine, k, thin=True)
-
-
-def _label_instants(posed_machine: PosedMachine) -> Iterator[PlaceLabel]:
-    """Label the instants at the body that has moved most since the first."""
-    if len(posed_machine.poses.times) < 2:
-        return
-    places_of_body = {
-        body.name: np.array(
-            [
-                posed_machine.project(body.name, posed_machine.centers[body.name], k)
-                for k in range(len(posed_machine.poses.times))
-            ]
-        )
-        for body in posed_machine.machine.bodies
-    }
-    most_moved = max(
-        places_of_body, key=lambda name: (float(np.abs(places_of_body[name] - places_of_body[name][0]).max()), name)
-    )
-    times = posed_machine.poses.times.tolist()
-    for k, (t, (x, y)) in enumerate(zip(times, places_of_body[most_moved].tolist(), strict=True)):
-        text = f"{format_short(t, TIME_DIGITS)} s"
-        yield PlaceLabel(x, y, text, text, LATER_PEN, is_ghost=k > 0)
+    items += joint_items.draw_ropes(posed_machine, k)
+    return items + joint_items.draw_joints(posed_machine, k)
 
 
 def _make_key(
@@ -252,21 +217,6 @@ def _make_key(
         unit, per_metre = units.find("m")
     words = f"{format_short(length / posed_machine.size * per_metre)} {unit}"
     return SpaceKey(tuple(axes), to_pair(gravity) if is_visible else None, (length, words), tuple(arrows), numbers)
-
-
-def describe_instants(posed_machine: PosedMachine, worst: WorstInstant | None, units: Units) -> str:
-    """Describe the instants and the view; worst: the instant of the greatest joint force, if that is known."""
-    times = posed_machine.poses.times.tolist()
-    text = f"t = {format_short(times[0], TIME_DIGITS)} s"
-    if worst is not None and worst.name and worst.time == times[0]:
-        style = choose_reader_style("N", worst.force, units)
-        name = describe_object(worst.kind, worst.name, make_labels(posed_machine.spec))
-        text += (
-            f", worst instant: greatest {WORST_WORDS[worst.kind]} force, {name} {style.write(worst.force)} {style.unit}"
-        )
-    if len(times) > 1:
-        text += f"; pale: t = {', '.join(format_short(t, TIME_DIGITS) for t in times[1:])} s"
-    return f"{text}; seen from {posed_machine.view.description}"
 
 
 def _make_notes(posed_machine: PosedMachine, loads: ActingLoads) -> Iterator[str]:

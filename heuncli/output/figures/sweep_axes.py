@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.axes import choose_ends, choose_ticks, is_zero_near
 from heuncli.output.drawing.figure import Cells, Item, Scaling, Strokes, Words
-from heuncli.output.drawing.ticks import choose_ends, choose_ticks, is_zero_near
 from heuncli.output.figures.sweep_tables import SweepVariable
 from heuncli.results.results import Array
 

@@ -15,7 +15,7 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
 from heuncli.base.text_safety import escape
-from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.courses import NotDrawable
 from heuncli.results.results import Array, Mask
 from heuncli.scene.file_format.quantity import parse_number_with_unit
 

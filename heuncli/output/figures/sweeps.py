@@ -26,9 +26,8 @@ from heuncli.output.drawing.figure import (
     share_x_axis,
 )
 from heuncli.output.drawing.style import PANEL_HEIGHT, PENS
-from heuncli.output.figures.curve_points import is_visible
-from heuncli.output.figures.history_curves import format_number
-from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.courses import NotDrawable
+from heuncli.output.figures.curves import choose_number_style, format_number, is_visible
 from heuncli.output.figures.sweep_axes import MAX_NAMES, draw_contours, find_cell_edges, make_axis, make_measure_axis
 from heuncli.output.figures.sweep_tables import (
     SweepNumbers,
@@ -41,7 +40,7 @@ from heuncli.output.figures.sweep_tables import (
 from heuncli.results.results import Array, Indices
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.quantities.reader_numbers import ReaderStyle
 from heuncli.study.quantities.table_units import Units
 
 MAX_MARKED = 40  # points of a curve; with more they have no marks
@@ -82,13 +81,14 @@ def describe_measure(text: str) -> str:
     *reducers, path = text.split(" ")
     if "." not in path or not set(reducers) <= REDUCERS.keys():
         return text
-    words = " ".join([*(REDUCERS[reducer] for reducer in reducers), describe_path(path, Labels())])
+    owner, comma, quantity = describe_path(path, Labels()).rpartition(", ")
+    words = owner + comma + " ".join([*(REDUCERS[reducer] for reducer in reducers), quantity])
     return f"{words[:1].upper()}{words[1:]}"
 
 
 def _choose_style(measure: SweepNumbers, units: Units) -> ReaderStyle:
     """Choose how the numbers of a measure are written."""
-    return choose_reader_style(measure.unit, float(np.nanmax(np.abs(measure.values), initial=0.0)), units)
+    return choose_number_style(measure.unit, float(np.nanmax(np.abs(measure.values), initial=0.0)), units)
 
 
 FigureParts = tuple[list[Panel], list[tuple[str, int]], list[str]]
@@ -228,7 +228,7 @@ def _draw_bars(picked_table: SweepSelection, units: Units) -> FigureParts:
             )
             items.append(Strokes(np.stack([low, high], axis=1), width=1.4))
         items += [
-            Spot(a, b, format_number(b / size, error / size, style), 0, is_filled=True)
+            Spot(a, b, format_number(b / size, error / size, style), 0, "")
             for a, b, error in zip(x_variable.values.tolist(), values.tolist(), errors.tolist(), strict=True)
             if np.isfinite(b) and len(values) <= MAX_NAMES
         ]

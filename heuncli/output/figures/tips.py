@@ -13,6 +13,7 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.figures.courses import (
     FigureSource,
+    NotDrawable,
     choose_instants,
     describe_number,
     find_values,
@@ -20,7 +21,6 @@ from heuncli.output.figures.courses import (
     is_varying,
 )
 from heuncli.output.figures.planes import Plane, choose_plane, make_axis_plane
-from heuncli.output.figures.refusals import NotDrawable
 from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run, list_angle_paths
 from heuncli.results.results import Array
 from heuncli.results.results_schema import SPACE

@@ -12,6 +12,8 @@ from heuncli.output.figures.courses import FigureSource, choose_instants
 from heuncli.output.figures.posed_machine import PosedMachine, to_pair
 from heuncli.output.machine_geometry.poses import compute_poses
 from heuncli.results.results import Array
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.labels import Labels
 
 CENTER = "center"  # the centre of mass, unless the spec has a point of that name
 MAX_REPORTED = 8  # paths of points that the spec reports
@@ -73,9 +75,11 @@ def draw_paths(posed_machine: PosedMachine, paths: Sequence[PointPath]) -> Itera
         yield Trace(path.name, x, y, posed_machine.pens[path.body], is_thin=True)
 
 
-def make_labels(posed_machine: PosedMachine, paths: Sequence[PointPath]) -> Iterator[PlaceLabel]:
+def label_paths(posed_machine: PosedMachine, paths: Sequence[PointPath], labels: Labels) -> Iterator[PlaceLabel]:
     """Yield the labels of the points at the beginning of their paths."""
     for path in paths:
-        yield PlaceLabel(
-            *to_pair(project_path(posed_machine, path)[0]), path.name, path.name, posed_machine.pens[path.body]
-        )
+        point = path.name.partition(".")[2]
+        text = describe_object("points", path.name, labels)
+        if point == CENTER and point not in posed_machine.spec.bodies[path.body].points:
+            text = f"{describe_object('bodies', path.body, labels)}, centre of mass"
+        yield PlaceLabel(*to_pair(project_path(posed_machine, path)[0]), text, text, posed_machine.pens[path.body])

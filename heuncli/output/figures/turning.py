@@ -14,7 +14,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.drawing.ticks import format_short
+from heuncli.output.drawing.axes import format_short
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND

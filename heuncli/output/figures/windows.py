@@ -13,6 +13,8 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Arrow, Item, Polygon, Strokes
 from heuncli.output.figures.posed_machine import PosedMachine
+from heuncli.output.machine_geometry.joint_symbols import find_scene_joint_kind
+from heuncli.output.machine_geometry.machine import JointGeometry
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 
@@ -78,7 +80,8 @@ def _collect_points(posed_machine: PosedMachine, point_paths: Sequence[Array]) -
         core_points += [
             posed_machine.project(name, place, k) for name, own in posed_machine.masses.items() for place in own
         ]
-        ends = [(own.a, own.p) for own in machine.joints] + [(own.b, own.q) for own in machine.joints]
+        ends = [(own.a, own.p) for own in machine.joints if not _slides(posed_machine, own)]  # a slider is drawn at q
+        ends += [(own.b, own.q) for own in machine.joints]
         lines = [own for own in machine.lines if own.name not in posed_machine.guided_actuators]
         ends += [(own.a, own.p) for own in lines] + [(own.b, own.q) for own in lines]
         core_points += [posed_machine.project(body, point, k) for body, point in ends]
@@ -92,6 +95,11 @@ def _collect_points(posed_machine: PosedMachine, point_paths: Sequence[Array]) -
     arrays_of_body = {name: np.array(points) for name, points in points_of_body.items() if points}
     inner = np.array(core_points)
     return inner, np.concatenate([inner, *arrays_of_body.values()]), arrays_of_body
+
+
+def _slides(posed_machine: PosedMachine, joint: JointGeometry) -> bool:
+    """Return whether the two points of a joint part along a line or plane, so that nothing is drawn at the first."""
+    return bool(find_scene_joint_kind(posed_machine.spec, joint.kind).shifts)
 
 
 def clip_items(items: Sequence[Item], window: Window) -> Iterator[Item]:

@@ -9,13 +9,22 @@ import numpy as np
 
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.axes import format_short
+from heuncli.output.figures.curves import choose_number_style
+from heuncli.output.figures.posed_machine import PosedMachine
 from heuncli.output.summary.summary_rows import SummaryRow
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
+from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import Channel, make_path_channel
+from heuncli.study.quantities.labels import make_labels
+from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch
+
+TIME_DIGITS = 4
+WORST_WORDS = {"joints": "joint", "forces": "bushing"}
 
 
 class WorstInstant(NamedTuple):
@@ -64,3 +73,18 @@ def find_worst_instant(study: Study) -> WorstInstant:
     if not forces[k] > 0.0:
         return WorstInstant(first)
     return WorstInstant(float(bounds.high_at[k]), kind, names[k], float(forces[k]))
+
+
+def describe_instants(posed_machine: PosedMachine, worst: WorstInstant | None, units: Units) -> str:
+    """Describe the instants and the view; worst: the instant of the greatest joint force, if that is known."""
+    times = posed_machine.poses.times.tolist()
+    text = f"t = {format_short(times[0], TIME_DIGITS)} s"
+    if worst is not None and worst.name and worst.time == times[0]:
+        style = choose_number_style("N", worst.force, units)
+        name = describe_object(worst.kind, worst.name, make_labels(posed_machine.spec))
+        text += (
+            f", worst instant: greatest {WORST_WORDS[worst.kind]} force, {name} {style.write(worst.force)} {style.unit}"
+        )
+    if len(times) > 1:
+        text += f"; pale: t = {', '.join(format_short(t, TIME_DIGITS) for t in times[1:])} s"
+    return f"{text}; seen from {posed_machine.view.description}"

@@ -14,7 +14,7 @@ from heuncli.multibody.mechanism.build_couplings import cam_rows
 from heuncli.multibody.mechanism.couplings import CouplingPart
 from heuncli.multibody.tree.cam_flanks import Flank, compute_flank
 from heuncli.output.machine_geometry.discs import Disc
-from heuncli.output.machine_geometry.threads import find_drawn_pose
+from heuncli.output.machine_geometry.poses import find_drawn_pose
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Cam
 from heuncli.scene.file_format.models import Spec

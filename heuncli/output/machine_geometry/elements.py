@@ -63,7 +63,7 @@ def collect_elements(spec: Spec, mechanism: Mechanism | None) -> ElementGeometry
 def _iter_discs(spec: Spec, mechanism: Mechanism | None, gears: dict[str, list[Disc]]) -> Iterator[tuple[str, Disc]]:
     """Yield all discs, each with its body."""
     from heuncli.output.machine_geometry.cams import iter_path_rollers
-    from heuncli.output.machine_geometry.wheels import iter_wheel_discs
+    from heuncli.output.machine_geometry.discs import iter_wheel_discs
 
     yield from iter_wheel_discs(spec)
     yield from ((body, disc) for body, own in gears.items() for disc in own)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.drawing.pens import find_pen
+from heuncli.output.drawing.style import find_pen
 from heuncli.output.machine_geometry.machine import BodyGeometry, Machine
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.solids import Surface

@@ -14,9 +14,8 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.machine_geometry.discs import Disc
+from heuncli.output.machine_geometry.discs import Disc, iter_balls
 from heuncli.output.machine_geometry.elements import ElementGeometry, collect_elements
-from heuncli.output.machine_geometry.hulls import make_hull
 from heuncli.output.machine_geometry.joint_symbols import JointSymbol, iter_joint_symbols
 from heuncli.output.machine_geometry.marks import Mark, iter_marks
 from heuncli.output.machine_geometry.pitch_lines import BeltGeometry, PitchPoint
@@ -25,9 +24,9 @@ from heuncli.output.machine_geometry.solids import (
     ROUND_FACES,
     Surface,
     find_nearest_place,
+    make_hull,
     make_surfaces,
 )
-from heuncli.output.machine_geometry.wheels import iter_balls
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import PairForce, Shape, Spec
 from heuncli.scene.file_format.names import GROUND

@@ -17,9 +17,9 @@ from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.rope_routes import body_pose
 from heuncli.multibody.tree.starts import compute_joint_start
+from heuncli.output.machine_geometry.discs import find_contact_points
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, order_span_ends
-from heuncli.output.machine_geometry.wheels import find_contact_points
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import RollingWheel
 from heuncli.scene.file_format.models import Spec, Stop

@@ -87,3 +87,15 @@ def make_start_poses(mechanism: Mechanism, start: Assembly, t: float) -> Poses:
         dict(zip(names, values[:, None], strict=True)) for values in (start.position, start.rotation)
     )
     return Poses(np.array([t]), positions, orientations, {})
+
+
+def find_drawn_pose(spec: Spec, body: str) -> tuple[Array, Array]:
+    """Find the pose in which a body is drawn: axes (3, 3) and origin (3,); those of the ground if the spec gives
+    none.
+    """
+    if body not in spec.bodies:
+        return np.eye(3), np.zeros(3)
+    spec_body = spec.bodies[body]
+    R = spec_body.near_rotation if spec_body.rotation is None else spec_body.rotation
+    r = spec_body.near_position if spec_body.position is None else spec_body.position
+    return np.eye(3) if R is None else np.array(R).reshape(3, 3), np.zeros(3) if r is None else np.array(r)

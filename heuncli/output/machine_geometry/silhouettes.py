@@ -56,25 +56,6 @@ def find_solid_edges(surface: Surface) -> SolidEdges:
     )
 
 
-def compute_convex_hull(points: Array) -> Array:
-    """Compute the corners of the convex hull of points (n, 2), counter-clockwise (Andrew, 1979)."""
-    sorted_points = sorted(set(map(tuple, points.tolist())))
-    if len(sorted_points) < 3:
-        return np.array(sorted_points).reshape(-1, 2)
-    halves: list[tuple[float, float]] = []
-    for sequence in (sorted_points, sorted_points[::-1]):
-        half: list[tuple[float, float]] = []
-        for x, y in sequence:
-            while len(half) > 1:
-                (ax, ay), (bx, by) = half[-2:]
-                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
-                    break
-                half.pop()
-            half.append((x, y))
-        halves += half[:-1]
-    return np.array(halves)
-
-
 def find_silhouette(solid: SolidEdges, rotation: Array, view: SceneView) -> list[Indices]:
     """Find the closed lines of corner numbers that bound the visible part of a surface, which lies to their left.
 

@@ -1,6 +1,8 @@
-"""Make the surfaces of shapes as polygons, in body axes; round shapes are approximated by flat faces."""
+"""Make surfaces of flat faces, in body axes: of shapes, round ones approximated, and of the hull of a body's points."""
 
 from __future__ import annotations
+
+from itertools import combinations
 
 import numpy as np
 
@@ -9,8 +11,10 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape, Vec
 
 ROUND_FACES = 24  # faces about an axis
-MAX_FLIPPED_CELLS = 8.0  # grid cells: maximum length of lines around triangles that simplification turned over
 ROD_RADIUS_RATIO = 0.015  # drawn radius of a rod, of its length
+FLAT = 1e-6  # share of the points' extent: less in a direction is none
+MAX_HULL_POINTS = 24  # each three of them are tried as a face
+MAX_FLIPPED_CELLS = 8.0  # grid cells: maximum length of lines around triangles that simplification turned over
 
 
 class Surface(NamedTuple):
@@ -97,24 +101,6 @@ def compute_mesh_corners(mesh: Shape) -> Array:
     return np.asarray(_to_array(mesh.at) + (mesh.scale * mesh.mesh.corners) @ np.array(mesh.rotation).T)
 
 
-def _make_mesh_surface(shape: Shape) -> Surface:
-    """Make the surface of a mesh, simplified if it is fine, with its sharp edges."""
-    from heuncli.output.machine_geometry.mesh_simplification import (  # few scenes have them
-        find_sharp_edges,
-        simplify_mesh,
-    )
-
-    assert shape.mesh is not None
-    corners, triangles = compute_mesh_corners(shape), shape.mesh.triangles
-    simple_mesh = simplify_mesh(corners, triangles)
-    ends = np.unique(np.sort(simple_mesh.corner_numbers[find_sharp_edges(corners, triangles)], axis=1), axis=0)
-    edges = simple_mesh.corners[ends[ends[:, 0] < ends[:, 1]]]
-    faces = tuple(map(tuple, simple_mesh.triangles.tolist()))
-    return Surface(
-        simple_mesh.corners, faces, tuple(edges), convex=False, blur=MAX_FLIPPED_CELLS * simple_mesh.cell_size
-    )
-
-
 def _make_box(shape: Shape) -> Surface:
     """Make a box: six faces and twelve edges."""
     axes = np.eye(3) if shape.rotation is None else np.array(shape.rotation, dtype=np.float64)
@@ -184,3 +170,90 @@ def _make_sphere(centre: Array, radius: float, n: int) -> Surface:
 
 def _close_ring(ring: Array) -> Array:
     return np.concatenate([ring, ring[:1]])
+
+
+def compute_convex_hull(points: Array) -> Array:
+    """Compute the corners of the convex hull of points (n, 2), counter-clockwise (Andrew, 1979)."""
+    sorted_points = sorted(set(map(tuple, points.tolist())))
+    if len(sorted_points) < 3:
+        return np.array(sorted_points).reshape(-1, 2)
+    halves: list[tuple[float, float]] = []
+    for sequence in (sorted_points, sorted_points[::-1]):
+        half: list[tuple[float, float]] = []
+        for x, y in sequence:
+            while len(half) > 1:
+                (ax, ay), (bx, by) = half[-2:]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
+                    break
+                half.pop()
+            half.append((x, y))
+        halves += half[:-1]
+    return np.array(halves)
+
+
+def make_hull(points: Array) -> Surface | None:
+    """Make the convex hull of distinct points (n, 3); a plate has two faces.
+
+    Returns None for points on a line, which span no plate, and for more than MAX_HULL_POINTS.
+    """
+    if not 3 <= len(points) <= MAX_HULL_POINTS:
+        return None
+    offsets = points - points.mean(axis=0)
+    sizes, directions = np.linalg.svd(offsets, full_matrices=False)[1:]
+    if sizes[1] <= FLAT * sizes[0]:
+        return None
+    size = float(np.abs(offsets).max())
+    if sizes[2] <= FLAT * sizes[0]:
+        ring = _order_ring(offsets, np.arange(len(points)), directions[2])
+        rings = [ring, ring[::-1]]
+    else:
+        rings = _find_faces(offsets, FLAT * size)
+    corners = sorted({k for ring in rings for k in ring})
+    faces = tuple(tuple(corners.index(k) for k in ring) for ring in rings)
+    edges = {(min(a, b), max(a, b)) for ring in rings for a, b in zip(ring, (*ring[1:], ring[0]), strict=True)}
+    return Surface(points[corners], faces, tuple(points[list(edge)] for edge in sorted(edges)))
+
+
+def _find_faces(offsets: Array, tolerance: float) -> list[list[int]]:
+    """Find the faces of a solid hull, each with its corners counter-clockwise as seen from outside."""
+    faces: dict[frozenset[int], list[int]] = {}
+    for a, b, c in combinations(range(len(offsets)), 3):
+        normal = np.cross(offsets[b] - offsets[a], offsets[c] - offsets[a])
+        length = float(np.linalg.norm(normal))
+        if length <= tolerance * tolerance:
+            continue
+        heights = (offsets - offsets[a]) @ (normal / length)
+        if heights.min() < -tolerance and heights.max() > tolerance:
+            continue
+        outward = normal if heights.max() <= tolerance else -normal
+        ring = _order_ring(offsets, np.flatnonzero(np.abs(heights) <= tolerance), outward / length)
+        faces.setdefault(frozenset(ring), ring)
+    return list(faces.values())
+
+
+def _order_ring(offsets: Array, numbers: np.ndarray[tuple[int], np.dtype[np.intp]], normal: Array) -> list[int]:
+    """Return the corners of the hull of points in a plane, counter-clockwise about its normal."""
+    axis = np.eye(3)[int(np.argmin(np.abs(normal)))]
+    right = np.cross(axis, normal)
+    right /= np.linalg.norm(right)
+    flat = np.column_stack([offsets[numbers] @ right, offsets[numbers] @ np.cross(normal, right)])
+    places = {tuple(place): int(k) for place, k in zip(flat.tolist(), numbers, strict=True)}
+    return [places[tuple(place)] for place in compute_convex_hull(flat).tolist()]
+
+
+def _make_mesh_surface(shape: Shape) -> Surface:
+    """Make the surface of a mesh, simplified if it is fine, with its sharp edges."""
+    from heuncli.output.machine_geometry.mesh_simplification import (  # few scenes have them
+        find_sharp_edges,
+        simplify_mesh,
+    )
+
+    assert shape.mesh is not None
+    corners, triangles = compute_mesh_corners(shape), shape.mesh.triangles
+    simple_mesh = simplify_mesh(corners, triangles)
+    ends = np.unique(np.sort(simple_mesh.corner_numbers[find_sharp_edges(corners, triangles)], axis=1), axis=0)
+    edges = simple_mesh.corners[ends[ends[:, 0] < ends[:, 1]]]
+    faces = tuple(map(tuple, simple_mesh.triangles.tolist()))
+    return Surface(
+        simple_mesh.corners, faces, tuple(edges), convex=False, blur=MAX_FLIPPED_CELLS * simple_mesh.cell_size
+    )

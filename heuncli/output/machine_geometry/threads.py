@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.machine_geometry.poses import find_drawn_pose
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Screw
 from heuncli.scene.file_format.models import Joint, Spec, Vec
@@ -86,15 +87,3 @@ def find_joint_point(spec: Spec, member: ScrewMember) -> Array:
     joint = member.joint
     R, r = find_drawn_pose(spec, member.body)
     return np.asarray(r + R @ np.array(joint.p if member.body == joint.a else joint.q))
-
-
-def find_drawn_pose(spec: Spec, body: str) -> tuple[Array, Array]:
-    """Find the pose in which a body is drawn: axes (3, 3) and origin (3,); those of the ground if the spec gives
-    none.
-    """
-    if body not in spec.bodies:
-        return np.eye(3), np.zeros(3)
-    spec_body = spec.bodies[body]
-    R = spec_body.near_rotation if spec_body.rotation is None else spec_body.rotation
-    r = spec_body.near_position if spec_body.position is None else spec_body.position
-    return np.eye(3) if R is None else np.array(R).reshape(3, 3), np.zeros(3) if r is None else np.array(r)

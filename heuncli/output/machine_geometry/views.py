@@ -44,11 +44,6 @@ class SceneView(NamedTuple):
         """Compute how near to the eye points (..., 3) are, (...,); larger is nearer."""
         return np.asarray(points @ self.eye_direction)
 
-    @property
-    def is_axis_aligned(self) -> bool:
-        """Whether the drawing plane is spanned by two world axes."""
-        return all(np.count_nonzero(axis) == 1 for axis in (self.right_direction, self.up_direction))
-
     def format_axes(self) -> tuple[str, str]:
         """Format the directions of the axes to the right and up."""
         return format_direction(self.right_direction), format_direction(self.up_direction)

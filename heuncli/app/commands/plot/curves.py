@@ -22,7 +22,7 @@ from heuncli.base.spelling import find_similar
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.courses import FigureSource
-from heuncli.output.figures.curve_points import MeasuredPoints
+from heuncli.output.figures.curves import MeasuredPoints
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.output.figures.histories import make_history
 from heuncli.output.figures.planes import AXIS_LETTERS, list_rotation_paths

@@ -1,4 +1,7 @@
-"""The curves of a history: traces, envelopes of long oscillations, bars of load cases, and their marked extremes."""
+"""The curves of a figure: traces, bands, envelopes of long oscillations, bars of load cases, marked extremes, points.
+
+Of a long course each short interval shows its minimum, its maximum, and its gaps.
+"""
 
 from __future__ import annotations
 
@@ -6,20 +9,38 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.drawing.axes import format_short
 from heuncli.output.drawing.figure import Arrow, Band, Bars, Item, Scaling, Spot, Trace
-from heuncli.output.drawing.ticks import format_short
+from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.output.figures.courses import FigureSource, NumberCourse, find_values, is_varying
-from heuncli.output.figures.curve_points import is_visible
 from heuncli.results.results import Array
 from heuncli.study.quantities.digits import UNKNOWN, format_error
-from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_reader_style
+from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure import Peak
 
-MAX_PERIODS, MAX_STRETCHES = 30, 240  # with more periods the curve is an envelope of at most so many stretches
+MAX_PERIODS, MAX_STRETCHES = 60, 240  # with more periods the curve is an envelope of at most so many stretches
 ARROW_PLACES, ARROW_SHARE = (0.2, 0.55, 0.9), 0.03  # of a closed curve's points, and of the panel's width
 GROUP_WIDTH = 0.8  # share of a load case that its bars take
+N_INTERVALS = 1500  # nearly two a pixel of a panel
+MIN_HALF_WIDTH = 0.5  # pixels: half width of a band
+# The largest number of a panel; beyond, the unit is chosen by size: at five digits for a product of chosen units.
+MIN_READABLE, MAX_READABLE, MAX_PRODUCT = 0.1, 1e5, 1e4
+MAX_SPOTS = 150  # more points are drawn as a line
+
+
+def choose_number_style(unit: str, largest: float, units: Units) -> ReaderStyle:
+    """Choose how the numbers of a panel are written: in the units chosen, unless these make them long or small.
+
+    unit: SI unit; largest: magnitude, SI
+    """
+    chosen, by_size = choose_reader_style(unit, largest, units), choose_reader_style(unit, largest, Units())
+    high = MAX_PRODUCT if "·" in unit else MAX_READABLE
+    is_short, is_shorter = (MIN_READABLE <= style.size * largest < high for style in (chosen, by_size))
+    return by_size if unit in PREFIXES and is_shorter and not is_short else chosen
 
 
 class PanelCourse(NamedTuple):
@@ -169,4 +190,54 @@ def draw_case_bars(curves: Sequence[PanelCourse], style: ReaderStyle) -> Iterato
         for place, value, curve in zip(x.tolist(), values, own, strict=True):
             if math.isfinite(value):
                 text = format_number(value, curve.course.error or 0.0, style).removesuffix(f" {style.unit}")
-                yield Spot(place, style.size * value, text, pen, is_filled=True)
+                yield Spot(place, style.size * value, text, pen, "")
+
+
+def find_visible_points(values: Array, n_intervals: int = N_INTERVALS) -> NDArray[np.intp]:
+    """Return the indices (m,) of values (n,), ascending, that a figure shows; all of them if they are few."""
+    count = len(values)
+    if count <= 4 * n_intervals:
+        return np.arange(count)
+    n_per_interval = -(-count // n_intervals)
+    places = np.minimum(np.arange(n_intervals * n_per_interval), count - 1).reshape(n_intervals, n_per_interval)
+    parts = values[places]
+    unknown = np.isnan(parts)
+    rows = np.arange(n_intervals)
+    chosen = [
+        places[rows, np.where(unknown, np.inf, parts).argmin(axis=1)],
+        places[rows, np.where(unknown, -np.inf, parts).argmax(axis=1)],
+        places[rows, unknown.argmax(axis=1)],  # a gap, else the first
+        places[-1:, -1],
+    ]
+    return np.unique(np.concatenate(chosen))
+
+
+def is_visible(error: float, y: Scaling, height: float = PANEL_HEIGHT) -> bool:
+    """Return whether an error is visible on a vertical axis of a height [pixels]; error and axis have the same unit."""
+    return math.isfinite(error) and error * height > MIN_HALF_WIDTH * (y.high - y.low)
+
+
+class MeasuredPoints(NamedTuple):
+    """Measured points (n,), in SI units of the axes of a panel.
+
+    unit: SI unit of y
+    """
+
+    name: str
+    unit: str
+    x: Array
+    y: Array
+
+
+def draw_points(points: MeasuredPoints, pen: int, size_x: float, size_y: float) -> Iterator[Item]:
+    """Draw squares, or if there are many a thin line through them.
+
+    size_x, size_y: factors from SI to the display units
+    """
+    x, y = size_x * points.x, size_y * points.y
+    if len(x) <= MAX_SPOTS:
+        for a, b in zip(x.tolist(), y.tolist(), strict=True):
+            yield Spot(a, b, "", pen, "square")
+        return
+    visible = find_visible_points(y)
+    yield Trace(points.name, x[visible], y[visible], pen, is_thin=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.output.drawing import drawing_files, matplotlib_file, svg_converters
+from heuncli.output.drawing import drawing_files, matplotlib_file
 from heuncli.output.drawing.shapes import Area, Text, VectorDrawing
 from tests.shared.chromium import found
 
@@ -42,7 +42,7 @@ def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_chromium_draws_it_in_its_size(form: str, programs: Path) -> None:
     (programs / "chromium").symlink_to(str(found()))
     content = drawing_files.encode_drawing(DRAWING, form)
-    assert content.startswith(svg_converters.MAGIC[form])
+    assert content.startswith(drawing_files.MAGIC[form])
     if form == "png":
         assert struct.unpack(">II", content[16:24]) == (640, 400)  # two pixels for one
     else:
@@ -68,9 +68,9 @@ def test_others_get_the_svg_and_their_options(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A stand-in gives the SVG back, so that what it was given is seen."""
-    monkeypatch.setitem(svg_converters.MAGIC, form, b"<?xml")
+    monkeypatch.setitem(drawing_files.MAGIC, form, b"<?xml")
     put_program(programs, name, f'printf "%s\\n" "$@" > {tmp_path}/told; {copying}')
-    content = svg_converters.convert(DRAWING, form)
+    content = drawing_files.convert(DRAWING, form)
     assert content is not None and "−5" in content.decode()
     assert (tmp_path / "told").read_text().splitlines()[: len(options)] == options
 
@@ -79,7 +79,7 @@ def test_others_get_the_svg_and_their_options(
 def test_where_one_fails_the_next_draws(script: str, programs: Path) -> None:
     pytest.importorskip("matplotlib")
     put_program(programs, "resvg", script)
-    assert svg_converters.convert(DRAWING, "png") is None
+    assert drawing_files.convert(DRAWING, "png") is None
     assert drawing_files.encode_drawing(DRAWING, "png").startswith(b"\x89PNG")
 
 

@@ -1,10 +1,18 @@
-"""Choose round numbers along an axis, and format them."""
+"""The axes of a panel: their ends and round numbers, the pixels of their values, and how they are drawn."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
+import numpy as np
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.text_safety import escape
+from heuncli.output.drawing import style
 from heuncli.output.drawing.figure import Scaling
+from heuncli.output.drawing.shapes import Line, Shape, Text
+from heuncli.results.results import Array
 
 MINUS = "\N{MINUS SIGN}"
 MANTISSAS = (1.0, 2.0, 5.0, 10.0)
@@ -96,3 +104,76 @@ def choose_ends(low: float, high: float, *, zero: bool = False, margin: float = 
         span = abs(low) or 1.0
         return low - 0.5 * span, high + 0.5 * span
     return low - margin * span * (not zero or low < 0.0), high + margin * span * (not zero or high > 0.0)
+
+
+class PanelBox(NamedTuple):
+    """The field of a panel in pixels, and its axes."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+    x_scaling: Scaling
+    y_scaling: Scaling
+
+    def to_pixel_x(self, value: float) -> float:
+        """Return the pixel of a value on the horizontal axis."""
+        return self.left + self.x_scaling.to_share(value) * (self.right - self.left)
+
+    def to_pixel_y(self, value: float) -> float:
+        """Return the pixel of a value on the vertical axis."""
+        return self.bottom - self.y_scaling.to_share(value) * (self.bottom - self.top)
+
+    def to_pixels(self, x: Array, y: Array) -> Array:
+        """Return the pixels of points, (n, 2)."""
+        return np.column_stack(
+            [_scale_values(self.to_pixel_x, x, self.x_scaling), _scale_values(self.to_pixel_y, y, self.y_scaling)]
+        )
+
+
+def _scale_values(to_pixel: Callable[[float], float], values: Array, scaling: Scaling) -> Array:
+    """Return the pixels of many values on an axis."""
+    values = np.asarray(values, dtype=np.float64)
+    if scaling.is_logarithmic:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            values = np.log(values)
+        low, high = math.log(scaling.low), math.log(scaling.high)
+    else:
+        low, high = scaling.low, scaling.high
+    first, last = to_pixel(scaling.low), to_pixel(scaling.high)
+    return np.asarray(first + (values - low) / (high - low) * (last - first))
+
+
+def lay_out_axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
+    """Return the grid, which is below all else, and the zero lines, the axes with their numbers, and the labels."""
+    width, height = box.right - box.left, box.bottom - box.top
+    max_ticks = max(3, int(width / style.PER_TICK_X)), max(2, int(height / style.PER_TICK_Y))
+    grid: list[Shape] = []
+    axes: list[Shape] = []
+    for value, text in choose_ticks(box.x_scaling, max_ticks[0]):
+        x = box.to_pixel_x(value)
+        is_zero = _is_zero(value, box.x_scaling)
+        colour = style.GREY if is_zero else style.FAINT
+        (axes if is_zero else grid).append(Line(((x, box.top), (x, box.bottom)), colour, style.GRID_WIDTH))
+        axes.append(Line(((x, box.bottom), (x, box.bottom + style.TICK_LENGTH)), style.GREY, style.GRID_WIDTH))
+        if box.x_scaling.shown_label:
+            axes.append(Text(x, box.bottom + 18.0, escape(text), style.SMALL_SIZE, "middle"))
+    for value, text in choose_ticks(box.y_scaling, max_ticks[1]):
+        y = box.to_pixel_y(value)
+        is_zero = _is_zero(value, box.y_scaling)
+        colour = style.GREY if is_zero else style.FAINT
+        (axes if is_zero else grid).append(Line(((box.left, y), (box.right, y)), colour, style.GRID_WIDTH))
+        axes.append(Text(box.left - 7.0, y + 4.0, escape(text), style.SMALL_SIZE, "end"))
+    corners = (box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)
+    axes.append(Line(corners, style.BLACK, style.AXIS_WIDTH))
+    if box.x_scaling.shown_label:
+        middle = (box.left + box.right) / 2.0
+        axes.append(Text(middle, box.bottom + 36.0, escape(box.x_scaling.shown_label), style.NAME_SIZE, "middle"))
+    if box.y_scaling.label:
+        label_place = max(box.left - 64.0, 16.0), (box.top + box.bottom) / 2.0
+        axes.append(Text(*label_place, escape(box.y_scaling.label), style.NAME_SIZE, "middle", is_vertical=True))
+    return grid, axes
+
+
+def _is_zero(value: float, scaling: Scaling) -> bool:
+    return value == 0.0 and not scaling.is_logarithmic and not scaling.tick_texts
