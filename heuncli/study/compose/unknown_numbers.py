@@ -56,6 +56,15 @@ class Leaf(NamedTuple):
     vectors: bool
 
 
+class LeafGroup(NamedTuple):
+    """Arrays over the instants of one kind and form: their values (n, n_leaves, ...) at some instants, and errors."""
+
+    kind: PathAndUnit
+    leaves: tuple[Leaf, ...]
+    values: Array
+    errors: Array
+
+
 def make_blocks_without_unknown(
     recovery: Recovery,
     reports: Set[str],
@@ -83,30 +92,40 @@ def make_blocks_without_unknown(
         reports,
     )
     unknown = np.zeros(len(close_instants), dtype=bool)
-    known = [
-        (
-            leaf,
-            leaf.block[leaf.name][close_instants],
-            estimate_errors(leaf.block[leaf.name][close_instants], moved_leaf.block[leaf.name]),
-        )
-        for leaf, moved_leaf in zip(iter_leaves(blocks), iter_leaves(moved_blocks), strict=True)
-    ]
-    scales = find_largest_by_kind(known, typical_sizes(recovery, close_instants))
+    groups = group_leaves(blocks, moved_blocks, close_instants)
+    scales = find_largest_by_kind(groups, typical_sizes(recovery, close_instants))
     left_out = (
         find_left_out_rows(recovery, close_instants)
         if reports & RANK_REPORTS
         else np.zeros(len(close_instants), dtype=bool)
     )
-    for leaf, values, errors in known:
-        is_lost = find_unknown(errors, scales[leaf.kind])
-        if leaf.kind[1] in ACCELERATION_UNITS and not leaf.kind[0].startswith("forces."):
+    for group in groups:
+        path, unit = group.kind
+        is_lost = find_unknown(group.errors, scales[group.kind])
+        if unit in ACCELERATION_UNITS and not path.startswith("forces."):
             is_lost = is_lost | left_out.reshape(-1, *[1] * (is_lost.ndim - 1))
-        if is_lost.any():
-            block = leaf.block
-            block[leaf.name] = block[leaf.name].copy()
-            block[leaf.name][close_instants] = np.where(is_lost, np.nan, values)
-            unknown |= is_lost.reshape(len(close_instants), -1).any(axis=1)
+        for k in np.flatnonzero(is_lost.any(axis=(0, *range(2, is_lost.ndim)))).tolist():
+            block, name, is_lost_here = group.leaves[k].block, group.leaves[k].name, is_lost[:, k]
+            block[name] = block[name].copy()
+            block[name][close_instants] = np.where(is_lost_here, np.nan, group.values[:, k])
+            unknown |= is_lost_here.reshape(len(close_instants), -1).any(axis=1)
     return blocks, recovery.solutions.times[close_instants[unknown]]
+
+
+def group_leaves(blocks: dict[str, Any], moved_blocks: dict[str, Any], close_instants: Indices) -> list[LeafGroup]:
+    """Group the arrays over the instants by their kind and form; with their errors at close instants."""
+    members: dict[Any, list[tuple[Leaf, Array]]] = {}
+    for leaf, moved_leaf in zip(iter_leaves(blocks), iter_leaves(moved_blocks), strict=True):
+        array = leaf.block[leaf.name]
+        members.setdefault((leaf.kind, array.shape[1:], array.dtype), []).append(
+            (leaf, moved_leaf.block[moved_leaf.name])
+        )
+    groups = []
+    for (kind, _, _), pairs in members.items():
+        values = np.stack([leaf.block[leaf.name][close_instants] for leaf, _ in pairs], axis=1)
+        errors = estimate_errors(values, np.stack([moved for _, moved in pairs], axis=1))
+        groups.append(LeafGroup(kind, tuple(leaf for leaf, _ in pairs), values, errors))
+    return groups
 
 
 def find_nearly_singular(recovery: Recovery, reports: Set[str]) -> Indices:
@@ -166,16 +185,14 @@ def iter_leaves(blocks: dict[str, Any], keys: tuple[str, ...] = ()) -> Iterator[
                 yield Leaf(blocks, name, (row.path, row.units[-1]), row.shape[-1:] == (SPACE,))
 
 
-def find_largest_by_kind(
-    leaf_errors: Sequence[tuple[Leaf, Array, Array]], minimum_by_unit: Mapping[str, Array]
-) -> dict[PathAndUnit, Array]:
+def find_largest_by_kind(groups: Sequence[LeafGroup], minimum_by_unit: Mapping[str, Array]) -> dict[PathAndUnit, Array]:
     """Return the largest number of each kind at each instant, minus its error; at least the typical size of its
     unit.
     """
     found: dict[PathAndUnit, Array] = {}
-    for leaf, values, errors in leaf_errors:
-        most = largest_magnitudes(np.maximum(np.abs(values) - errors, 0.0))
-        found[leaf.kind] = np.maximum(found.get(leaf.kind, minimum_by_unit.get(leaf.kind[1], 0.0)), most)
+    for group in groups:
+        most = largest_magnitudes(np.maximum(np.abs(group.values) - group.errors, 0.0))
+        found[group.kind] = np.maximum(found.get(group.kind, minimum_by_unit.get(group.kind[1], 0.0)), most)
     return found
 
 
