@@ -136,8 +136,7 @@ class Evaluator:
         closed = np.zeros((n_t, len(layout.open_contacts)))
         # contacts closed by others count as closed too: the rank, and later checks, decide which of them carry
         contact_states = self.start_holding if holding is None else holding
-        if layout.contacts:
-            closed[:] = layout.closed_contacts(contact_states)
+        closed[:] = layout.closed_contacts(contact_states)
         inputs = {"times": instants, "branches": held_branches, "holding": closed}
         numbers = {name: as_numbers(table) for name, table in tables.items()}
         outputs = {"states": projected_states, "columns": columns, **numbers}

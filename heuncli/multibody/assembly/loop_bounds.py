@@ -33,6 +33,37 @@ def bound_least_gap(
     return math.sqrt(sum((loops.bound_distance(conditions[k]) / size) ** 2 for k in island.closures))
 
 
+class Polygon:
+    """The sides around a loop: the sum of those that are given, and lengths of others; normals: the directions that
+    these are perpendicular to in all poses, None if not known. Mutable.
+    """
+
+    def __init__(self) -> None:
+        self.fixed = np.zeros(3)
+        self.lengths: list[float] = []
+        self.normals: list[Array | None] = []
+
+    def add_length(self, length: float, normal: Array | None = None) -> None:
+        """Add a side of some length."""
+        self.lengths.append(length)
+        self.normals.append(normal)
+
+    def find_lack(self, directions: Sequence[Array]) -> float:
+        """Return by how much the longest side exceeds all others, with gaps along some directions; below 0: they
+        close.
+        """
+        fixed = self.fixed
+        if directions:
+            Q, R = np.linalg.qr(np.array(directions).T)
+            if np.abs(np.diag(R)).min() < tolerances.PARALLEL:
+                return 0.0
+            fixed = fixed - Q @ (Q.T @ fixed)
+            if len(directions) > 1 or not all(_is_along(normal, directions[0]) for normal in self.normals):
+                return _norm(fixed) - sum(self.lengths)
+        sides = [_norm(fixed), *self.lengths]
+        return 2.0 * max(sides) - sum(sides)
+
+
 class LoopSides:
     """The sides of the polygons around an island's loops."""
 
@@ -43,35 +74,34 @@ class LoopSides:
 
     def bound_distance(self, closure: JointCondition) -> float:
         """Return how far apart the points of a closure are at least, across what it leaves free [m]; 0: not known."""
-        ends = [(closure.a, closure.p), (closure.b, closure.q)]
-        branches = [self.list_branch(body) for body, _ in ends]
-        shared = set(branches[0]) & set(branches[1])
-        joints = [closure, *(self.conditions[i] for branch in branches for i in branch if i not in shared)]
-        fixed, lengths, meeting = np.zeros(3), [], []
-        rounding = 0.0
-        for sign, (_, point), branch in zip((-1.0, 1.0), ends, branches, strict=True):
-            arm, own_branch = point, [body for body in branch if body not in shared]
-            for body in own_branch:
+        ends = ((-1.0, closure.a, closure.p), (1.0, closure.b, closure.q))
+        branches = [self.list_branch(body) for _, body, _ in ends]
+        shared = [body for body in branches[0] if body in branches[1]]
+        polygon, joints, arms, rounding = Polygon(), [closure], [], 0.0
+        for (sign, root, arm), branch in zip(ends, branches, strict=True):
+            for body in branch:
+                if body in shared:
+                    break
                 condition = self.conditions[body]
                 if condition is None or not self.poses.shifts[body]:
                     return 0.0  # it floats, or its joint may have a gap, too
                 is_to = body == condition.b
-                own, parent_point = (condition.q, condition.p) if is_to else (condition.p, condition.q)
-                side, attitude = arm - own, self.find_attitude(body)
-                if attitude is None:
-                    lengths.append(_norm(side))
-                else:
-                    fixed += sign * (attitude @ side)
+                own, outer = (condition.q, condition.p) if is_to else (condition.p, condition.q)
+                self._add_side(polygon, body, sign * (arm - own))
                 rounding += _norm(arm) + _norm(own)
-                arm = parent_point
-            meeting.append((branch[len(own_branch)] if len(own_branch) < len(branch) else None, arm))
-        if not self._add_last_side(meeting, branches, ends, fixed, lengths):
-            return 0.0
-        directions = self._list_free_directions(joints, lengths)
+                arm, root = outer, condition.a if is_to else condition.b
+                joints.append(condition)
+            arms.append((sign, root, arm))
+        if shared:
+            self._add_side(polygon, shared[0], arms[1][2] - arms[0][2])
+        else:
+            for sign, root, arm in arms:
+                polygon.fixed += sign * (self.poses.x[root] + self.poses.R[root] @ arm)
+        directions = self._list_free_directions(joints, polygon)
         if directions is None:
             return 0.0
-        rounding += sum(lengths) + _norm(fixed) + float(np.abs(self.poses.x).max(initial=0.0))
-        return max(_lack(fixed, lengths, directions) - tolerances.SUM_ROUNDING * rounding, 0.0)
+        rounding += sum(polygon.lengths) + _norm(polygon.fixed) + float(np.abs(self.poses.x).max(initial=0.0))
+        return max(polygon.find_lack(directions) - tolerances.SUM_ROUNDING * rounding, 0.0)
 
     def list_branch(self, body: int) -> list[int]:
         """List the members from a body inward."""
@@ -83,6 +113,24 @@ class LoopSides:
                 break
             body = condition.a if body == condition.b else condition.b
         return branch
+
+    def _add_side(self, polygon: Polygon, body: int, side: Array) -> None:
+        """Add a side that is fixed in a body, in its axes: as a whole, its part along an axis that keeps its direction,
+        or its length.
+        """
+        attitude = self.find_attitude(body)
+        if attitude is not None:
+            polygon.fixed += attitude @ side
+            return
+        condition = self.conditions[body]
+        axis = None if condition is None else condition.to_axis if body == condition.b else condition.axis
+        normal = None if axis is None else self.find_direction(body, axis)
+        if axis is None or normal is None:
+            polygon.add_length(_norm(side))
+            return
+        along = float(axis @ side)
+        polygon.fixed += along * normal
+        polygon.add_length(_norm(side - along * axis), normal)
 
     def find_attitude(self, body: int) -> Array | None:
         """Return the attitude that a body has in all poses, (3, 3); None if it may turn."""
@@ -96,7 +144,7 @@ class LoopSides:
         return None if parent is None else parent @ (condition.relative if is_to else condition.relative.T)
 
     def find_direction(self, body: int, direction: Array) -> Array | None:
-        """Return the direction that a body's own has in all poses, world, but for its sign; None if it may turn."""
+        """Return the direction that a body's own has in all poses, world; None if it may turn."""
         attitude = self.find_attitude(body)
         if attitude is not None:
             return np.asarray(attitude @ direction)
@@ -107,52 +155,22 @@ class LoopSides:
         parent = condition.a if is_to else condition.b
         if condition.pose.turn == "all":
             return self.find_direction(parent, (condition.relative if is_to else condition.relative.T) @ direction)
-        own, other = (condition.to_axis, condition.axis) if is_to else (condition.axis, condition.to_axis)
-        is_along = np.array_equal(direction, own) or np.array_equal(direction, -own)
-        return self.find_direction(parent, other) if is_along else None
+        own, outer = (condition.to_axis, condition.axis) if is_to else (condition.axis, condition.to_axis)
+        for sign in (1.0, -1.0):
+            if np.array_equal(direction, sign * own):
+                return self.find_direction(parent, sign * outer)
+        return None
 
-    def _add_last_side(
-        self,
-        meeting: Sequence[tuple[int | None, Array]],
-        branches: Sequence[list[int]],
-        ends: Sequence[tuple[int, Array]],
-        fixed: Array,
-        lengths: list[float],
-    ) -> bool:
-        """Add the side of the body where both branches meet, or of the bodies that stay; return whether that is
-        known.
-        """
-        (body, arm), (other, other_arm) = meeting
-        if body is not None or other is not None:
-            if body != other or body is None:
-                return False
-            attitude = self.find_attitude(body)
-            if attitude is None:
-                lengths.append(_norm(other_arm - arm))
-            else:
-                fixed += attitude @ (other_arm - arm)
-            return True
-        for sign, (_, point), (end, _), branch in zip((-1.0, 1.0), meeting, ends, branches, strict=True):
-            root = end
-            if branch:
-                condition = self.conditions[branch[-1]]
-                assert condition is not None
-                root = condition.a if branch[-1] == condition.b else condition.b
-            fixed += sign * (self.poses.x[root] + self.poses.R[root] @ point)
-        return True
-
-    def _list_free_directions(
-        self, joints: Sequence[JointCondition | None], lengths: list[float]
-    ) -> list[Array] | None:
-        """List the directions along which joints let points slide, world; None where they are not known. Rods add
-        lengths.
+    def _list_free_directions(self, joints: Sequence[JointCondition], polygon: Polygon) -> list[Array] | None:
+        """List the directions along which joints let points slide, world; None where they are not known. Rods are sides
+        of the polygon.
         """
         directions: list[Array] = []
         for d in joints:
-            if d is None or d.path is not None or d.pose.hold in ("none", "curve"):
+            if d.path is not None or d.pose.hold in ("none", "curve"):
                 return None
             if d.pose.hold == "distance":
-                lengths.append(d.length)
+                polygon.add_length(d.length)
             elif d.pose.hold != "point":
                 axis = self.find_direction(d.a, d.axis)
                 if axis is None:
@@ -161,15 +179,9 @@ class LoopSides:
         return directions
 
 
-def _lack(fixed: Array, lengths: Sequence[float], directions: Sequence[Array]) -> float:
-    """Return by how much the longest side exceeds all others; below 0: they close."""
-    if directions:
-        Q, R = np.linalg.qr(np.array(directions).T)
-        if np.abs(np.diag(R)).min() < tolerances.PARALLEL:
-            return 0.0
-        return _norm(fixed - Q @ (Q.T @ fixed)) - sum(lengths)
-    sides = [_norm(fixed), *lengths]
-    return 2.0 * max(sides) - sum(sides)
+def _is_along(normal: Array | None, direction: Array) -> bool:
+    """Whether a normal is known, and along a direction."""
+    return normal is not None and abs(float(normal @ direction)) >= 1.0 - tolerances.SUM_ROUNDING
 
 
 def _norm(a: Array) -> float:
