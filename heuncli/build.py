@@ -8,8 +8,8 @@ HEUN_KERNEL at build time:
     pure       compile nothing
 
 `python -m heuncli.build` compiles in place, in a checkout. With --quick it takes half the time, for trying an
-edited kernel, and the kernel runs slower. With --sanitize every memory access and all arithmetic are checked at run
-time, for tests (tests/sanitized.py). All variants give the same bits.
+edited kernel, and the kernel's steps take four times as long. With --sanitize every memory access and all arithmetic
+are checked at run time, for tests (tests/sanitized.py). All variants give the same bits.
 
 A compiled kernel uses only Python's stable interface (PEP 384), so one wheel serves the oldest Python that heun runs on
 and all later ones. Impure: reads HEUN_KERNEL, writes the build tree and to standard error.
