@@ -8,8 +8,8 @@ HEUN_KERNEL at build time:
     pure       compile nothing
 
 `python -m heuncli.build` compiles in place, in a checkout. With --quick it takes half the time, for trying an
-edited kernel, and the kernel runs slower. With --sanitize every memory access and all arithmetic are checked at run
-time, for tests (tests/sanitized.py). All variants give the same bits.
+edited kernel, and the kernel's steps take four times as long. With --sanitize every memory access and all arithmetic
+are checked at run time, for tests (tests/sanitized.py). All variants give the same bits.
 
 A compiled kernel uses only Python's stable interface (PEP 384), so one wheel serves the oldest Python that heun runs on
 and all later ones. Impure: reads HEUN_KERNEL, writes the build tree and to standard error.
@@ -29,6 +29,7 @@ try:
     from setuptools.command.bdist_wheel import bdist_wheel
     from setuptools.command.build_ext import build_ext
     from setuptools.command.sdist import sdist
+    from setuptools.errors import CompileError
 except ImportError:  # a virtual environment may contain an old version
     raise SystemExit(
         'the build needs setuptools 77 or newer and Cython: pip install -U "setuptools>=77" Cython'
@@ -169,18 +170,22 @@ class BuildKernel(build_ext):
 
     def try_compiler(self, ext: Extension) -> None:
         """Compile an empty file with Python's header, before the kernel's text is made, which takes ten seconds: where
-        there is no compiler, or no header, the answer comes at once.
+        there is no compiler, or no header, the answer comes at once. Raises CompileError.
         """
         probe = self.generated / "probe.c"
         probe.parent.mkdir(parents=True, exist_ok=True)
         probe.write_text("#include <Python.h>\n", encoding="utf-8")
-        self.compiler.compile(
-            [str(probe)],
-            output_dir=str(self.generated),
-            macros=ext.define_macros,
-            include_dirs=ext.include_dirs,
-            extra_preargs=ext.extra_compile_args,
-        )
+        try:
+            self.compiler.compile(
+                [str(probe)],
+                output_dir=str(self.generated),
+                macros=ext.define_macros,
+                include_dirs=ext.include_dirs,
+                extra_preargs=ext.extra_compile_args,
+            )
+        except Exception as reason:
+            command = [*getattr(self.compiler, "compiler", ["the C compiler"])]
+            raise CompileError(f"{command[0]!r} cannot compile a file with Python.h in it") from reason
 
     def is_compiled(self) -> bool:
         """Whether the build tree holds the compiled kernel."""
