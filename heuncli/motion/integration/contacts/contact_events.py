@@ -62,6 +62,7 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     list_bilateral_contacts,
     select_loaded,
 )
+from heuncli.motion.integration.contacts.sticking import Friction
 from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
@@ -69,6 +70,9 @@ from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
+
+
+MAX_FRICTION_CHANGES = 8  # of friction that sticks beside touching contacts, which both depend on each other
 
 
 def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
@@ -86,6 +90,7 @@ class Contacts:
         self.layout = evaluator.layout
         self.holding = self.layout.open_contacts
         self.latches = Latches(self.layout, last)
+        self.friction = Friction(evaluator, last)
         self.notes = ContactNotes(self.layout, last)
 
     def handle_event(
@@ -116,10 +121,13 @@ class Contacts:
         require_caught(self.evaluator, sides, solution, catches, given_impulse.before_time)
         rates = contacts_touching.rate + problem.rates
         require_yielding(self.layout, problem, rates, contacts_touching.noise, given_impulse.before_time)
-        outcome = self.solve(given_impulse, sides, solution.columns, problem, catches)
-        self.holding = latches.holding()
-        self.holding[contacts_touching.indices] = outcome.holding
-        self.holding[unwatched] = UNWATCHED
+        for _ in range(1 if not self.friction.indices else MAX_FRICTION_CHANGES):
+            outcome = self.solve(given_impulse, sides, solution.columns, problem, catches)
+            self.holding = self.friction.add_to(latches.holding())
+            self.holding[contacts_touching.indices] = outcome.holding
+            self.holding[unwatched] = UNWATCHED
+            if not self.update_friction(given_impulse, outcome, row, bool(sides.loads)):
+                break
         shared_impulses = self.find_shared(problem, outcome, catches)
         self.notes.add_notes(time, contacts_touching, outcome, shared_impulses)
         self.notes.add_latch_notes(time, released, catches)
@@ -146,6 +154,18 @@ class Contacts:
         )
         require_energy(event, energy_scale)
         return event
+
+    def update_friction(
+        self, given_impulse: GivenImpulse, outcome: ContactOutcome, row: int | None, is_struck: bool
+    ) -> bool:
+        """Decide what sticks and slips after an event; return whether the touching contacts are to be decided again."""
+        if not self.friction.indices:
+            return False
+        is_struck = is_struck or bool(outcome.impulses.impulses.any())
+        held = self.holding.copy()
+        self.notes.add(self.friction.decide(given_impulse.after_time, outcome.after_state, held, row, is_struck))
+        self.holding = self.friction.add_to(held)
+        return bool(len(outcome.holding)) and not np.array_equal(held, self.holding)
 
     def find_left(self, row: int | None) -> Mask:
         """Mark the contact (contacts,) that others kept closed and whose gap left its rounding there: it has a rate."""
@@ -182,7 +202,7 @@ class Contacts:
         """Solve for the impulses, then for the contacts that stay closed; a rebound too short to be seen does not
         count.
         """
-        contacts_touching, open_holding = problem.touching, self.latches.holding()
+        contacts_touching, open_holding = problem.touching, self.friction.add_to(self.latches.holding())
         at_rest = np.zeros(len(contacts_touching.indices), dtype=bool)
         while True:
             impulses = self.solve_impulses(given_impulse.after_time, problem, at_rest)
@@ -208,7 +228,7 @@ class Contacts:
             if not is_short.any():
                 break
             at_rest = at_rest | is_short
-        if self.layout.mechanism.joint_friction:
+        if self.layout.mechanism.joint_friction or self.friction.indices:
             self.require_decided(given_impulse.after_time, after_state, problem, holding, impulses.rate)
         if impulses.impulses.any():
             bearing = np.flatnonzero(impulses.impulses)
@@ -275,7 +295,7 @@ class Contacts:
         self, t: float, after_state: Array, problem: ContactProblem, holding: Array, rate: Array
     ) -> None:
         """Raise SolveError where load-dependent joint friction makes other contacts bear than those that are held."""
-        contacts_touching, full_holding = problem.touching, self.latches.holding()
+        contacts_touching, full_holding = problem.touching, self.friction.add_to(self.latches.holding())
         full_holding[contacts_touching.indices] = holding
         evaluation = self.evaluator.evaluate(np.array([t]), after_state[None, :], holding=full_holding)
         is_wrong = find_contradicted(contacts_touching, problem.A, holding, rate, evaluation, self.layout)

@@ -60,6 +60,10 @@ class ContactNotes:
                 "further impacts are negligible"
             ] = None
 
+    def add(self, sentences: list[str]) -> None:
+        """Record other sentences."""
+        self.sentences |= dict.fromkeys(sentences)
+
     def add_latch_notes(self, t: float, released_names: list[str], catches: list[LatchCatch]) -> None:
         """Record notes on what latches catch and release."""
         for name in released_names:

@@ -1,0 +1,281 @@
+"""Decide which frictions stick from an instant on, and which slip and where to: Coulomb's law as it is.
+
+    at rest:  rate = 0 and |value| <= what it can hold,   or   value = -slip kinetic size and slip acceleration > 0
+
+Every choice of a state for each place at rest is a motion of its own, which the kernel solves with all its couplings:
+those whose results agree with it are possible. What can stick does: of several possible ones the one is taken in which
+all those stick that stick in any other. What has just reached what it can hold must slip, the way that it was pushed.
+Several that differ otherwise, or none, are errors, as is a sticking friction that others could replace.
+
+With given sizes, static ones equal to kinetic, the accelerations are those of a convex problem and unique (Moreau 1988;
+Brogliato, Nonsmooth Mechanics (2016), 5.5): then the first agreeing choice is the one.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from heuncli.base import tolerances
+from heuncli.base.errors import Problem, SolveError
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.kernel.choose import scene as kernel
+from heuncli.motion.integration.contacts.latches import latch_rate
+from heuncli.motion.integration.contacts.shared_impulses import join_names
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
+from heuncli.results.results import Array
+
+STICKS = 0  # states of a place: it sticks, or slips towards 1 or -1
+MAX_ENUMERATED = 5  # places at rest of which all 3^5 = 243 choices are tried
+Choice = tuple[int, ...]  # a state for each place at rest
+
+
+class Trial(NamedTuple):
+    """The motion with a choice: whether its results agree with it, and what to try instead where they do not.
+
+    replaceable: the sticking frictions could be replaced by others, so that their values are indeterminate
+    jam: what the kernel found of friction by a coefficient: its outcome and row; None if it found one solution
+    """
+
+    agrees: bool
+    better: Choice
+    accelerations: Array
+    replaceable: bool
+    jam: tuple[int, int] | None
+
+
+class Friction:
+    """The places of a run where friction may stick, and the state of each. Changes with every event.
+
+    presses (k,): whether the joint's own load tells its size; has_one_size: static friction is kinetic everywhere
+    is_given: no friction depends on a load; is_convex: so that one choice agrees at most
+    sticks (k,): whether each sticks; place (k,): its coordinate then, else the sign of its slip
+    """
+
+    def __init__(self, evaluator: Evaluator, last: float) -> None:
+        self.evaluator, self.layout, self.last = evaluator, evaluator.layout, last
+        self.indices = list(self.layout.sticking)
+        self.contacts = [self.layout.contacts[i] for i in self.indices]
+        self.rows = [contact.row for contact in self.contacts]
+        self.load_rows = [contact.load_row for contact in self.contacts]
+        self.names = [contact.name for contact in self.contacts]
+        self.sticks = np.zeros(len(self.indices), dtype=bool)
+        self.place = np.zeros(len(self.indices))
+        loads = self.layout.tables["loads"][self.load_rows]
+        self.presses = loads["normal_force_kind"] != kernel.GIVEN
+        self.has_one_size = bool((loads["breakaway"] == loads["coefficient"]).all())
+        self.is_given = not self.layout.mechanism.joint_friction
+        self.is_convex = self.is_given and self.has_one_size
+
+    def add_to(self, holding: Array) -> Array:
+        """Return contact states with those of the friction."""
+        return self.set_states(holding, self.sticks, self.place)
+
+    def set_states(self, holding: Array, sticks: Array, place: Array) -> Array:
+        """Return contact states in which friction sticks at a place, or slips with its sign."""
+        holding = holding.copy()
+        if self.indices:
+            holding[self.indices] = sticks
+            holding[len(holding) - len(self.indices) :] = place
+        return holding
+
+    def decide(self, t: float, state: Array, holding: Array, row: int | None, is_struck: bool) -> list[str]:
+        """Decide what sticks and slips from a state on; return sentences on what changes.
+
+        holding: contact states with those that stops and latches have from here on
+        row: of the contact that caused the event; is_struck: an impulse came before the state
+        """
+        none = np.zeros(len(self.indices))
+        opened = self.evaluate(t, state, self.set_states(holding, none, none))
+        slip, at_rest = np.zeros(len(self.indices)), []
+        broken, stuck = None, self.sticks & ~is_struck
+        for k, contact in enumerate(self.contacts):
+            rate, noise = latch_rate(self.layout, opened, contact, self.last)
+            if stuck[k] or contact.row == row or abs(rate) <= noise:
+                at_rest.append(k)
+                broken = k if contact.row == row and stuck[k] else broken
+            else:
+                slip[k] = np.sign(rate)
+        coordinates = np.where(stuck, self.place, opened.rows["gap"][0, self.rows])
+        search = Search(self, t, state, holding, at_rest, slip, coordinates, broken)
+        choice = search.find_choice() if at_rest else ()
+        sticks = np.zeros(len(self.indices), dtype=bool)
+        for k, chosen in zip(at_rest, choice, strict=True):
+            sticks[k], slip[k] = chosen == STICKS, chosen
+        before, self.sticks, self.place = self.sticks, sticks, np.where(sticks, coordinates, slip)
+        return [
+            f"{name} {'sticks' if now else 'slips'} from t = {t:.6g} s"
+            for name, then, now in zip(self.names, before, sticks, strict=True)
+            if now != then
+        ]
+
+    def evaluate(self, t: float, state: Array, holding: Array) -> Evaluation:
+        """Evaluate a state with given contact states."""
+        return self.evaluator.evaluate(np.array([t]), state[None, :], holding=holding)
+
+
+class Search:
+    """The search for the choice at an instant; used for one call of `Friction.decide`.
+
+    at_rest: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
+    broken: the place that has reached what it can hold; None: none has
+    """
+
+    def __init__(
+        self,
+        friction: Friction,
+        t: float,
+        state: Array,
+        holding: Array,
+        at_rest: list[int],
+        slip: Array,
+        coordinates: Array,
+        broken: int | None,
+    ) -> None:
+        self.friction, self.t, self.state, self.holding = friction, t, state, holding
+        self.at_rest, self.slip, self.coordinates = at_rest, slip, coordinates
+        self.broken = None if broken is None else at_rest.index(broken)
+        self.trials: dict[Choice, Trial] = {}
+        self.pushed = self.find_push()
+
+    def find_push(self) -> int:
+        """Return the way in which the broken friction is pushed: against its value while all stick; 0: none is."""
+        if self.broken is None:
+            return 0
+        friction = self.friction
+        before = friction.evaluate(self.t, self.state, self.with_choice((STICKS,) * len(self.at_rest)))
+        value = float(before.loads["value"][0, friction.load_rows[self.at_rest[self.broken]]])
+        return -1 if value > 0.0 else 1
+
+    def with_choice(self, choice: Choice) -> Array:
+        """Return the contact states of a choice."""
+        sticks, place = np.zeros(len(self.slip), dtype=bool), self.slip.copy()
+        for k, chosen in zip(self.at_rest, choice, strict=True):
+            sticks[k] = chosen == STICKS
+            place[k] = self.coordinates[k] if chosen == STICKS else chosen
+        return self.friction.set_states(self.holding, sticks, place)
+
+    def find_choice(self) -> Choice:
+        """Return the choice that agrees with its own results; raise SolveError if that is not one."""
+        found = self.find_by_steps()
+        if found is None or not self.is_decided(found):
+            if len(self.at_rest) > MAX_ENUMERATED:
+                raise self.undecided_error(f"more than {MAX_ENUMERATED} of them are at rest")
+            found = self.find_among_all()
+        if self.trials[found].replaceable:
+            raise self.indeterminate_error(found)
+        return found
+
+    def is_decided(self, found: Choice) -> bool:
+        """Whether an agreeing choice needs no comparison with the others."""
+        sticking = sum(chosen == STICKS for chosen in found) + (self.broken is not None)
+        return self.friction.is_convex or (self.friction.is_given and sticking == len(found))
+
+    def find_by_steps(self) -> Choice | None:
+        """Return an agreeing choice, from all that stick on, by changing what does not agree; None if that repeats."""
+        choice = tuple(self.pushed if k == self.broken else STICKS for k in range(len(self.at_rest)))
+        while choice not in self.trials:
+            trial = self.solve_trial(choice)
+            if trial.agrees:
+                return choice
+            choice = trial.better
+        return None
+
+    def find_among_all(self) -> Choice:
+        """Return the agreeing choice in which everything sticks that does in any other."""
+        found = [choice for choice in self.list_choices() if self.solve_trial(choice).agrees]
+        if not found:
+            jams = [trial.jam for trial in self.trials.values() if trial.jam is not None]
+            if jams:
+                raise self.jamming_error(*jams[0])
+            raise self.undecided_error("no choice of them agrees with the motion that it leads to")
+        most = max(found, key=lambda choice: choice.count(STICKS))
+        for other in found:
+            differs = any(x == STICKS != y for x, y in zip(other, most, strict=True)) or (
+                other != most and (self.friction.has_one_size or STICKS not in most)
+            )
+            scale = np.abs(self.trials[most].accelerations).max(initial=0.0)
+            gap = np.abs(self.trials[other].accelerations - self.trials[most].accelerations).max(initial=0.0)
+            if differs and gap > tolerances.CONTACT_ACCELERATION * scale:
+                raise self.undecided_error("several choices of them agree with the motions that they lead to")
+        return most
+
+    def list_choices(self) -> Iterator[Choice]:
+        """Yield all choices; what is broken slips as it is pushed."""
+        options = [(self.pushed,) if k == self.broken else (STICKS, 1, -1) for k in range(len(self.at_rest))]
+        return itertools.product(*options)
+
+    def solve_trial(self, choice: Choice) -> Trial:
+        """Solve the motion of a choice and compare it with that."""
+        if choice not in self.trials:
+            self.trials[choice] = self.compare(choice)
+        return self.trials[choice]
+
+    def compare(self, choice: Choice) -> Trial:
+        """Compare the results of a choice with it."""
+        friction = self.friction
+        evaluation = friction.evaluate(self.t, self.state, self.with_choice(choice))
+        rows, loads = evaluation.rows[0][friction.rows], evaluation.loads[0][friction.load_rows]
+        noise = tolerances.CONTACT_ACCELERATION * rows["terms"]
+        better = list(choice)
+        for n, k in enumerate(self.at_rest):
+            acceleration, value, reserve = (float(x[k]) for x in (rows["acceleration"], loads["value"], loads["reserve"]))
+            if choice[n] == STICKS:
+                allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve))
+                if not (abs(acceleration) <= noise[k] and reserve >= -allowed):
+                    better[n] = -1 if value > 0.0 else 1
+            elif n == self.broken:
+                if not choice[n] * acceleration >= -noise[k]:
+                    better[n] = -choice[n]
+            elif not choice[n] * acceleration > noise[k]:
+                better[n] = STICKS
+        jam = next(
+            (
+                (int(loads["span"][k]), friction.load_rows[k])
+                for k in range(len(loads))
+                if friction.presses[k] and loads["span"][k] != kernel.FOUND
+            ),
+            None,
+        )
+        agrees = tuple(better) == choice and jam is None and bool(np.isfinite(rows["acceleration"]).all())
+        return Trial(agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation), jam)
+
+    def is_replaceable(self, evaluation: Evaluation) -> bool:
+        """Whether a friction that sticks depends on other constraints."""
+        if not evaluation.rows["closed"][0, self.friction.rows].any():
+            return False
+        holding = evaluation.holding[0].copy()
+        holding[self.friction.indices] = 0.0
+        opened = self.friction.evaluate(self.t, self.state, holding)
+        return int(evaluation.dependent_count[0]) > int(opened.dependent_count[0])
+
+    def undecided_error(self, why: str) -> SolveError:
+        """Make the error of places whose states do not follow from the laws."""
+        names = join_names([self.friction.names[k] for k in self.at_rest])
+        message = f"at t = {self.t:.9g} s whether {names} sticks or slips cannot be decided: {why}"
+        hint = "give the friction as a torque or force, in fewer joints, or smoothed: speed"
+        return SolveError(Problem("friction-undecided", message, hint=hint, entry_path=self.first_path))
+
+    def indeterminate_error(self, choice: Choice) -> SolveError:
+        """Make the error of sticking frictions that share a load in a way that nothing determines."""
+        sticking = [self.friction.names[k] for k, chosen in zip(self.at_rest, choice, strict=True) if chosen == STICKS]
+        message = f"at t = {self.t:.9g} s {join_names(sticking)}"
+        if len(sticking) > 1:
+            message += " stick, and how they share what holds the machine is indeterminate"
+        else:
+            message += " sticks where a drive or other joints hold it as well: its value is indeterminate"
+        hint = "let friction stick in as many joints as can move independently, without a drive; smooth the others: speed"
+        return SolveError(Problem("friction-indeterminate", message, hint=hint, entry_path=self.first_path))
+
+    def jamming_error(self, outcome: int, row: int) -> SolveError:
+        """Make the error of friction by a coefficient that has no solution, or two."""
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import make_jamming_problem  # on the way to an error
+
+        return SolveError(make_jamming_problem(self.friction.layout.mechanism, outcome, row, self.t))
+
+    @property
+    def first_path(self) -> str:
+        """The path of the first of the places at rest."""
+        return self.friction.names[self.at_rest[0]]
