@@ -24,7 +24,9 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.latches import latch_rate
 from heuncli.motion.integration.contacts.shared_impulses import join_names
+from heuncli.motion.integration.contacts.touching import unit_load
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
+from heuncli.multibody.response import solve_impulses
 from heuncli.results.results import Array
 
 STICKS = 0  # states of a place: it sticks, or slips towards 1 or -1
@@ -99,7 +101,7 @@ class Friction:
             else:
                 slip[k] = np.sign(rate)
         coordinates = np.where(stuck, self.place, opened.rows["gap"][0, self.rows])
-        search = Search(self, t, state, holding, at_rest, slip, coordinates, broken)
+        search = Search(self, t, state, holding, at_rest, slip, coordinates, broken, opened)
         choice = search.find_choice() if at_rest else ()
         sticks = np.zeros(len(self.indices), dtype=bool)
         for k, chosen in zip(at_rest, choice, strict=True):
@@ -121,6 +123,7 @@ class Search:
 
     at_rest: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
     broken: the place that has reached what it can hold; None: none has
+    opened: the results with all of them open and without their loads
     """
 
     def __init__(
@@ -133,12 +136,31 @@ class Search:
         slip: Array,
         coordinates: Array,
         broken: int | None,
+        opened: Evaluation,
     ) -> None:
         self.friction, self.t, self.state, self.holding = friction, t, state, holding
         self.at_rest, self.slip, self.coordinates = at_rest, slip, coordinates
         self.broken = None if broken is None else at_rest.index(broken)
         self.trials: dict[Choice, Trial] = {}
+        self.noise = self.find_noise(opened)
         self.pushed = self.find_push()
+
+    def find_noise(self, opened: Evaluation) -> Array:
+        """Return the rounding of the accelerations (n,) of the places, from those of all loads and weights."""
+        layout = self.friction.layout
+        units = np.array([unit_load(layout, opened, contact, 1.0) for contact in self.friction.contacts])
+        jumps = np.zeros((len(units), len(layout.freedoms) + len(layout.rows)))
+        none = np.zeros(len(self.slip))
+        self.friction.evaluator.workspace.hold(
+            layout.closed_contacts(self.friction.set_states(self.holding, none, none))
+        )
+        columns = solve_impulses(self.friction.evaluator.workspace, self.t, self.state, units, jumps).columns.bodies
+        response = np.einsum("kbi,kbi->k", units, np.concatenate([columns["alpha"], columns["a"]], axis=2))
+        weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
+        loads = np.abs(opened.loads["force"][0]).sum() + np.abs(opened.loads["moment"][0]).sum() / layout.size
+        closures = layout.tables["closures"][self.friction.rows]
+        effect = np.abs(response) * closures["weight"] * (weights + float(loads))
+        return np.asarray(tolerances.CONTACT_ACCELERATION * (opened.rows["terms"][0, self.friction.rows] + effect))
 
     def find_push(self) -> int:
         """Return the way in which the broken friction is pushed: against its value while all stick; 0: none is."""
@@ -218,13 +240,14 @@ class Search:
         friction = self.friction
         evaluation = friction.evaluate(self.t, self.state, self.with_choice(choice))
         rows, loads = evaluation.rows[0][friction.rows], evaluation.loads[0][friction.load_rows]
-        noise = tolerances.CONTACT_ACCELERATION * rows["terms"]
+        noise = self.noise + tolerances.CONTACT_ACCELERATION * rows["terms"]
+        is_met = bool(evaluation.residual[0] <= evaluation.allowed_residual[0])
         better = list(choice)
         for n, k in enumerate(self.at_rest):
             acceleration, value, reserve = (float(x[k]) for x in (rows["acceleration"], loads["value"], loads["reserve"]))
             if choice[n] == STICKS:
                 allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve))
-                if not (abs(acceleration) <= noise[k] and reserve >= -allowed):
+                if not (is_met and reserve >= -allowed):
                     better[n] = -1 if value > 0.0 else 1
             elif n == self.broken:
                 if not choice[n] * acceleration >= -noise[k]:
