@@ -68,7 +68,7 @@ def test_a_block_thrown_up_a_slope_stops_and_stays_or_comes_back() -> None:
 
 BELT = """
 heun: 1
-planar: true
+space: planar
 gravity: [0, -9.81, 0]
 ground: {{points: {{O: [0, 0, 0], wall: [-1, 0, 0]}}}}
 bodies:
@@ -112,11 +112,12 @@ def test_a_block_on_a_belt_sticks_and_slips() -> None:
     travel = r.coordinates["drive"]["travel"] + r.coordinates["on"]["travel"]
     assert travel == pytest.approx(wanted, abs=NEAR)
     value, rate = r.forces["rub"]["value"], r.coordinates["on"]["speed"]
-    sticks = r.forces["rub"]["reserve"] > 0.0
+    sticks = r.forces["rub"]["reserve"] > 1e-9  # at the first event it still holds all it can
+    slips = np.abs(rate) > 1e-9
     assert 0.3 < sticks.mean() < 0.7
     assert not rate[sticks].any()
     assert value[sticks] == pytest.approx(k * wanted[sticks], abs=1e-6)
-    assert value[~sticks] == pytest.approx(np.full((~sticks).sum(), kinetic), rel=DIGITS)
+    assert value[slips] == pytest.approx(np.full(slips.sum(), kinetic), rel=DIGITS)
 
 
 def test_a_part_on_a_conveyor_takes_off_with_mu_g_and_is_carried_from_v_over_mu_g_on() -> None:
@@ -139,15 +140,14 @@ def test_a_block_on_a_shaken_table_slips_where_that_accelerates_too_much() -> No
     s = np.maximum(r.time - start, 0.0)
     table = 0.5 * r.time - A * np.sin(w * r.time)
     place = 0.5 * start - A * np.sin(w * start) + (0.5 - A * w * np.cos(w * start)) * s + 0.5 * F / m * s**2
-    still_slips = place - table < 1e-9
     wanted = np.where(slips, place - table, 0.0)
-    assert still_slips.all()
+    assert (wanted <= 0.0).all()
     assert r.coordinates["on"]["travel"] == pytest.approx(wanted, abs=NEAR)
 
 
 PULLED = """
 heun: 1
-planar: true
+space: planar
 gravity: [0, -9.81, 0]
 ground: {points: {O: [0, 0, 0]}}
 bodies: {block: {mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
@@ -171,14 +171,14 @@ def test_a_block_that_is_pulled_harder_and_harder_breaks_away_at_mu_s_m_g() -> N
 
 ROTORS = """
 heun: 1
-planar: true
+space: planar
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies:
-  one: {{mass: 1, center: [0, 0, 0], inertia: [0, 0, 0.3], points: {{c: [0, 0, 0]}}}}
-  other: {{mass: 1, center: [0, 0, 0], inertia: [0, 0, 0.6], points: {{c: [0, 0, 0]}}}}
+  one: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 0.3], points: {{c: [0, 0, 0]}}}}
+  other: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 0.6], points: {{c: [0, 0, 0]}}}}
 joints:
-  bearing: {{type: pin, from: ground.O, to: one.c, initial: {{angle: 0, rate: {w}}}}}
-  clutch: {{type: pin, from: one.c, to: other.c, initial: {{angle: 0, rate: {w2}}}}}
+  bearing: {{type: pin, from: ground.O, to: one.c, axis: [0, 0, 1], initial: {{angle: 0, rate: {w}}}}}
+  clutch: {{type: pin, from: one.c, to: other.c, axis: [0, 0, 1], initial: {{angle: 0, rate: {w2}}}}}
 forces: {{{friction}}}
 analysis: {{duration: 2, samples: 41}}
 """
@@ -192,7 +192,7 @@ def test_a_clutch_takes_its_rotors_to_one_speed() -> None:
     t = np.minimum(r.time, meet)
     assert r.coordinates["bearing"]["rate"] == pytest.approx(6 - 1.5 / 0.3 * t, abs=NEAR)
     assert r.coordinates["clutch"]["rate"] == pytest.approx(-6 + 1.5 * (1 / 0.3 + 1 / 0.6) * t, abs=NEAR)
-    assert r.forces["plate"]["value"][r.time > meet] == pytest.approx(0.0, abs=1e-12)
+    assert r.forces["plate"]["value"][r.time > meet + 1e-9] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_band_brake_stops_its_drum_and_keeps_it() -> None:
@@ -200,9 +200,9 @@ def test_a_band_brake_stops_its_drum_and_keeps_it() -> None:
     friction = "band: {type: friction, joint: bearing, torque: 0.9}, plate: {type: friction, joint: clutch, torque: 9}"
     r = solved(ROTORS.format(w=1, w2=0, friction=friction))
     assert r.coordinates["bearing"]["rate"] == pytest.approx(np.maximum(1 - r.time, 0.0), abs=NEAR)
-    assert not r.coordinates["clutch"]["rate"].any()
+    assert r.coordinates["clutch"]["rate"] == pytest.approx(np.zeros(41), abs=1e-15)
     slips = r.time < 0.999
-    assert r.forces["plate"]["value"][slips] == pytest.approx(np.full(slips.sum(), 0.6), rel=1e-9)
+    assert r.forces["plate"]["value"][slips] == pytest.approx(np.full(slips.sum(), -0.6), rel=1e-9)
     assert r.forces["band"]["value"] == pytest.approx(np.where(r.time < 1 - 1e-9, -0.9, 0.0), abs=1e-9)
 
 
@@ -234,20 +234,20 @@ def test_a_pendulum_loses_by_each_half_swing_what_friction_takes() -> None:
 
 LADDER = """
 heun: 1
-planar: true
+space: planar
 gravity: [0, -9.81, 0]
 parameters: {{th: {angle}}}
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies:
-  ladder: {{mass: 12, center: [0.5*cos(th), 0.5*sin(th), 0], inertia: [0, 0, 1],
+  ladder: {{mass: 12, center: [0.5*cos(th), 0.5*sin(th), 0], inertia: [1, 1, 1],
             points: {{foot: [cos(th), 0, 0], head: [0, sin(th), 0]}}}}
-  shoe: {{mass: 1e-9, center: [0, 0, 0], inertia: [0, 0, 1e-9], points: {{c: [0, 0, 0]}}}}
-  cap: {{mass: 1e-9, center: [0, 0, 0], inertia: [0, 0, 1e-9], points: {{c: [0, 0, 0]}}}}
+  shoe: {{mass: 1e-9, center: [0, 0, 0], inertia: [1e-9, 1e-9, 1e-9], points: {{c: [0, 0, 0]}}}}
+  cap: {{mass: 1e-9, center: [0, 0, 0], inertia: [1e-9, 1e-9, 1e-9], points: {{c: [0, 0, 0]}}}}
 joints:
   floor: {{type: slide, from: ground.O, to: shoe.c, axis: [1, 0, 0], initial: {{travel: cos(th), speed: 0}}}}
   wall: {{type: slide, from: ground.O, to: cap.c, axis: [0, 1, 0]}}
-  foot: {{type: pin, from: shoe.c, to: ladder.foot}}
-  head: {{type: pin, from: cap.c, to: ladder.head}}
+  foot: {{type: pin, from: shoe.c, to: ladder.foot, axis: [0, 0, 1]}}
+  head: {{type: pin, from: cap.c, to: ladder.head, axis: [0, 0, 1]}}
 forces: {{{friction}}}
 """
 
