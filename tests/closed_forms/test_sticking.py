@@ -203,7 +203,8 @@ def test_a_band_brake_stops_its_drum_and_keeps_it() -> None:
     assert r.coordinates["clutch"]["rate"] == pytest.approx(np.zeros(41), abs=1e-15)
     slips = r.time < 0.999
     assert r.forces["plate"]["value"][slips] == pytest.approx(np.full(slips.sum(), -0.6), rel=1e-9)
-    assert r.forces["band"]["value"] == pytest.approx(np.where(r.time < 1 - 1e-9, -0.9, 0.0), abs=1e-9)
+    assert r.forces["band"]["value"][slips] == pytest.approx(np.full(slips.sum(), -0.9), rel=DIGITS)
+    assert r.forces["band"]["value"][r.time > 1.001] == pytest.approx(0.0, abs=1e-9)
 
 
 PENDULUM = """
@@ -268,3 +269,16 @@ def test_a_ladder_with_friction_at_both_ends_is_indeterminate() -> None:
     with pytest.raises(SolveError) as caught:
         solved(LADDER.format(angle=1.1, friction=f"a: {friction}"))
     assert caught.value.problems[0].code == "friction-indeterminate"
+
+
+@pytest.mark.parametrize(("start", "holds"), [(0.4, True), (1.2, False)])
+def test_a_rest_position_is_the_start_if_friction_holds_there(start: float, holds: bool) -> None:
+    """|m g l sin a| <= T; it is left with what is left of T, and else there is no rest position to speak of."""
+    text = PENDULUM.replace("angle: 1.2, rate: 0", f"angle: {start}").replace("torque: 2", "torque: 9")
+    text = text.replace("duration: 12, samples: 601", "type: rest")
+    if holds:
+        reserve = solved(text).forces["rub"]["reserve"][0]
+        assert reserve == pytest.approx(9 - 2 * G * np.sin(start), rel=1e-9)
+        return
+    with pytest.raises(SolveError, match="does not hold the start position"):
+        solved(text)

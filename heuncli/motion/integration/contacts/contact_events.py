@@ -62,13 +62,13 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     list_bilateral_contacts,
     select_loaded,
 )
-from heuncli.motion.integration.contacts.sticking import Friction
+from heuncli.motion.integration.contacts.sticking import FrictionStates
 from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
 from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
 from heuncli.multibody.tree.tables import Table
-from heuncli.results.results import Array, Mask
+from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
 
 
@@ -90,7 +90,7 @@ class Contacts:
         self.layout = evaluator.layout
         self.holding = self.layout.open_contacts
         self.latches = Latches(self.layout, last)
-        self.friction = Friction(evaluator, last)
+        self.friction = FrictionStates(evaluator, last)
         self.notes = ContactNotes(self.layout, last)
 
     def handle_event(
@@ -121,13 +121,7 @@ class Contacts:
         require_caught(self.evaluator, sides, solution, catches, given_impulse.before_time)
         rates = contacts_touching.rate + problem.rates
         require_yielding(self.layout, problem, rates, contacts_touching.noise, given_impulse.before_time)
-        for _ in range(1 if not self.friction.indices else MAX_FRICTION_CHANGES):
-            outcome = self.solve(given_impulse, sides, solution.columns, problem, catches)
-            self.holding = self.friction.add_to(latches.holding())
-            self.holding[contacts_touching.indices] = outcome.holding
-            self.holding[unwatched] = UNWATCHED
-            if not self.update_friction(given_impulse, outcome, row, bool(sides.loads)):
-                break
+        outcome = self.find_outcome(given_impulse, sides, solution.columns, problem, catches, unwatched, row)
         shared_impulses = self.find_shared(problem, outcome, catches)
         self.notes.add_notes(time, contacts_touching, outcome, shared_impulses)
         self.notes.add_latch_notes(time, released, catches)
@@ -155,17 +149,36 @@ class Contacts:
         require_energy(event, energy_scale)
         return event
 
-    def update_friction(
-        self, given_impulse: GivenImpulse, outcome: ContactOutcome, row: int | None, is_struck: bool
-    ) -> bool:
-        """Decide what sticks and slips after an event; return whether the touching contacts are to be decided again."""
-        if not self.friction.indices:
-            return False
-        is_struck = is_struck or bool(outcome.impulses.impulses.any())
-        held = self.holding.copy()
-        self.notes.add(self.friction.decide(given_impulse.after_time, outcome.after_state, held, row, is_struck))
-        self.holding = self.friction.add_to(held)
-        return bool(len(outcome.holding)) and not np.array_equal(held, self.holding)
+    def find_outcome(
+        self,
+        given_impulse: GivenImpulse,
+        sides: RightSides,
+        units: Columns,
+        problem: ContactProblem,
+        catches: list[LatchCatch],
+        unwatched: Indices,
+        row: int | None,
+    ) -> ContactOutcome:
+        """Solve for the impulses and for what is held from then on, and store that.
+
+        Contacts that rest are decided with the friction there is, then the friction with them: again, where that
+        changes. unwatched: contacts that a latch holds at their limits
+        """
+        self.friction.begin_event()
+        for _ in range(MAX_FRICTION_CHANGES):
+            outcome = self.solve(given_impulse, sides, units, problem, catches)
+            self.holding = self.friction.add_to(self.latches.holding())
+            self.holding[problem.touching.indices] = outcome.holding
+            self.holding[unwatched] = UNWATCHED
+            if not self.friction.indices:
+                return outcome
+            before, is_struck = self.holding.copy(), bool(sides.loads) or bool(outcome.impulses.impulses.any())
+            sentences = self.friction.decide(given_impulse.after_time, outcome.after_state, before, row, is_struck)
+            self.holding = self.friction.add_to(before)
+            if not len(outcome.holding) or np.array_equal(before, self.holding):
+                self.notes.add(sentences)
+                return outcome
+        raise self.friction.unsettled_error(given_impulse.after_time)
 
     def find_left(self, row: int | None) -> Mask:
         """Mark the contact (contacts,) that others kept closed and whose gap left its rounding there: it has a rate."""

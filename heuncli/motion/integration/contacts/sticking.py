@@ -34,7 +34,7 @@ MAX_ENUMERATED = 5  # places at rest of which all 3^5 = 243 choices are tried
 Choice = tuple[int, ...]  # a state for each place at rest
 
 
-class Trial(NamedTuple):
+class StateTrial(NamedTuple):
     """The motion with a choice: whether its results agree with it, and what to try instead where they do not.
 
     replaceable: the sticking frictions could be replaced by others, so that their values are indeterminate
@@ -48,7 +48,7 @@ class Trial(NamedTuple):
     jam: tuple[int, int] | None
 
 
-class Friction:
+class FrictionStates:
     """The places of a run where friction may stick, and the state of each. Changes with every event.
 
     presses (k,): whether the joint's own load tells its size; has_one_size: static friction is kinetic everywhere
@@ -65,6 +65,7 @@ class Friction:
         self.names = [contact.name for contact in self.contacts]
         self.sticks = np.zeros(len(self.indices), dtype=bool)
         self.place = np.zeros(len(self.indices))
+        self.earlier = self.sticks, self.place  # before the event
         loads = self.layout.tables["loads"][self.load_rows]
         self.presses = loads["normal_force_kind"] != kernel.GIVEN
         self.has_one_size = bool((loads["breakaway"] == loads["coefficient"]).all())
@@ -83,6 +84,10 @@ class Friction:
             holding[len(holding) - len(self.indices) :] = place
         return holding
 
+    def begin_event(self) -> None:
+        """Take the present states as those before an event."""
+        self.earlier = self.sticks, self.place
+
     def decide(self, t: float, state: Array, holding: Array, row: int | None, is_struck: bool) -> list[str]:
         """Decide what sticks and slips from a state on; return sentences on what changes.
 
@@ -92,7 +97,8 @@ class Friction:
         none = np.zeros(len(self.indices))
         opened = self.evaluate(t, state, self.set_states(holding, none, none))
         slip, at_rest = np.zeros(len(self.indices)), []
-        broken, stuck = None, self.sticks & ~is_struck
+        before, place = self.earlier
+        broken, stuck = None, before & ~is_struck
         for k, contact in enumerate(self.contacts):
             rate, noise = latch_rate(self.layout, opened, contact, self.last)
             if stuck[k] or contact.row == row or abs(rate) <= noise:
@@ -100,26 +106,39 @@ class Friction:
                 broken = k if contact.row == row and stuck[k] else broken
             else:
                 slip[k] = np.sign(rate)
-        coordinates = np.where(stuck, self.place, opened.rows["gap"][0, self.rows])
-        search = Search(self, t, state, holding, at_rest, slip, coordinates, broken, opened)
+        coordinates = np.where(stuck, place, opened.rows["gap"][0, self.rows])
+        search = StateSearch(self, t, state, holding, at_rest, slip, coordinates, broken, opened)
         choice = search.find_choice() if at_rest else ()
         sticks = np.zeros(len(self.indices), dtype=bool)
         for k, chosen in zip(at_rest, choice, strict=True):
             sticks[k], slip[k] = chosen == STICKS, chosen
-        before, self.sticks, self.place = self.sticks, sticks, np.where(sticks, coordinates, slip)
+        self.sticks, self.place = sticks, np.where(sticks, coordinates, slip)
         return [
             f"{name} {'sticks' if now else 'slips'} from t = {t:.6g} s"
             for name, then, now in zip(self.names, before, sticks, strict=True)
             if now != then
         ]
 
+    def unsettled_error(self, t: float) -> SolveError:
+        """Make the error of frictions and touching contacts that change each other without end."""
+        message = f"at t = {t:.9g} s whether {join_names(self.names)} sticks depends on what touches, and changes it"
+        hint = "give the friction as a torque or force, or smoothed: speed"
+        return SolveError(Problem("friction-undecided", message, hint=hint, entry_path=self.names[0]))
+
     def evaluate(self, t: float, state: Array, holding: Array) -> Evaluation:
         """Evaluate a state with given contact states."""
         return self.evaluator.evaluate(np.array([t]), state[None, :], holding=holding)
 
 
-class Search:
-    """The search for the choice at an instant; used for one call of `Friction.decide`.
+def read_places(evaluator: Evaluator, t: float, state: Array) -> Array:
+    """Return the coordinates (k,) that sticking friction holds, at a state."""
+    layout = evaluator.layout
+    opened = evaluator.evaluate(np.array([t]), state[None, :], holding=layout.open_contacts)
+    return np.asarray(opened.rows["gap"][0, [layout.contacts[i].row for i in layout.sticking]])
+
+
+class StateSearch:
+    """The search for the choice at an instant; used for one call of `FrictionStates.decide`.
 
     at_rest: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
     broken: the place that has reached what it can hold; None: none has
@@ -128,7 +147,7 @@ class Search:
 
     def __init__(
         self,
-        friction: Friction,
+        friction: FrictionStates,
         t: float,
         state: Array,
         holding: Array,
@@ -141,7 +160,7 @@ class Search:
         self.friction, self.t, self.state, self.holding = friction, t, state, holding
         self.at_rest, self.slip, self.coordinates = at_rest, slip, coordinates
         self.broken = None if broken is None else at_rest.index(broken)
-        self.trials: dict[Choice, Trial] = {}
+        self.trials: dict[Choice, StateTrial] = {}
         self.noise = self.find_noise(opened)
         self.pushed = self.find_push()
 
@@ -182,7 +201,7 @@ class Search:
     def find_choice(self) -> Choice:
         """Return the choice that agrees with its own results; raise SolveError if that is not one."""
         found = self.find_by_steps()
-        if found is None or not self.is_decided(found):
+        if found is None or not self.has_one_answer(found):
             if len(self.at_rest) > MAX_ENUMERATED:
                 raise self.undecided_error(f"more than {MAX_ENUMERATED} of them are at rest")
             found = self.find_among_all()
@@ -190,7 +209,7 @@ class Search:
             raise self.indeterminate_error(found)
         return found
 
-    def is_decided(self, found: Choice) -> bool:
+    def has_one_answer(self, found: Choice) -> bool:
         """Whether an agreeing choice needs no comparison with the others."""
         sticking = sum(chosen == STICKS for chosen in found) + (self.broken is not None)
         return self.friction.is_convex or (self.friction.is_given and sticking == len(found))
@@ -229,13 +248,13 @@ class Search:
         options = [(self.pushed,) if k == self.broken else (STICKS, 1, -1) for k in range(len(self.at_rest))]
         return itertools.product(*options)
 
-    def solve_trial(self, choice: Choice) -> Trial:
+    def solve_trial(self, choice: Choice) -> StateTrial:
         """Solve the motion of a choice and compare it with that."""
         if choice not in self.trials:
             self.trials[choice] = self.compare(choice)
         return self.trials[choice]
 
-    def compare(self, choice: Choice) -> Trial:
+    def compare(self, choice: Choice) -> StateTrial:
         """Compare the results of a choice with it."""
         friction = self.friction
         evaluation = friction.evaluate(self.t, self.state, self.with_choice(choice))
@@ -263,7 +282,7 @@ class Search:
             None,
         )
         agrees = tuple(better) == choice and jam is None and bool(np.isfinite(rows["acceleration"]).all())
-        return Trial(agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation), jam)
+        return StateTrial(agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation), jam)
 
     def is_replaceable(self, evaluation: Evaluation) -> bool:
         """Whether a friction that sticks depends on other constraints."""
