@@ -307,7 +307,7 @@ class StateSearch:
         if len(sticking) > 1:
             message += " stick, and how they share what holds the machine is indeterminate"
         else:
-            message += " sticks where a drive or other joints hold it as well: its value is indeterminate"
+            message += " sticks where a drive, a stop or other joints hold it as well: its value is indeterminate"
         hint = "let friction stick in as many joints as can move independently, without a drive; smooth the others: speed"
         return SolveError(Problem("friction-indeterminate", message, hint=hint, entry_path=self.first_path))
 
