@@ -23,6 +23,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.latches import latch_rate
+from heuncli.motion.integration.contacts.restitution import find_coupled_groups
 from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.contacts.touching import unit_load
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
@@ -46,6 +47,12 @@ class StateTrial(NamedTuple):
     accelerations: Array
     replaceable: bool
     jam: tuple[int, int] | None
+
+
+UNPROVED = (
+    "{} sticks at t = {:.6g} s; that it could slip as well is not excluded, because 1 N of friction causes 1 N of "
+    "further friction or more"
+)
 
 
 class FrictionStates:
@@ -109,6 +116,7 @@ class FrictionStates:
         coordinates = np.where(stuck, place, opened.rows["gap"][0, self.rows])
         search = StateSearch(self, t, state, holding, at_rest, slip, coordinates, broken, opened)
         choice = search.find_choice() if at_rest else ()
+        unproved = search.find_unproved(choice)
         sticks = np.zeros(len(self.indices), dtype=bool)
         for k, chosen in zip(at_rest, choice, strict=True):
             sticks[k], slip[k] = chosen == STICKS, chosen
@@ -117,7 +125,7 @@ class FrictionStates:
             f"{name} {'sticks' if now else 'slips'} from t = {t:.6g} s"
             for name, then, now in zip(self.names, before, sticks, strict=True)
             if now != then
-        ]
+        ] + [UNPROVED.format(name, t) for name in unproved]
 
     def unsettled_error(self, t: float) -> SolveError:
         """Make the error of frictions and touching contacts that change each other without end."""
@@ -174,11 +182,13 @@ class StateSearch:
             layout.closed_contacts(self.friction.set_states(self.holding, none, none))
         )
         columns = solve_impulses(self.friction.evaluator.workspace, self.t, self.state, units, jumps).columns.bodies
-        response = np.einsum("kbi,kbi->k", units, np.concatenate([columns["alpha"], columns["a"]], axis=2))
+        motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
+        response = np.einsum("kbi,cbi->kc", units, motion)
+        self.response = 0.5 * (response + response.T)[np.ix_(self.at_rest, self.at_rest)]
         weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
         loads = np.abs(opened.loads["force"][0]).sum() + np.abs(opened.loads["moment"][0]).sum() / layout.size
         closures = layout.tables["closures"][self.friction.rows]
-        effect = np.abs(response) * closures["weight"] * (weights + float(loads))
+        effect = np.abs(np.diag(response)) * closures["weight"] * (weights + float(loads))
         return np.asarray(tolerances.CONTACT_ACCELERATION * (opened.rows["terms"][0, self.friction.rows] + effect))
 
     def find_push(self) -> int:
@@ -200,19 +210,26 @@ class StateSearch:
 
     def find_choice(self) -> Choice:
         """Return the choice that agrees with its own results; raise SolveError if that is not one."""
-        found = self.find_by_steps()
-        if found is None or not self.has_one_answer(found):
-            if len(self.at_rest) > MAX_ENUMERATED:
-                raise self.undecided_error(f"more than {MAX_ENUMERATED} of them are at rest")
-            found = self.find_among_all()
+        found, everything = self.find_by_steps(), list(range(len(self.at_rest)))
+        if found is None:
+            found = self.find_among(everything, (STICKS,) * len(everything))
+        elif not self.friction.is_convex:
+            for group in find_coupled_groups(self.response) if self.friction.is_given else [everything]:
+                members = [int(n) for n in group]
+                if any(found[n] != STICKS and n != self.broken for n in members):
+                    found = self.find_among(members, found)
         if self.trials[found].replaceable:
             raise self.indeterminate_error(found)
         return found
 
-    def has_one_answer(self, found: Choice) -> bool:
-        """Whether an agreeing choice needs no comparison with the others."""
-        sticking = sum(chosen == STICKS for chosen in found) + (self.broken is not None)
-        return self.friction.is_convex or (self.friction.is_given and sticking == len(found))
+    def find_unproved(self, found: Choice) -> list[str]:
+        """Return the places that stick although their own feedback leaves open whether they could slip as well."""
+        names = []
+        for n, k in enumerate(self.at_rest) if not self.friction.is_given else ():
+            others = [found[:n] + (slip,) + found[n + 1 :] for slip in (1, -1)]
+            if found[n] == STICKS and any(self.solve_trial(other).jam is not None for other in others):
+                names.append(self.friction.names[k])
+        return names
 
     def find_by_steps(self) -> Choice | None:
         """Return an agreeing choice, from all that stick on, by changing what does not agree; None if that repeats."""
@@ -224,9 +241,11 @@ class StateSearch:
             choice = trial.better
         return None
 
-    def find_among_all(self) -> Choice:
-        """Return the agreeing choice in which everything sticks that does in any other."""
-        found = [choice for choice in self.list_choices() if self.solve_trial(choice).agrees]
+    def find_among(self, members: list[int], chosen: Choice) -> Choice:
+        """Return the agreeing choice in which everything sticks that does in any other, of all for some members."""
+        if len(members) > MAX_ENUMERATED:
+            raise self.undecided_error(f"more than {MAX_ENUMERATED} of them are at rest and move each other")
+        found = [choice for choice in self.list_choices(members, chosen) if self.solve_trial(choice).agrees]
         if not found:
             jams = [trial.jam for trial in self.trials.values() if trial.jam is not None]
             if jams:
@@ -243,9 +262,11 @@ class StateSearch:
                 raise self.undecided_error("several choices of them agree with the motions that they lead to")
         return most
 
-    def list_choices(self) -> Iterator[Choice]:
-        """Yield all choices; what is broken slips as it is pushed."""
-        options = [(self.pushed,) if k == self.broken else (STICKS, 1, -1) for k in range(len(self.at_rest))]
+    def list_choices(self, members: list[int], chosen: Choice) -> Iterator[Choice]:
+        """Yield all choices for some members; what is broken slips as it is pushed."""
+        options = [(STICKS, 1, -1) if n in members else (state,) for n, state in enumerate(chosen)]
+        if self.broken is not None:
+            options[self.broken] = (self.pushed,)
         return itertools.product(*options)
 
     def solve_trial(self, choice: Choice) -> StateTrial:
