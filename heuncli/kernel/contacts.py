@@ -1,8 +1,8 @@
 """Contacts: where within a trial step an open one first closes, or a closed one would have to pull.
 
 The margin of a unilateral row is its gap while it is open, its multiplier while it carries (both times its sense), and
-the size of its gap while others keep it closed: a drive may open it. That of a friction is in sticking.py. It is followed along the dense output and bounded
-by its second differences; parts in doubt are halved, from left to right.
+the size of its gap while others keep it closed: a drive may open it. That of a friction is in sticking.py. It is
+followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
 The step is repeated up to there until both agree. What happens then is decided outside
 (motion/integration/contacts/restitution.py).
 """
@@ -165,9 +165,7 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
     return doubt
 
 
-def may_turn(
-    scene: cython.pointer[Scene], contact: cython.pointer[Contact], run: cython.pointer[Run]
-) -> cython.bint:
+def may_turn(scene: cython.pointer[Scene], contact: cython.pointer[Contact], run: cython.pointer[Run]) -> cython.bint:
     """Return whether the margin of a friction may become positive within the step, or an attempt to find where goes
     on.
     """

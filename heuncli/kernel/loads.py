@@ -108,9 +108,9 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
     """Apply a torque, thrust or spring about or along the joint's axis, or a damper or friction against its motion.
 
     A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's: as it is, F against its slip, or
-    smoothed, F tanh(rate / speed) against the direction of the motion; in a thread the force that goes with its moment is added. Returns the power of
-    what has no potential, without joint friction that depends on the joint's own load: that is found here for 1 N, and
-    not applied to any body (joint_friction.py).
+    smoothed, F tanh(rate / speed) against the direction of the motion; in a thread the force that goes with its moment
+    is added. Returns the power of what has no potential, without joint friction that depends on the joint's own load:
+    that is found here for 1 N, and not applied to any body (joint_friction.py).
     """
     axis: Vec3 = world_direction(scene, load.a, load.axis)
     slides: cython.bint = slides_in_joint(load)

@@ -267,7 +267,11 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
             for i in range(scene.held_count):
                 scene.programs.branches[i] = instants.branches[j * scene.held_count + i]
         trouble = recover_state(
-            scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.chooses_rows or has_changed or was_sticking
+            scene,
+            instants.times[j],
+            instants.y,
+            instants.dy,
+            j == 0 or instants.chooses_rows or has_changed or was_sticking,
         )
         for i in range(n):
             instants.states[j * n + i] = instants.y[i]

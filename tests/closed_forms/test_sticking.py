@@ -86,13 +86,11 @@ analysis: {{duration: {duration}, samples: {samples}}}
 
 
 def belt(law: str, friction: str, duration: float, samples: int, speed: float = 0.0, more: str = "") -> Results:
-    return solved(
-        BELT.format(law=law, friction=friction, duration=duration, samples=samples, speed=speed, more=more)
-    )
+    return solved(BELT.format(law=law, friction=friction, duration=duration, samples=samples, speed=speed, more=more))
 
 
 def test_a_block_on_a_belt_sticks_and_slips() -> None:
-    """Carried until k x = F_s, then it swings about F_k / k until it has the belt's speed again: A = (F_s - F_k) / k."""
+    """Carried until k x = F_s, then it swings about F_k / k until it has the belt's speed: A = (F_s - F_k) / k."""
     k, static, kinetic, m, v = 50.0, 6.0, 4.0, 2.0, 0.1
     spring = "spring: {type: spring, from: ground.wall, to: block.c, stiffness: 50, length: 1}"
     r = belt("0.1*t", f"force: {kinetic}, static: {static}", 8.0, 401, more=spring)

@@ -21,7 +21,7 @@ ITERATIONS = 12
 
 
 class Chains(NamedTuple):
-    """Chains of n point masses on massless bars, (chains, n) each; `push` [N m] sin(frequency t) acts in the first pin."""
+    """Chains of n point masses on massless bars, (chains, n) each; `push` sin(frequency t) [N m] in the first."""
 
     mass: Array
     length: Array
@@ -79,9 +79,8 @@ def tell(c: Chains, k: int) -> str:
     for i in range(c.mass.shape[1]):
         before, point = ("ground", "O") if i == 0 else (f"b{i - 1}", "tip")
         l, m = c.length[k, i], c.mass[k, i]
-        bodies.append(
-            f"  b{i}: {{mass: {m}, center: [0, {-l}, 0], inertia: [0, 0, 0], points: {{top: [0, 0, 0], tip: [0, {-l}, 0]}}}}"
-        )
+        points = f"{{top: [0, 0, 0], tip: [0, {-l}, 0]}}"
+        bodies.append(f"  b{i}: {{mass: {m}, center: [0, {-l}, 0], inertia: [0, 0, 0], points: {points}}}")
         first = 0.0 if i == 0 else c.angle[k, i - 1]
         first_rate = 0.0 if i == 0 else c.rate[k, i - 1]
         start = f"angle: {c.angle[k, i] - first}, rate: {c.rate[k, i] - first_rate}"

@@ -130,7 +130,7 @@ def start_at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, 
 
 
 def require_no_slip(runner: Runner, state: Array) -> None:
-    """Raise SolveError where friction that sticks does not hold at the start: where it comes to rest, motion decides."""
+    """Raise SolveError where friction that sticks does not hold at the start: motion then decides where it rests."""
     from heuncli.motion.integration.contacts.sticking import read_places  # few scenes have such friction
 
     layout = runner.layout
@@ -138,9 +138,7 @@ def require_no_slip(runner: Runner, state: Array) -> None:
     weights = layout.tables["closures"]["weight"][[layout.contacts[i].row for i in layout.sticking]]
     moved *= weights / layout.size  # an angle, or a way relative to the size
     slipping = [
-        layout.contacts[i].name
-        for i, way in zip(layout.sticking, moved, strict=True)
-        if way > tolerances.AT_LIMIT
+        layout.contacts[i].name for i, way in zip(layout.sticking, moved, strict=True) if way > tolerances.AT_LIMIT
     ]
     if slipping:
         message = f"{list_some(slipping)} does not hold the start position"

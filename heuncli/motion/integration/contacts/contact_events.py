@@ -71,7 +71,6 @@ from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
 
-
 MAX_FRICTION_CHANGES = 8  # of friction that sticks beside touching contacts, which both depend on each other
 
 

@@ -22,6 +22,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
+from heuncli.motion.integration.contacts.contact_problem import make_jamming_problem
 from heuncli.motion.integration.contacts.latches import latch_rate
 from heuncli.motion.integration.contacts.restitution import find_coupled_groups
 from heuncli.motion.integration.contacts.shared_impulses import join_names
@@ -188,8 +189,11 @@ class StateSearch:
         weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
         loads = np.abs(opened.loads["force"][0]).sum() + np.abs(opened.loads["moment"][0]).sum() / layout.size
         closures = layout.tables["closures"][self.friction.rows]
-        effect = np.abs(np.diag(response)) * closures["weight"] * (weights + float(loads))
-        return np.asarray(tolerances.CONTACT_ACCELERATION * (opened.rows["terms"][0, self.friction.rows] + effect))
+        own = np.abs(np.diag(response))
+        effect = own * closures["weight"] * (weights + float(loads))
+        noise = np.asarray(tolerances.CONTACT_ACCELERATION * (opened.rows["terms"][0, self.friction.rows] + effect))
+        self.slack = 2.0 * noise / np.where(own > 0.0, own, np.inf)
+        return noise
 
     def find_push(self) -> int:
         """Return the way in which the broken friction is pushed: against its value while all stick; 0: none is."""
@@ -225,8 +229,10 @@ class StateSearch:
     def find_unproved(self, found: Choice) -> list[str]:
         """Return the places that stick although their own feedback leaves open whether they could slip as well."""
         names = []
-        for n, k in enumerate(self.at_rest) if not self.friction.is_given else ():
-            others = [found[:n] + (slip,) + found[n + 1 :] for slip in (1, -1)]
+        if self.friction.is_given:
+            return names
+        for n, k in enumerate(self.at_rest):
+            others = [(*found[:n], slip, *found[n + 1 :]) for slip in (1, -1)]
             if found[n] == STICKS and any(self.solve_trial(other).jam is not None for other in others):
                 names.append(self.friction.names[k])
         return names
@@ -284,9 +290,12 @@ class StateSearch:
         is_met = bool(evaluation.residual[0] <= evaluation.allowed_residual[0])
         better = list(choice)
         for n, k in enumerate(self.at_rest):
-            acceleration, value, reserve = (float(x[k]) for x in (rows["acceleration"], loads["value"], loads["reserve"]))
+            acceleration, value, reserve = (
+                float(x[k]) for x in (rows["acceleration"], loads["value"], loads["reserve"])
+            )
             if choice[n] == STICKS:
-                allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve))
+                # what more would only accelerate by rounding
+                allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve)) + self.slack[k]
                 if not (is_met and reserve >= -allowed):
                     better[n] = -1 if value > 0.0 else 1
             elif n == self.broken:
@@ -329,13 +338,13 @@ class StateSearch:
             message += " stick, and how they share what holds the machine is indeterminate"
         else:
             message += " sticks where a drive, a stop or other joints hold it as well: its value is indeterminate"
-        hint = "let friction stick in as many joints as can move independently, without a drive; smooth the others: speed"
+        hint = (
+            "let friction stick in as many joints as can move independently, without a drive; smooth the others: speed"
+        )
         return SolveError(Problem("friction-indeterminate", message, hint=hint, entry_path=self.first_path))
 
     def jamming_error(self, outcome: int, row: int) -> SolveError:
         """Make the error of friction by a coefficient that has no solution, or two."""
-        from heuncli.motion.integration.diagnosis.ambiguous_laws import make_jamming_problem  # on the way to an error
-
         return SolveError(make_jamming_problem(self.friction.layout.mechanism, outcome, row, self.t))
 
     @property
