@@ -121,7 +121,7 @@ LOAD_KINDS: dict[str, LoadKind] = {
             synonyms=("dashpot",),
         ),
         LoadKind(
-            "friction", "joint", ("TURN_FRICTION", "SHIFT_FRICTION"), "Coulomb's friction in a joint, smoothed", None,
+            "friction", "joint", ("TURN_FRICTION", "SHIFT_FRICTION"), "Coulomb's friction in a joint", None,
             opposed_motion="the rate of its joint", is_friction=True,
             not_negative=("length", "coefficient", "torque", "force"), symbols=("brake", "brake", "brake along"),
             synonyms=("brake", "coulomb"),

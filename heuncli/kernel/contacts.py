@@ -1,8 +1,8 @@
 """Contacts: where within a trial step an open one first closes, or a closed one would have to pull.
 
 The margin of a unilateral row is its gap while it is open, its multiplier while it carries (both times its sense), and
-the size of its gap while others keep it closed: a drive may open it. It is followed along the dense output and bounded
-by its second differences; parts in doubt are halved, from left to right.
+the size of its gap while others keep it closed: a drive may open it. That of a friction is in sticking.py. It is
+followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
 The step is repeated up to there until both agree. What happens then is decided outside
 (motion/integration/contacts/restitution.py).
 """
@@ -16,6 +16,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
 from heuncli.kernel.kinematics import update_kinematics
 from heuncli.kernel.response import evaluate, project_state
+from heuncli.kernel.sticking import friction_margin, friction_threshold
 
 # Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
 # checked before only rounding can be in doubt.
@@ -29,6 +30,8 @@ def contact_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact
     """Return what must not become positive: the gap of an open contact, the multiplier of a closed one. The size of the
     gap of one that others keep closed, which must not leave its rounding.
     """
+    if contact.friction:
+        return friction_margin(scene, contact)
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     if row.mode == LEANS:
         return fabs(row.gap)
@@ -128,6 +131,9 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
         contact.level = 1e300  # no doubt
+        if contact.friction and may_turn(scene, contact, run):
+            contact.level = friction_threshold(scene, contact)
+            doubt = 2 if row.mode == CARRIES or doubt == 2 else 1
         if contact.sense == 0:
             continue
         if row.mode == LEANS:
@@ -157,6 +163,15 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
         if row.mode == APART and doubt == 0:
             doubt = 1
     return doubt
+
+
+def may_turn(scene: cython.pointer[Scene], contact: cython.pointer[Contact], run: cython.pointer[Run]) -> cython.bint:
+    """Return whether the margin of a friction may become positive within the step, or an attempt to find where goes
+    on.
+    """
+    if contact.friction > scene.load_count:
+        return False
+    return contact.most + 0.5 * (contact.most - contact.least) > 0.0 or run.landing.contact_attempts > 0
 
 
 def closes_early(contact: cython.pointer[Contact], threshold: cython.double) -> cython.bint:
@@ -302,6 +317,8 @@ def stays_below_thresholds(
         contact: cython.pointer[Contact] = cython.address(scene.contacts[k])
         if contact.highest + 0.25 * contact.bent <= contact.level:
             continue
+        if contact.friction:
+            return False
         if scene.closures[contact.row].mode == APART and contact.fastest + 0.25 * contact.rate_bent <= 0.0:
             continue
         return False

@@ -107,10 +107,10 @@ def apply_pair_load(scene: cython.pointer[Scene], load: cython.pointer[Load], ve
 def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], vector: Vec3, v: Vec3) -> cython.double:
     """Apply a torque, thrust or spring about or along the joint's axis, or a damper or friction against its motion.
 
-    A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
-    against the direction of the motion; in a thread the force that goes with its moment is added. Returns the power of
-    what has no potential, without joint friction that depends on the joint's own load: that is found here for 1 N, and
-    not applied to any body (joint_friction.py).
+    A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's: as it is, F against its slip, or
+    smoothed, F tanh(rate / speed) against the direction of the motion; in a thread the force that goes with its moment
+    is added. Returns the power of what has no potential, without joint friction that depends on the joint's own load:
+    that is found here for 1 N, and not applied to any body (joint_friction.py).
     """
     axis: Vec3 = world_direction(scene, load.a, load.axis)
     slides: cython.bint = slides_in_joint(load)
@@ -122,6 +122,12 @@ def apply_joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], v
         if load.kind == TURN_SPRING:
             load.span = turn_spring_angle(scene, load)
             load.value = -load.stiffness * (load.span - load.length) - load.coefficient * load.rate
+        load.power = load.value * load.rate
+        load_on_b = scale_vector(load.value, axis)
+    elif load.breakaway > 0.0:  # what sticks is a closure's load, which is found with the accelerations
+        if not load.normal_force_kind:
+            load.normal_force = vector.x
+        load.value = -load.slip * load.coefficient * vector.x
         load.power = load.value * load.rate
         load_on_b = scale_vector(load.value, axis)
     else:

@@ -35,6 +35,7 @@ MODULES = (
     "row_choice",
     "response",
     "columns",
+    "sticking",
     "tangent_loads",
     "tangent_closures",
     "tangent_friction",

@@ -131,6 +131,7 @@ class Load(Record):
     coefficient: float = ZERO  # damping [N s/m], [N m s]; for friction the factor on its size
     axis: Vec3 = ZERO  # in a
     speed: float = ZERO  # for friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
+    breakaway: float = ZERO  # for friction that sticks: the factor on its size up to which it does; else 0
     factor: float = ZERO  # on the vector of a force or couple; of a thread's friction its force by its moment [1/m]
     offset: float = ZERO
     mark_a: Vec3 = ZERO  # for a joint that was cut: a direction across the axis, in a
@@ -161,6 +162,8 @@ class Load(Record):
     power: float
     unit: Vec3  # for joint friction: force or moment on b for a normal force of 1; of a thread the moment
     normal_force: float  # normal force [N]; of GIVEN friction its size [N], [N m]
+    slip: float  # for friction that may stick: 1 or -1, the sign of its rate while it slips; 0 while it sticks
+    reserve: float  # how much more it could take before it slips; 0 while it slips
 
 
 class Closure(Record):
@@ -250,7 +253,8 @@ class Contact(Record):
     """A unilateral closure row: its margin, sense * gap if open, sense * multiplier if closed, is not positive.
 
     The margin is followed over every step; for an open contact its rate shows whether it leaves. The row of a latch
-    holds both ways while it is closed, at a length that is given with its mode: it has no margin.
+    holds both ways while it is closed, at a length that is given with its mode: it has no margin. So does that of a
+    friction that sticks (sticking.py), whose margins are of their own; while it is open, its sign of slip is given.
     """
 
     row: int
@@ -258,8 +262,10 @@ class Contact(Record):
     mode_index: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
     freedom: int  # which it limits or holds; -1: no single one
     latch_index: int = ZERO  # for a latch 1 + the index, behind these, of the length at which it holds; 0: of others
+    friction: int = ZERO  # 1 + the load whose friction sticks while it is closed; 0: of others
 
     _: Computed
+    sticks: int  # 1 while its friction sticks
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
     least: float  # what the stages of a step saw of it
@@ -407,6 +413,7 @@ class Limits(Record):
     flurry: float  # relative to the time: events following each other within it accumulate at an instant
     least_load: float  # smaller loads are none, in any unit
     touching: float  # relative to the size, and to its places and limits: accuracy of a contact's gap
+    friction_rounding: float  # relative to a friction and to what it can hold: rounding of their difference
     unseen: float  # relative to a load's largest value: change unseen by the stages before a step is repeated
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
     branch_step: float  # relative to the least pivot: motion of the coordinates in a step along a branch

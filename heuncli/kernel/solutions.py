@@ -10,6 +10,7 @@ from heuncli.kernel.orthogonal import estimate_multiplier_doubt
 from heuncli.kernel.response import evaluate, must_choose_rows, project_state
 from heuncli.kernel.row_choice import choose_rows_again
 from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
+from heuncli.kernel.sticking import record_sticking, release_sticking, set_friction_mode, stick_again
 from heuncli.kernel.tree import balance_joints
 
 
@@ -45,6 +46,7 @@ def write_load(
     offset = write_number(buffer, offset, load.span)
     offset = write_number(buffer, offset, load.rate)
     offset = write_number(buffer, offset, load.power)
+    offset = write_number(buffer, offset, load.reserve)
     return write_number(buffer, offset, load_potential(scene, load))
 
 
@@ -129,6 +131,7 @@ def recover_state(
         apply_multipliers(scene)
         balance_joints(scene, True)
     assess_closures(scene, t)
+    record_sticking(scene)
     return trouble
 
 
@@ -162,7 +165,8 @@ def set_contact_modes(scene: cython.pointer[Scene], modes: cython.p_double, offs
     """Open and close the contacts as `modes` says from `offset` on. Returns whether anything changed.
 
     One number a contact: 0 open, 1 closed, 2 kept closed by other contacts, -1 open but held at its limit by a latch,
-    so that it is not watched. After them, for each latch, the length at which it holds.
+    so that it is not watched. After them, for each latch, the length at which it holds, and for each friction that
+    sticks that length, or the sign of its slip while it is open.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -177,7 +181,9 @@ def set_contact_modes(scene: cython.pointer[Scene], modes: cython.p_double, offs
                 mode = CARRIES
             changed = changed or scene.closures[contact.row].mode != mode
             scene.closures[contact.row].mode = mode
-            if contact.latch_index:
+            if contact.friction:
+                changed = set_friction_mode(scene, contact, modes[offset + contact.latch_index - 1]) or changed
+            elif contact.latch_index:
                 k = offset + contact.latch_index - 1
                 changed = changed or scene.closures[contact.row].length != modes[k]
                 scene.closures[contact.row].length = modes[k]
@@ -250,6 +256,7 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
     trouble: cython.int
     n: cython.Py_ssize_t = instants.n
     has_changed: cython.bint = False
+    was_sticking: cython.bint = False
     for j in range(instants.count):
         if instants.mode_count:
             has_changed = set_contact_modes(scene, instants.holding, j * instants.mode_count)
@@ -260,13 +267,22 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
             for i in range(scene.held_count):
                 scene.programs.branches[i] = instants.branches[j * scene.held_count + i]
         trouble = recover_state(
-            scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.chooses_rows or has_changed
+            scene,
+            instants.times[j],
+            instants.y,
+            instants.dy,
+            j == 0 or instants.chooses_rows or has_changed or was_sticking,
         )
         for i in range(n):
             instants.states[j * n + i] = instants.y[i]
         write_instant(scene, instants, j, trouble)
         if instants.has_causes:
+            was_sticking = release_sticking(scene)
+            if was_sticking:  # a friction that sticks is a cause like one that slips: the load that it was found to be
+                select_independent_rows(scene, instants.times[j], instants.y, False)
             solve_causes(scene, instants.times[j], instants.y, instants.columns, j * instants.column_width)
+            if was_sticking:
+                stick_again(scene)
     scene.programs.holding = FREE
 
 

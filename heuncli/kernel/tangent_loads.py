@@ -160,6 +160,10 @@ def add_joint_load_tangent(
             F = -load.stiffness * turn_spring_angle_tangent(scene, load) - load.coefficient * rate
             power = -2.0 * load.coefficient * load.rate * rate
         load_on_b = add_scaled(scale_vector(F, axis), load.value, axis_change)
+    elif load.breakaway > 0.0:  # of a given size and sign, or a closure's load
+        axis_turn: Vec3 = vector_tangent(scene, load.a, axis)
+        load_on_b = scale_vector(load.value, axis_turn)
+        power = load.value * (dot(change, axis) + dot(motion, axis_turn))
     else:
         speed: cython.double = norm(motion)
         speed_change: cython.double = dot(motion, change) / speed if speed > 0.0 else 0.0

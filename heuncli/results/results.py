@@ -118,6 +118,7 @@ class ForceBlock(TypedDict, total=False):
     angle: Array
     rate: Array
     power: Array
+    reserve: Array
     shift: Array
     turn: Array
     force: Array

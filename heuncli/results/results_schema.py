@@ -253,6 +253,8 @@ ROWS: tuple[Quantity, ...] = (
         vector("force", "N"), vector("moment", "N·m")),
     *rows("forces.FORCE", "rate at which its points separate or its joint moves", scalar("rate", "m/s | rad/s")),
     *rows("forces.FORCE", "power delivered to the bodies", scalar("power", "W")),
+    *rows("forces.FORCE", "for friction that may stick: static friction − |value|; 0 while it slips",
+        scalar("reserve", "N | N·m")),
     *rows("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
     *rows("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; "

@@ -111,6 +111,7 @@ class AppliedLoad:
     length, rate: of the line between its points, or of the rotation or travel of its joint, the magnitude where that
     has no single axis (a turn spring's angle counts as the length, other loads of that kind have none)
     strain: shift and rotation of a bushing, (n_t, 2, 3) [m], [rad], in its own axes
+    reserve: how much more a friction that sticks could take, (n_t,); 0 while it slips, None for other loads
     """
 
     load: Load
@@ -120,6 +121,7 @@ class AppliedLoad:
     rate: Array
     power: Array
     strain: Array | None = None
+    reserve: Array | None = None
 
 
 def collect_applied_loads(mechanism: Mechanism, states: BodyStates, evaluation: Evaluation) -> list[AppliedLoad]:
@@ -129,6 +131,7 @@ def collect_applied_loads(mechanism: Mechanism, states: BodyStates, evaluation: 
     A load in a joint acts exactly where the joint does, so that both cross a cut at the same instant.
     """
     loads: list[AppliedLoad] = []
+    sticking = {friction.load.name: friction.row for friction in mechanism.iter_sticking()}
     first_part: tuple[PointLoad, LoadRows] | None = None  # of a distributed load's two parts
     for load, load_rows in mechanism.iter_load_rows():
         if isinstance(load, RopeLoad):
@@ -144,9 +147,11 @@ def collect_applied_loads(mechanism: Mechanism, states: BodyStates, evaluation: 
         to_position = rows["at"][:, 0] if joint is None else states.point_position(joint.b, joint.q)
         to_end, from_end = _load_ends(mechanism, load, joint, to_position, rows["from_at"][:, 0])
         action = Action("load", load.name, to_end, from_end, force, moment)
-        value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
+        own = sticking.get(load.name, load_rows.start) - load_rows.start
+        value, span, rate = (rows[name][:, own] for name in ("value", "span", "rate"))
         strain = rows["strain"] if isinstance(load, BushingLoad) else None
-        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1), strain))
+        reserve = rows["reserve"][:, own] if load.name in sticking else None
+        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1), strain, reserve))
     return loads
 
 

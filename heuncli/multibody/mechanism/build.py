@@ -265,15 +265,22 @@ def build_bushing(name: str, f: loads.Bushing, index: dict[str, int]) -> Bushing
 
 def build_friction(name: str, f: loads.Friction, joint: int) -> JointLoad:
     """Build friction of a given size, or in proportion to the joint's own load."""
+    speed = 1.0 if f.speed is None else f.speed
     if f.coefficient is None:
+        value = f.torque if f.torque is not None else f.force
+        assert value is not None
         of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)
-        return JointLoad(name, "friction", joint, f.torque or f.force, of_turning, of_sliding, f.speed)
-    turning, speed = f.coefficient * (f.radius or 0.0), f.speed
+        static = 1.0 if f.static is None or not value.constant else f.static / value.constant
+        static = static if f.speed is None else 0.0
+        return JointLoad(name, "friction", joint, value, of_turning, of_sliding, speed, static=static)
+    static = f.coefficient if f.static is None else f.static
+    static = static if f.speed is None else 0.0
     if f.radius is not None:
-        return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole")
+        turning, static = f.coefficient * f.radius, static * f.radius
+        return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole", static=static)
     presses: Literal["across", "ends"] = "across" if f.length is None else "ends"
-    reach = f.length or 0.0
-    return JointLoad(name, "friction", joint, None, 0.0, f.coefficient, speed, presses=presses, reach=reach)
+    numbers = {"reach": f.length or 0.0, "static": static}
+    return JointLoad(name, "friction", joint, None, 0.0, f.coefficient, speed, presses=presses, **numbers)
 
 
 def build_impulse(b: m.AppliedImpulse[str, m.Vec], index: dict[str, int]) -> Blow:

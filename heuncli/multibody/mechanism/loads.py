@@ -237,6 +237,7 @@ class JointLoad(ValuedLoad):
     # friction: what of the joint's own load presses, if that tells its size; turning is then by it [m], sliding [1]
     presses: Literal["whole", "across", "ends"] | None = None
     reach: float = 0.0  # of two ends that press: their distance [m]
+    static: float = 0.0  # friction that sticks: by which its size, or what presses, is what it can hold; 0: smoothed
 
     @property
     def is_damped(self) -> bool:

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.couplings import Coupling
@@ -58,6 +59,14 @@ class Law(NamedTuple):
     def path(self) -> str:
         """Its path in the spec."""
         return f"couplings.{self.name}.length" if self.is_rope else f"drives.{self.name}"
+
+
+class StickingFriction(NamedTuple):
+    """A place where friction may stick: its load with a row of that, and the coordinate that it holds."""
+
+    load: JointLoad
+    row: int
+    quantity: Literal["angle", "travel"]
 
 
 @record
@@ -146,6 +155,16 @@ class Mechanism:
         return tuple(
             load for load in self.loads if isinstance(load, JointLoad | ThreadLoad) and load.presses is not None
         )
+
+    def iter_sticking(self) -> Iterator[StickingFriction]:
+        """Yield the places where friction may stick."""
+        for load, rows in self.iter_load_rows():
+            if not isinstance(load, JointLoad) or load.static == 0.0:
+                continue
+            motions = JOINTS[self.joints[load.joint].kind].motions_for_load(load.kind)
+            for row, motion in enumerate(motions, rows.start):
+                if len(motions) == 1 or (load.turning if motion == "turning" else load.sliding):
+                    yield StickingFriction(load, row, "angle" if motion == "turning" else "travel")
 
     def describe_friction(self, load: JointLoad | ThreadLoad) -> str:
         """Return the path of such friction and of its joint; a thread has only its own."""

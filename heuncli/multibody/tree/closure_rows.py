@@ -11,6 +11,7 @@ from array import array
 from collections.abc import Callable, Mapping, Sequence
 
 from heuncli.base.joint_kinds import JOINTS
+from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.multibody.mechanism.loads import RopeLoad
@@ -162,6 +163,7 @@ class ClosureRows:
                 if limit is not None:
                     self._add_limit(stop, limit, sense)
         self._add_latches()
+        self._add_frictions()
 
     def _add_constant_velocity_row(self, k: int) -> None:
         """Add the row of a constant-velocity joint: a sum of products of directions, whether the joint is cut or
@@ -236,10 +238,21 @@ class ClosureRows:
     def _add_latches(self) -> None:
         """Add the rows of all latches."""
         latches = [stop for stop in self.tree.mechanism.stops if stop.latch is not None]
-        count = len(self.contacts) + len(latches)
+        count = len(self.contacts) + len(latches) + sum(1 for _ in self.tree.mechanism.iter_sticking())
         for k, stop in enumerate(latches):
             assert stop.latch is not None
             self._add_limit(stop, stop.latch.position or 0.0, 0, held_at=count + k + 1)
+
+    def _add_frictions(self) -> None:
+        """Add the rows of all frictions that may stick, after those of the latches."""
+        frictions = list(self.tree.mechanism.iter_sticking())
+        latches = sum(stop.latch is not None for stop in self.tree.mechanism.stops)
+        count = len(self.contacts) + len(frictions) + latches
+        for k, (load, load_row, quantity) in enumerate(frictions):
+            stop = Stop(f"forces.{load.name}", load.joint, quantity, None, None)
+            self._add_limit(stop, 0.0, 0, held_at=count + k + 1)
+            self.contacts[-1] = replace(self.contacts[-1], load_row=load_row)
+            self.one_sided[-1] = self.one_sided[-1].replace(friction=load_row + 1)
 
     def _add_limit(self, stop: Stop, limit: float, sense: int, held_at: int = 0) -> None:
         """Add the row of one limit of a stop, or of a latch."""

@@ -54,10 +54,11 @@ class Island:
 
 @record
 class Contact:
-    """A one-sided closure row that opens and closes: of a rope, of one limit of a stop, or of a latch.
+    """A one-sided closure row that opens and closes: of a rope, of one limit of a stop, of a latch, or of a friction.
 
-    sense: 1 an upper limit, whose gap and multiplier are not positive, -1 a lower one, 0 a latch, which holds in both
-    directions while it is closed
+    sense: 1 an upper limit, whose gap and multiplier are not positive, -1 a lower one, 0 a latch or a friction that
+    sticks, which hold in both directions while they are closed
+    load_row: of a friction its row among the loads; -1: of others
     joint: to which its coordinate belongs
     """
 
@@ -67,6 +68,7 @@ class Contact:
     row: int
     sense: int
     restitution: float
+    load_row: int = -1
 
 
 @record
@@ -163,15 +165,24 @@ class Layout(LayoutFrame):
     @cached_property
     def latches(self) -> tuple[int, ...]:
         """The indices of the latches among the contacts."""
-        return tuple(i for i, contact in enumerate(self.contacts) if contact.sense == 0)
+        return tuple(i for i, contact in enumerate(self.contacts) if contact.sense == 0 and contact.load_row < 0)
+
+    @cached_property
+    def sticking(self) -> tuple[int, ...]:
+        """The indices of the places among the contacts where friction may stick."""
+        return tuple(i for i, contact in enumerate(self.contacts) if contact.load_row >= 0)
 
     @property
     def open_contacts(self) -> Array:
-        """The contact state with all contacts open: a number for each, then for each latch the place where it holds."""
-        if not self.contacts:
+        """The contact state with all contacts open: a number for each, then for each latch the place where it holds.
+
+        After them, for each friction that may stick, its coordinate while it does; else the sign of its slip, 0: it
+        exerts nothing.
+        """
+        if not self.contacts and not self.sticking:
             return np.zeros(0)
         places = self.tables["closures"]["length"][[self.contacts[i].row for i in self.latches]]
-        return np.concatenate([np.zeros(len(self.contacts)), places])
+        return np.concatenate([np.zeros(len(self.contacts)), places, np.zeros(len(self.sticking))])
 
     def closed_contacts(self, holding: Array) -> Array:
         """Reduce contact states (..., n) to 1 for each contact that is closed, also through others, and 0 for an open

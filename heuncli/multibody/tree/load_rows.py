@@ -234,6 +234,7 @@ class _LoadRowBuilder:
                 coefficient=coefficient,
                 axis=joint.axis,
                 speed=load.speed,
+                breakaway=load.static,
                 **self._find_ends(joint),
                 **values,
             )

@@ -89,6 +89,7 @@ def find_uncut_joints(mechanism: Mechanism, used_names: frozenset[str]) -> set[i
     """Return the joints that must not be cut."""
     uncut = {k for k, j in enumerate(mechanism.joints) if j.name in used_names}
     uncut |= {s.joint for s in mechanism.stops if s.quantity != "length"}
+    uncut |= {friction.load.joint for friction in mechanism.iter_sticking()}
     uncut |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # the angle of a cut universal cannot be determined
     uncut |= {k for coupling in mechanism.couplings for k in coupling.joints}

@@ -178,6 +178,8 @@ def _over_driven_problem(mechanism: Mechanism, k: int) -> Problem:
         what = "has a torsion spring"
     if any(stop.joint == k for stop in mechanism.stops):
         what = "is limited by a stop, or locked by a latch"
+    if any(friction.load.joint == k for friction in mechanism.iter_sticking()):
+        what = "has friction that sticks"
     return Problem(
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",

@@ -78,8 +78,9 @@ def _solution_dtype(vectors: str, numbers: str = "") -> np.dtype[np.void]:
 # World axes; r, v, a (less g), joint_moment: of and about the body's joint point; joint loads ON the body.
 BODY_SOLUTION = _solution_dtype("R r omega v alpha a joint_moment joint_force")
 FREEDOM_SOLUTION = _solution_dtype("", "q u udot drive")
-# force, moment: ON b, at the point `at` of b; `from_at`: its counterpart on a; strain: of a bushing, in its axes.
-LOAD_SOLUTION = _solution_dtype("force moment at from_at strain", "value span rate power potential")
+# force, moment: ON b, at the point `at` of b; `from_at`: its counterpart on a; strain: of a bushing, in its axes;
+# reserve: what a friction that sticks could take more.
+LOAD_SOLUTION = _solution_dtype("force moment at from_at strain", "value span rate power reserve potential")
 # f, m: ON b for a multiplier of 1, about the `to` point; closed: whether it takes part, as contacts do that are not
 # open; rate, acceleration: of its gap; terms: the size of those that its acceleration is the sum of.
 CLOSURE_SOLUTION = _solution_dtype("f m", "multiplier doubt gap chosen closed rate acceleration terms")

@@ -187,7 +187,7 @@ FORCES = TablePlan(
     "forces",
     "forces",
     "force",
-    ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
+    ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power", "reserve"),
     lambda results, labels: (
         "FORCES  force value, length or angle, rate, power"
         + ("; bushings in their own axes" if any("shift" in own for own in results.forces.values()) else "")

@@ -191,9 +191,10 @@ class FrictionEntry(JointLoadEntry):
     torque: MomentInTime | None = None
     force: ForceInTime | None = None
     coefficient: Number | None = None
+    static: EitherInTime | None = None
     radius: Length | None = None
     length: Length | None = None
-    speed: Either
+    speed: Either | None = None
 
 
 LoadEntry = (

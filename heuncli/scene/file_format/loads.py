@@ -157,17 +157,20 @@ class Damper(NamedTuple):
 
 
 class Friction(NamedTuple):
-    """Coulomb friction in a joint: torque [N m] or force [N], in time, times tanh(rate/speed).
+    """Coulomb friction in a joint: torque [N m] or force [N], in time, as it is, or times tanh(rate/speed).
 
+    speed: None: as it is, so that it sticks
     coefficient: of friction by the joint's own reaction, instead; in a pin at a radius [m]
+    static: of what sticks: a torque, a force or a coefficient like the kinetic one; None: the same
     length: of a guide that carries tilting moments at its two ends [m]
     """
 
     joint: str
     torque: Expression | None
     force: Expression | None
-    speed: float
+    speed: float | None
     coefficient: float | None = None
+    static: float | None = None
     radius: float | None = None
     length: float | None = None
     type: Literal["friction"] = "friction"

@@ -81,8 +81,8 @@ def resolve_friction(resolver: ReferenceResolver, name: str, load: fl.FrictionEn
         resolver.attach_location(value, f"forces.{name}.{k}") if (value := getattr(load, k)) is not None else None
         for k in ("torque", "force")
     )
-    speed = constant_value(load.speed)
-    return loads.Friction(load.joint, torque, force, speed, load.coefficient, load.radius, load.length)
+    speed, static = (None if value is None else constant_value(value) for value in (load.speed, load.static))
+    return loads.Friction(load.joint, torque, force, speed, load.coefficient, static, load.radius, load.length)
 
 
 def resolve_motor(resolver: ReferenceResolver, name: str, load: fl.MotorEntry) -> loads.Torque:

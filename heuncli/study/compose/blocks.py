@@ -241,5 +241,7 @@ def make_force_blocks(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[
         if isinstance(applied_load.load, PairLoad | JointLoad):
             force_block["rate"] = applied_load.rate
         force_block["power"] = applied_load.power
+        if applied_load.reserve is not None:
+            force_block["reserve"] = applied_load.reserve
         block[applied_load.load.name] = force_block
     return block

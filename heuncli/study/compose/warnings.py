@@ -17,7 +17,7 @@ from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.motion.integration.contacts.shared_impulses import format_sharing_warning
 from heuncli.motion.integration.diagnosis.guide_departures import format_slant_warnings
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.loads import JointLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import JointLoad, Load, ThreadLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
@@ -178,7 +178,12 @@ def full_friction_rate() -> float:
 
 def has_smoothed_friction(mechanism: Mechanism) -> bool:
     """Whether a scene has friction that is smoothed."""
-    return any(load.row.is_friction for load in mechanism.loads)
+    return any(is_smoothed(load) for load in mechanism.loads)
+
+
+def is_smoothed(load: Load) -> bool:
+    """Whether a load is friction that is smoothed: it has a size of its own and does not stick."""
+    return load.row.is_friction and not (isinstance(load, JointLoad) and load.static > 0.0)
 
 
 def depends_on_friction(path: str) -> bool:
@@ -193,7 +198,7 @@ def list_partial_friction(mechanism: Mechanism, solutions: Evaluation) -> dict[f
     """Return the friction that is below its full value, by instant; instants without any are left out."""
     found: dict[float, list[PartialFriction]] = {}
     for load, own in mechanism.iter_load_rows():
-        if not isinstance(load, JointLoad | ThreadLoad) or not load.row.is_friction:
+        if not isinstance(load, JointLoad | ThreadLoad) or not is_smoothed(load):
             continue
         rates: Array = np.abs(solutions.loads[:, own]["rate"]).max(axis=1)
         for k in np.flatnonzero(rates < full_friction_rate() * load.speed).tolist():

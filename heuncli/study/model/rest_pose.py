@@ -9,8 +9,9 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.base.spelling import MAX_NAMES, format_count, list_some
-from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose
+from heuncli.base.sentences import MAX_NAMES, format_count
+from heuncli.base.spelling import list_some
+from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose, no_rest_problem
 from heuncli.loads.equilibrium.search import RestSearch
 from heuncli.loads.equilibrium.slopes import separate_indifferent
 from heuncli.loads.equilibrium.steady_states import (
@@ -108,6 +109,8 @@ def start_at_rest(
     found = search_result.equilibrium
     if find_speed_rows(runner.layout).any():
         require_no_rolling(runner.layout, found.pose.state)
+    if runner.layout.sticking:
+        require_no_slip(runner, found.pose.state)
     require_steady(runner, found.coordinates, found.pose, found.slopes)
     law = found.slopes.law
     indifferent_directions = find_indifference(scene, 0.0, found.pose.holding, law)
@@ -131,6 +134,23 @@ def start_at_rest(
         sentences=tuple(describe_rest(scene.mechanism, found_stability, without_slope)), warnings=tuple(warnings),
     )  # fmt: skip
     return replace(scene, layout=layout), rest_runner, rest
+
+
+def require_no_slip(runner: Runner, state: Array) -> None:
+    """Raise SolveError where friction that sticks does not hold at the start: motion then decides where it rests."""
+    from heuncli.motion.integration.contacts.sticking import read_places  # few scenes have such friction
+
+    layout = runner.layout
+    moved = np.abs(read_places(runner, 0.0, state) - read_places(runner, 0.0, layout.y0))
+    weights = layout.tables["closures"]["weight"][[layout.contacts[i].row for i in layout.sticking]]
+    moved *= weights / layout.size  # an angle, or a way relative to the size
+    slipping = [
+        layout.contacts[i].name for i, way in zip(layout.sticking, moved, strict=True) if way > tolerances.AT_LIMIT
+    ]
+    if slipping:
+        message = f"{list_some(slipping)} does not hold the start position"
+        hint = "where it comes to rest depends on the motion: give analysis a duration; or more static friction"
+        raise SolveError(no_rest_problem(message, hint))
 
 
 def require_no_rolling(layout: Layout, state: Array) -> None:

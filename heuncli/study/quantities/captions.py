@@ -45,6 +45,7 @@ WORDS: dict[str, str | tuple[str, str]] = {
     "normal": "normal force", "efficiency": "efficiency", "last_tension": "last tension",
     "tight": "tension of the tight strand", "slack": "tension of the slack strand", "friction": "friction force",
     "along": "friction force along the track", "aside": "friction force across the track",
+    "reserve": "reserve against slip",
     "grip": "reserve against slip", "N": "axial force N", "Q1": "shear force Q1", "Q2": "shear force Q2",
     "T": "torsion", "M1": "bending moment M1", "M2": "bending moment M2", "Q": "shear force", "M": "bending moment",
     "sections.normal": "normal n", "first_axis": "first axis e1", "line.point": "point of the reduction line",

@@ -62,13 +62,16 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     list_bilateral_contacts,
     select_loaded,
 )
+from heuncli.motion.integration.contacts.sticking import FrictionStates
 from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
 from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
 from heuncli.multibody.tree.tables import Table
-from heuncli.results.results import Array, Mask
+from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
+
+MAX_FRICTION_CHANGES = 8  # of friction that sticks beside touching contacts, which both depend on each other
 
 
 def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
@@ -86,6 +89,7 @@ class Contacts:
         self.layout = evaluator.layout
         self.holding = self.layout.open_contacts
         self.latches = Latches(self.layout, last)
+        self.friction = FrictionStates(evaluator, last)
         self.notes = ContactNotes(self.layout, last)
 
     def handle_event(
@@ -116,10 +120,7 @@ class Contacts:
         require_caught(self.evaluator, sides, solution, catches, given_impulse.before_time)
         rates = contacts_touching.rate + problem.rates
         require_yielding(self.layout, problem, rates, contacts_touching.noise, given_impulse.before_time)
-        outcome = self.solve(given_impulse, sides, solution.columns, problem, catches)
-        self.holding = latches.holding()
-        self.holding[contacts_touching.indices] = outcome.holding
-        self.holding[unwatched] = UNWATCHED
+        outcome = self.find_outcome(given_impulse, sides, solution.columns, problem, catches, unwatched, row)
         shared_impulses = self.find_shared(problem, outcome, catches)
         self.notes.add_notes(time, contacts_touching, outcome, shared_impulses)
         self.notes.add_latch_notes(time, released, catches)
@@ -146,6 +147,37 @@ class Contacts:
         )
         require_energy(event, energy_scale)
         return event
+
+    def find_outcome(
+        self,
+        given_impulse: GivenImpulse,
+        sides: RightSides,
+        units: Columns,
+        problem: ContactProblem,
+        catches: list[LatchCatch],
+        unwatched: Indices,
+        row: int | None,
+    ) -> ContactOutcome:
+        """Solve for the impulses and for what is held from then on, and store that.
+
+        Contacts that rest are decided with the friction there is, then the friction with them: again, where that
+        changes. unwatched: contacts that a latch holds at their limits
+        """
+        self.friction.begin_event()
+        for _ in range(MAX_FRICTION_CHANGES):
+            outcome = self.solve(given_impulse, sides, units, problem, catches)
+            self.holding = self.friction.add_to(self.latches.holding())
+            self.holding[problem.touching.indices] = outcome.holding
+            self.holding[unwatched] = UNWATCHED
+            if not self.friction.indices:
+                return outcome
+            before, is_struck = self.holding.copy(), bool(sides.loads) or bool(outcome.impulses.impulses.any())
+            sentences = self.friction.decide(given_impulse.after_time, outcome.after_state, before, row, is_struck)
+            self.holding = self.friction.add_to(before)
+            if not len(outcome.holding) or np.array_equal(before, self.holding):
+                self.notes.add(sentences)
+                return outcome
+        raise self.friction.unsettled_error(given_impulse.after_time)
 
     def find_left(self, row: int | None) -> Mask:
         """Mark the contact (contacts,) that others kept closed and whose gap left its rounding there: it has a rate."""
@@ -182,7 +214,7 @@ class Contacts:
         """Solve for the impulses, then for the contacts that stay closed; a rebound too short to be seen does not
         count.
         """
-        contacts_touching, open_holding = problem.touching, self.latches.holding()
+        contacts_touching, open_holding = problem.touching, self.friction.add_to(self.latches.holding())
         at_rest = np.zeros(len(contacts_touching.indices), dtype=bool)
         while True:
             impulses = self.solve_impulses(given_impulse.after_time, problem, at_rest)
@@ -208,7 +240,7 @@ class Contacts:
             if not is_short.any():
                 break
             at_rest = at_rest | is_short
-        if self.layout.mechanism.joint_friction:
+        if self.layout.mechanism.joint_friction or self.friction.indices:
             self.require_decided(given_impulse.after_time, after_state, problem, holding, impulses.rate)
         if impulses.impulses.any():
             bearing = np.flatnonzero(impulses.impulses)
@@ -275,7 +307,7 @@ class Contacts:
         self, t: float, after_state: Array, problem: ContactProblem, holding: Array, rate: Array
     ) -> None:
         """Raise SolveError where load-dependent joint friction makes other contacts bear than those that are held."""
-        contacts_touching, full_holding = problem.touching, self.latches.holding()
+        contacts_touching, full_holding = problem.touching, self.friction.add_to(self.latches.holding())
         full_holding[contacts_touching.indices] = holding
         evaluation = self.evaluator.evaluate(np.array([t]), after_state[None, :], holding=full_holding)
         is_wrong = find_contradicted(contacts_touching, problem.A, holding, rate, evaluation, self.layout)

@@ -184,6 +184,7 @@ def require_smooth(layout: Layout, method: Method, last: float) -> None:
     """Raise SpecError for each feature of a run up to `last` that only the kernel's own methods handle."""
     mechanism = layout.mechanism
     feature_names = [f"the stop {stop.name}" for stop in mechanism.stops]
+    feature_names += [f"the friction {friction.load.name}, which sticks" for friction in mechanism.iter_sticking()]
     feature_names += [f"the rope {joint.name}, which may go slack" for joint in mechanism.joints if joint.tension_only]
     feature_names += [f"the curve {joint.name}, which may lift off" for joint in mechanism.joints if joint.one_sided]
     feature_names += [f"the impulse {blow.name}" for blow in mechanism.impulses]

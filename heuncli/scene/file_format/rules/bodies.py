@@ -112,10 +112,10 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
         path = ("forces", name)
         if isinstance(load, fl.FrictionEntry):
             yield from require_positive(path, load, "radius", "length")
-        if isinstance(load, fl.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
-            yield Violation(
-                (*path, "speed"), f"speed must be greater than 0, but is {load.speed.constant:g}", FULL_FRICTION_HINT
-            )
+        speed = load.speed if isinstance(load, fl.FrictionEntry) else None
+        if speed is not None and speed.constant is not None and speed.constant <= 0.0:
+            message = f"speed must be greater than 0, but is {speed.constant:g}"
+            yield Violation((*path, "speed"), message, FULL_FRICTION_HINT)
     for name, section in draft.document.sections.items():
         path = ("sections", name)
         yield from require_positive(path, section, "strength")

@@ -12,6 +12,7 @@ from heuncli.scene.expressions.discontinuities import find_first_negative
 from heuncli.scene.expressions.programs import Expression, out_of_range_texts
 from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
+from heuncli.scene.file_format.rules.bodies import FULL_FRICTION_HINT
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 from heuncli.scene.file_format.semantics import find_analysis_type, run_duration
 
@@ -94,6 +95,35 @@ def check_friction_form(name: str, load: fl.FrictionEntry, kind: JointKind) -> I
     elif given_keys[0] not in allowed_keys:
         message = f"friction of a {kind.name} is a {allowed_keys[0]}"
         yield Violation((*path, given_keys[0]), message, f"write {allowed_keys[0]}", key=True)
+    if load.speed is None:
+        yield from check_sticking_friction(path, load, kind)
+    elif load.static is not None:
+        message = "static is for friction that sticks, and with a speed it is smoothed and does not"
+        yield Violation((*path, "static"), message, "leave out speed, or static", key=True)
+
+
+def check_sticking_friction(path: tuple[str, ...], load: fl.FrictionEntry, kind: JointKind) -> Iterator[Violation]:
+    """Friction that sticks holds one coordinate, by a number that is not below the kinetic one."""
+    if kind.accepts_load("friction") and (kind.follows_path or not kind.has_one_axis):
+        message = f"friction in a {kind.name} needs a speed: heun lets it stick in pins, slides and cylinders"
+        yield Violation(path, message, f"{FULL_FRICTION_HINT}; then it is smoothed", key=True)
+    static = None if load.static is None else load.static.constant
+    if load.static is not None and static is None:
+        message = f"static must be a number, but '{load.static.source.strip()}' varies"
+        yield Violation((*path, "static"), message, "leave it out: it then is the kinetic friction at each instant")
+    kinetic = load.coefficient
+    for value in (load.torque, load.force):
+        if value is not None and value.constant is None and load.static is not None:
+            message = "static is given for a friction that varies"
+            yield Violation((*path, "static"), message, "leave it out: it then is the kinetic friction at each instant")
+        elif value is not None:
+            kinetic = value.constant
+    if static is not None and kinetic is not None and static < kinetic:
+        message = f"static, {static:g}, is below the kinetic friction, {kinetic:g}: it could not slip"
+        yield Violation((*path, "static"), message, "what sticks holds at least as much: give the larger number here")
+    if static is not None and load.coefficient is None and kinetic == 0.0:
+        message = "static friction needs a kinetic one above 0"
+        yield Violation((*path, "static"), message, "give a small torque or force, such as a thousandth of it")
 
 
 def check_damper_law(name: str, load: fl.DamperEntry, kind: JointKind) -> Iterator[Violation]:
@@ -218,7 +248,10 @@ def check_load_dimension(draft: DraftDocument) -> Iterator[Violation]:
             checks = []
         else:
             is_sliding = load.force is not None or (load.coefficient is not None and sliding)
-            checks = [("speed", load.speed, u.VELOCITY if is_sliding else u.RATE)]
+            of_static = u.FORCE if load.force is not None else u.MOMENT
+            of_static = u.NUMBER if load.coefficient is not None else of_static
+            given = ("speed", load.speed, u.VELOCITY if is_sliding else u.RATE), ("static", load.static, of_static)
+            checks = [(key, value, dimension) for key, value, dimension in given if value is not None]
         for key, value, dimension in checks:
             if value.dimension is not None and value.dimension != dimension:
                 message = f"'{value.source.strip()}' is {u.describe(value.dimension)}, expected {u.describe(dimension)}"

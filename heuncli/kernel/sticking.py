@@ -1,0 +1,100 @@
+"""Friction as it is, without a smoothed sign: while it sticks a closure row, while it slips a load of a given sign.
+
+    sticks:  rate = 0, |value| <= breakaway N        slips:  value = -slip coefficient N,   slip rate >= 0
+
+The row holds the coordinate of its joint; its multiplier is the friction ON b. N is the normal force, or 1 times a
+given size. What must not become positive, as for other contacts (contacts.py), is |value| - breakaway N while it sticks
+and -slip rate while it slips. Which of them it does from an event on is decided outside
+(motion/integration/contacts/sticking.py).
+"""
+
+from __future__ import annotations
+
+from math import fabs
+
+from heuncli.kernel.declarations import *
+
+# Relative to the largest rate of a step: what began at rest and is slower has not stopped again, but not left its start
+BEGINS_TO_SLIP = 1e-9
+
+
+def set_friction_mode(
+    scene: cython.pointer[Scene], contact: cython.pointer[Contact], place: cython.double
+) -> cython.bint:
+    """Set where the friction's row holds if it is closed, else the sign of its slip. Returns whether that changed."""
+    if contact.friction > scene.load_count:  # a scene without its loads
+        return False
+    row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
+    load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
+    length: cython.double = row.length
+    slip: cython.double = load.slip
+    contact.sticks = 1 if row.mode == CARRIES else 0
+    row.length = place if contact.sticks else 0.0
+    load.slip = 0.0 if contact.sticks else place
+    return length != row.length or slip != load.slip
+
+
+def friction_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+    """Return what must not become positive: how far the friction exceeds what it can hold, or the rate against its
+    slip.
+    """
+    if contact.friction > scene.load_count:
+        return -1e300
+    row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
+    load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
+    if row.mode != APART:
+        return fabs(row.multiplier) - load.breakaway * load.normal_force
+    return -load.slip * row.rate if load.slip != 0.0 else -1e300
+
+
+def friction_threshold(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+    """Return the margin above which the state changes, from its rounding over a step whose extremes are known."""
+    row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
+    largest: cython.double = fabs(contact.least) if fabs(contact.least) > fabs(contact.most) else fabs(contact.most)
+    if row.mode != APART:
+        load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
+        return scene.limits.friction_rounding * (largest + load.breakaway * load.normal_force)
+    if contact.start >= -BEGINS_TO_SLIP * largest:
+        return BEGINS_TO_SLIP * largest
+    return scene.limits.rounding * largest
+
+
+def record_sticking(scene: cython.pointer[Scene]) -> cython.void:
+    """Store what sticks as the load that it exerts, and how much more each friction could take."""
+    i: cython.Py_ssize_t
+    for i in range(scene.contact_count):
+        contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
+        if contact.friction == 0 or contact.friction > scene.load_count:
+            continue
+        load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
+        load.reserve = 0.0
+        if contact.sticks:
+            row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
+            load.value = row.multiplier
+            load.force = scale_vector(row.multiplier, row.f)
+            load.moment = scale_vector(row.multiplier, row.m)
+            load.rate = 0.0
+            load.power = 0.0
+            load.reserve = load.breakaway * load.normal_force - fabs(row.multiplier)
+
+
+def release_sticking(scene: cython.pointer[Scene]) -> cython.bint:
+    """Open the rows of what sticks, whose loads `record_sticking` has stored. Returns whether there are any."""
+    i: cython.Py_ssize_t
+    found: cython.bint = False
+    for i in range(scene.contact_count):
+        contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
+        if contact.sticks:
+            scene.closures[contact.row].mode = APART
+            scene.closures[contact.row].multiplier = 0.0
+            found = True
+    return found
+
+
+def stick_again(scene: cython.pointer[Scene]) -> cython.void:
+    """Close the rows that `release_sticking` has opened."""
+    i: cython.Py_ssize_t
+    for i in range(scene.contact_count):
+        contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
+        if contact.sticks:
+            scene.closures[contact.row].mode = CARRIES
