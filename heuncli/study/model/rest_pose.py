@@ -9,8 +9,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.base.sentences import MAX_NAMES, format_count
-from heuncli.base.spelling import list_some
+from heuncli.base.spelling import MAX_NAMES, format_count, list_some
 from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose, no_rest_problem
 from heuncli.loads.equilibrium.search import RestSearch
 from heuncli.loads.equilibrium.slopes import separate_indifferent

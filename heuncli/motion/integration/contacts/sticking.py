@@ -228,7 +228,7 @@ class StateSearch:
 
     def find_unproved(self, found: Choice) -> list[str]:
         """Return the places that stick although their own feedback leaves open whether they could slip as well."""
-        names = []
+        names: list[str] = []
         if self.friction.is_given:
             return names
         for n, k in enumerate(self.at_rest):
