@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.app.cli.entry import enter
-from heuncli.output.documents.document import OutputTable
+from heuncli.output.documents.document import NumberCell, OutputTable, format_cell
 from heuncli.output.tables.export import to_csv
 from heuncli.output.tables.page import Page, make_page
 from heuncli.scene.file_format.load import load
@@ -34,9 +34,10 @@ def by_cause(tables: list[OutputTable]) -> list[OutputTable]:
 
 
 def rows_of(table: OutputTable) -> list[dict[str, str]]:
-    """The cells of every line by the heads of their columns."""
+    """The cells of every line as they are printed, by the heads of their columns."""
     heads = ["label", "unit", *(column.head for column in table.columns[2:])]
-    return [dict(zip(heads, row, strict=True)) for row in table.rows if not isinstance(row, str)]
+    rows = (row for row in table.rows if not isinstance(row, str))
+    return [dict(zip(heads, map(format_cell, row), strict=True)) for row in rows]
 
 
 @pytest.mark.heavy
@@ -71,6 +72,11 @@ def test_one_instant_has_a_line_a_number_with_what_is_direct() -> None:
     base = {row["label"]: row for row in reversed(rows_of(found[0]))}  # the total stands before the supports
     assert float(base["Fz"]["gravity"]) == float(base["Fz direct"]["gravity"]) == -49.05
     assert base["Fz direct"]["total"] == ""
+    for table in found:  # the numbers in the cells have all digits: shares add up to what is shared
+        for row in (row for row in table.rows if not isinstance(row, str) and "direct" not in str(row[0])):
+            *shares, total, whole = (cell.value for cell in row if isinstance(cell, NumberCell))
+            assert sum(shares) == pytest.approx(total, rel=1e-12)
+            assert total == pytest.approx(whole, rel=1e-9)
     assert [row["label"] for row in rows_of(found[1])] == ["Fx", "Fx"]
     assert [row.strip() for row in found[1].rows if isinstance(row, str) and "open" in row] == ["open: Fz, |F|"] * 2
 

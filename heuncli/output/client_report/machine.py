@@ -9,7 +9,7 @@ import numpy as np
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.output.client_report.extremes import DASH, MINUS, format_instant, format_power
 from heuncli.output.client_report.report_data import ReportData
-from heuncli.output.client_report.summary_table import find_worst_instant
+from heuncli.output.client_report.summary_table import choose_drawn_run
 from heuncli.output.documents.document import (
     Drawing,
     Fill,
@@ -46,7 +46,7 @@ JOINTS_HEADING = "JOINTS  with their points at the first instant"
 
 def make_drawing_parts(data: ReportData, *, is_first_page: bool = True) -> list[Part]:
     """Make the figure of the machine at the instant of the greatest force; on the first page it is smaller."""
-    run, time = find_worst_instant(data)
+    run, time = choose_drawn_run(data)
     if not is_claimed(run.study):
         return [Sentence(NO_POSITIONS)]
     case = f", load case {run.case_label}" if run.name else ""

@@ -96,8 +96,8 @@ def _name_thing(row: SummaryRow, data: ReportData) -> str:
     return describe_object(row.block_path.partition(".")[0], row.name, data.labels)
 
 
-def find_worst_instant(data: ReportData) -> tuple[ReportedRun, float | None]:
-    """Find the case and the instant at which the machine is drawn; without a force the first of the first case."""
+def choose_drawn_run(data: ReportData) -> tuple[ReportedRun, float | None]:
+    """Choose the case and the instant at which the machine is drawn; without a force the first of the first case."""
     worst = select_worst(data.summary.rows)
     run = next((run for run in data.runs if worst is not None and worst.case in ("", run.case_label)), data.runs[0])
     return run, None if worst is None else worst.time

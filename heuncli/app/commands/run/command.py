@@ -96,7 +96,7 @@ def _choose_axes(request: RunRequest) -> str:
 
 
 def _select_results(
-    request: RunRequest, spec: Spec, paths: Sequence[str], chosen: ReportChoice | None, *, is_table: bool
+    request: RunRequest, spec: Spec, paths: Sequence[str], report_choice: ReportChoice | None, *, is_table: bool
 ) -> Selection:
     """Select the results to compute: those of hardpoints, those that paths need, or the chosen or default reports."""
     if request.hardpoints:
@@ -105,7 +105,7 @@ def _select_results(
     if paths:
         return select_paths(paths, spec)
     default = find_default_reports(spec) if is_table or spec.report.results is not None else EXPORT_DEFAULT
-    return select_reports(chosen, spec, default, by_cause=request.by_cause)
+    return select_reports(report_choice, spec, default, by_cause=request.by_cause)
 
 
 def _parse_collectives(request: RunRequest) -> CollectiveTask | None:
