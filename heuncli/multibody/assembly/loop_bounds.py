@@ -33,7 +33,7 @@ def bound_least_gap(
     return math.sqrt(sum((loops.bound_distance(conditions[k]) / size) ** 2 for k in island.closures))
 
 
-class Polygon:
+class LoopPolygon:
     """The sides around a loop: the sum of those that are given, and lengths of others; normals: the directions that
     these are perpendicular to in all poses, None if not known. Mutable.
     """
@@ -77,7 +77,7 @@ class LoopSides:
         ends = ((-1.0, closure.a, closure.p), (1.0, closure.b, closure.q))
         branches = [self.list_branch(body) for _, body, _ in ends]
         shared = [body for body in branches[0] if body in branches[1]]
-        polygon, joints, arms, rounding = Polygon(), [closure], [], 0.0
+        polygon, joints, arms, rounding = LoopPolygon(), [closure], [], 0.0
         for (sign, root, arm), branch in zip(ends, branches, strict=True):
             for body in branch:
                 if body in shared:
@@ -114,7 +114,7 @@ class LoopSides:
             body = condition.a if body == condition.b else condition.b
         return branch
 
-    def _add_side(self, polygon: Polygon, body: int, side: Array) -> None:
+    def _add_side(self, polygon: LoopPolygon, body: int, side: Array) -> None:
         """Add a side that is fixed in a body, in its axes: as a whole, its part along an axis that keeps its direction,
         or its length.
         """
@@ -161,7 +161,7 @@ class LoopSides:
                 return self.find_direction(parent, sign * outer)
         return None
 
-    def _list_free_directions(self, joints: Sequence[JointCondition], polygon: Polygon) -> list[Array] | None:
+    def _list_free_directions(self, joints: Sequence[JointCondition], polygon: LoopPolygon) -> list[Array] | None:
         """List the directions along which joints let points slide, world; None where they are not known. Rods are sides
         of the polygon.
         """
