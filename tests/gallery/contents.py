@@ -110,7 +110,7 @@ PAGES = (
     Page("gearbox", "--units N,mm,deg"),
     Page("crane_ropes", "--units kN,m"),
     Page("crane_ropes", "--units kN,m", 420, 900),
-    Page("v_engine", "--units kN,mm,deg"),
+    Page("v_engine", "--case all --units kN,mm,deg"),
     Page("v_engine", "--units kN,mm,deg", dark=True),
     Page("engine", "--units kN,mm,deg"),
     Page("excavator", "--units kN,m,deg", dark=True),

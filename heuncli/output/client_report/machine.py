@@ -145,7 +145,7 @@ def _iter_loads(data: ReportData) -> Iterator[Sequence[str]]:
         direction = ", ".join(f"{part:.4g}".replace("-", MINUS) for part in spec.gravity)
         yield "gravity", "acceleration", "all bodies", append_unit(f"({direction})", "m/s²")
     for name, force in spec.forces.items():
-        ends = [getattr(force, key, None) for key in ("from_", "to")]
+        ends = [getattr(force, key, None) for key in ("from_", "to", "on")]
         bodies = [describe_object("bodies", end.body, data.labels) for end in ends if isinstance(end, End)]
         joint, body = getattr(force, "joint", None), getattr(force, "body", None)
         place = " and ".join(bodies) or (joint and f"joint {joint}") or (body if isinstance(body, str) else "")
