@@ -37,6 +37,12 @@ def test_tables_are_headed_by_labels(spec: str, capsys: pytest.CaptureFixture[st
     assert "\nUpper bearing (main_pin)  pin, ground.O → rod.top\n" in text
 
 
+def test_tables_of_one_instant_have_labels(spec: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert enter(["run", spec, "--at", "first", "--label", "joints.main_pin=Upper bearing"]) == 0
+    text = capsys.readouterr().out
+    assert "\nUpper bearing (main_pin)  pin, ground.O → rod.top  " in text
+
+
 def test_a_case_has_the_title_and_its_own(spec: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", spec, "--case", "all", "--title", "Bench 7"]) == 0
     text = capsys.readouterr().out
