@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from tests.browser.test_page_layout import MOST_BYTES, SUMMARY
 from tests.gallery.contents import find_spec
 from tests.shared.chromium import Chromium, Tab
 from tests.shared.folders import SPECS
-from tests.shared.shown_numbers import FRAME, SIZES, choose, numbers, to_frame
+from tests.shared.shown_numbers import FRAME, MOST_BYTES, SIZES, SUMMARY, choose, numbers, to_frame
 
 Pages = Callable[..., Path]
 GOVERNING = "[...document.querySelectorAll('#governing button')].map(e => e.textContent)"

@@ -13,12 +13,9 @@ from tests.gallery.contents import PAGES, find_spec
 from tests.shared.chromium import Chromium
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import data_of
-from tests.shared.shown_numbers import FRAME, SIZES, choose, to_frame
+from tests.shared.shown_numbers import FRAME, MOST_BYTES, SIZES, SUMMARY, choose, to_frame
 
 Pages = Callable[..., Path]
-MOST_BYTES = 300_000
-SUMMARY = """[...document.querySelectorAll("#summary tbody tr")].map(
-  row => [...row.cells].map(cell => cell.textContent))"""
 GIF = """(async () => {
   const bytes = Uint8Array.from(atob("%s"), letter => letter.charCodeAt(0));
   const decoder = new ImageDecoder({data: bytes, type: "image/gif"});

@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.results.results import Results
-from tests.closed_forms.test_rest import BALL, BAR, HEAD, POINTS, G, tree, triangle
 from tests.shared.folders import ROOT
+from tests.shared.rest_scenes import BALL, BAR, HEAD, POINTS, G, tree, triangle
 from tests.shared.scenes import near, solved
 
 pytestmark = pytest.mark.heavy  # the plain kernel has the same bits

@@ -91,3 +91,8 @@ def choose(tab: Tab, name: str, option: str) -> None:
       list.dispatchEvent(new Event("change", {{bubbles: true}}));
     }})(document.getElementById("{name}"))""")
     tab.drawn()
+
+
+MOST_BYTES = 300_000
+SUMMARY = """[...document.querySelectorAll("#summary tbody tr")].map(
+  row => [...row.cells].map(cell => cell.textContent))"""

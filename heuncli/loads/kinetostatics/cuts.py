@@ -19,6 +19,7 @@ from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
+from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array
@@ -29,28 +30,6 @@ from heuncli.scene.shapes.rotations import cross_vectors
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
-
-
-def find_nearest_axis(n: Array) -> int:
-    """Return the body axis nearest to a unit normal, x before y before z."""
-    components = np.abs(n)
-    return int(np.flatnonzero(components >= components.max() - tolerances.EQUAL_COMPONENTS)[0])
-
-
-def choose_default_axis(n: Array) -> int:
-    """Return the body axis that e1 is made of by default: the first that is not the nearest to the unit normal."""
-    return 1 if find_nearest_axis(n) == 0 else 0
-
-
-def make_first_axis(n: Array, given_direction: Sequence[float] | None) -> Array:
-    """Return e1: the given direction, or the default axis, made perpendicular to the unit normal."""
-    a = np.eye(3)[choose_default_axis(n)]
-    if given_direction is not None:
-        a = np.array(given_direction, dtype=float)
-        a = a / np.sqrt(a @ a)
-    in_plane = a - (a @ n) * n
-    e1: Array = in_plane / np.sqrt(in_plane @ in_plane)
-    return e1
 
 
 MIN_RUN_FACTOR = 4.0  # times the plane tolerance: the distance at which corners of a run are separate (stretch.py)

@@ -128,13 +128,13 @@ def _make_error_table(data: ReportData) -> OutputTable:
     )  # fmt: skip
 
 
-def _count_certain_digits(found: _KindError) -> str:
+def _count_certain_digits(number: _KindError) -> str:
     """Return how many digits of the largest number its error leaves."""
-    if not found.largest:
+    if not number.largest:
         return DASH
-    if not found.error:
+    if not number.error:
         return str(MAX_CERTAIN_DIGITS)
-    return str(min(MAX_CERTAIN_DIGITS, max(0, math.floor(math.log10(found.largest / found.error)))))
+    return str(min(MAX_CERTAIN_DIGITS, max(0, math.floor(math.log10(number.largest / number.error)))))
 
 
 def _find_errors(data: ReportData) -> dict[tuple[str, str], _KindError]:
