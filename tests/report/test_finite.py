@@ -24,8 +24,8 @@ from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 
 # together they hold every quantity
-SCENES = ("door", "table", "percussion", "ladder", "door_closer", "swing", "jib", "crane", "cardan", "sprung",
-          "planetary", "coupled")  # fmt: skip
+SCENES = ("stick_slip", "door", "table", "percussion", "ladder", "door_closer", "swing", "jib", "crane", "cardan",
+          "sprung", "planetary", "coupled")  # fmt: skip
 NOT_FLOATS = {"events.EVENT.begins", "events.EVENT.to", "accuracy.horizon"}
 SPRUNG = """\
 heun: 1

@@ -285,7 +285,7 @@ class Tab:
         nodes = self.send("Accessibility.getFullAXTree")["nodes"]
         self.send("Accessibility.disable")
         return [
-            Control(node["role"]["value"], str(node.get("name", {}).get("value", "")))
+            Control(node["role"]["value"], str(node.get("name", {}).get("value", "")).strip())
             for node in nodes
             if not node["ignored"] and any(p["name"] == "focusable" and p["value"]["value"] for p in node["properties"])
         ]

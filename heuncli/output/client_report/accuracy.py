@@ -130,7 +130,7 @@ def _make_error_table(data: ReportData) -> OutputTable:
 
 def _count_certain_digits(number: _KindError) -> str:
     """Return how many digits of the largest number its error leaves."""
-    if not number.largest:
+    if not (number.largest and math.isfinite(number.error)):
         return DASH
     if not number.error:
         return str(MAX_CERTAIN_DIGITS)

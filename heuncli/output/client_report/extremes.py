@@ -179,7 +179,9 @@ def choose_style_in_unit(
 
 
 def format_power(value: float, digits: int = 1) -> str:
-    """Format a small or large number for a reader: 3·10⁻⁹, 10⁻⁶, 0.02, 0."""
+    """Format a small or large number for a reader: 3·10⁻⁹, 10⁻⁶, 0.02, 0; a dash for one that is not known."""
+    if not math.isfinite(value):
+        return DASH
     if value == 0.0:
         return "0"
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")

@@ -27,20 +27,23 @@ ARROW_PLACES, ARROW_SHARE = (0.2, 0.55, 0.9), 0.03  # of a closed curve's points
 GROUP_WIDTH = 0.8  # share of a load case that its bars take
 N_INTERVALS = 1500  # nearly two a pixel of a panel
 MIN_HALF_WIDTH = 0.5  # pixels: half width of a band
-# The largest number of a panel; beyond, the unit is chosen by size: at five digits for a product of chosen units.
-MIN_READABLE, MAX_READABLE, MAX_PRODUCT = 0.1, 1e5, 1e4
+# The largest number of a panel in a product of chosen units, such as N·mm; beyond, its unit is chosen by size.
+MIN_READABLE, MAX_READABLE = 0.1, 1e4
 MAX_SPOTS = 150  # more points are drawn as a line
 
 
 def choose_number_style(unit: str, largest: float, units: Units) -> ReaderStyle:
-    """Choose how the numbers of a panel are written: in the units chosen, unless these make them long or small.
+    """Choose how the numbers of a panel are written: in the units chosen, but a product of them that would make the
+    numbers long or small in a unit of their size.
 
     unit: SI unit; largest: magnitude, SI
     """
-    chosen, by_size = choose_reader_style(unit, largest, units), choose_reader_style(unit, largest, Units())
-    high = MAX_PRODUCT if "·" in unit else MAX_READABLE
-    is_short, is_shorter = (MIN_READABLE <= style.size * largest < high for style in (chosen, by_size))
-    return by_size if unit in PREFIXES and is_shorter and not is_short else chosen
+    chosen = choose_reader_style(unit, largest, units)
+    if "·" not in unit or unit not in PREFIXES:
+        return chosen
+    by_size = choose_reader_style(unit, largest, Units())
+    is_short, is_shorter = (MIN_READABLE <= style.size * largest < MAX_READABLE for style in (chosen, by_size))
+    return by_size if is_shorter and not is_short else chosen
 
 
 class PanelCourse(NamedTuple):
