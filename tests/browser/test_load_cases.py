@@ -9,13 +9,15 @@ from pathlib import Path
 import pytest
 
 from heuncli.app.cli.entry import enter
-from tests.browser.test_page_layout import MOST_BYTES, SUMMARY
 from tests.gallery.contents import find_spec
 from tests.shared.chromium import Chromium, Tab
 from tests.shared.folders import SPECS
 from tests.shared.shown_numbers import FRAME, SIZES, choose, numbers, to_frame
 
 Pages = Callable[..., Path]
+MOST_BYTES = 300_000
+SUMMARY = """[...document.querySelectorAll("#summary tbody tr")].map(
+  row => [...row.cells].map(cell => cell.textContent))"""
 GOVERNING = "[...document.querySelectorAll('#governing button')].map(e => e.textContent)"
 INSTANT = "document.querySelector('#instant').textContent"
 SHOWN = "document.querySelector('#case').selectedOptions[0].textContent"

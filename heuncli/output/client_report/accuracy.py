@@ -39,7 +39,7 @@ INTEGRATED_NOTE = (
     "arithmetic."
 )
 DRIVEN_NOTE = (
-    "The drives prescribe the whole motion: every instant is solved by itself, so that no error grows over time. The "
+    "The drives prescribe the whole motion: each instant is solved separately, so that no error grows over time. The "
     "equations were solved again with values changed in their last digits; the errors stated are the differences, the "
     "rounding of the arithmetic."
 )
@@ -128,13 +128,13 @@ def _make_error_table(data: ReportData) -> OutputTable:
     )  # fmt: skip
 
 
-def _count_certain_digits(found: _KindError) -> str:
+def _count_certain_digits(kind_error: _KindError) -> str:
     """Return how many digits of the largest number its error leaves."""
-    if not found.largest:
+    if not kind_error.largest:
         return DASH
-    if not found.error:
+    if not kind_error.error:
         return str(MAX_CERTAIN_DIGITS)
-    return str(min(MAX_CERTAIN_DIGITS, max(0, math.floor(math.log10(found.largest / found.error)))))
+    return str(min(MAX_CERTAIN_DIGITS, max(0, math.floor(math.log10(kind_error.largest / kind_error.error)))))
 
 
 def _find_errors(data: ReportData) -> dict[tuple[str, str], _KindError]:
