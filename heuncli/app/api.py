@@ -85,18 +85,14 @@ def solve(
     parameters: values of parameters, in SI or as texts with units ("1500 rpm")
     set: the same for parameters whose names are arguments here, and for dotted keys (`{"bodies.rod.mass": 2}`)
     case: a load case; parameters and `set` apply on top of it
-    only: reports or entries to solve for, as `--only` takes them ("joints", "sections.web"); default: the spec's
-    `report`, else everything
+    only: reports or entries, as `--only` takes them ("joints", "sections.web"); default: the spec's, else everything
     at: instants [s] of the run at which results are given, in place of the spec's
     tolerance, method, step: as in `analysis`
-    least_norm: distribute indeterminate reactions by the minimum-norm solution
+    least_norm: distribute indeterminate reactions by the minimum-norm solution; by_cause: also loads by their causes
     reduce: whether heun may solve a reduced scene
-    by_cause: also give loads by their causes
     axes: axes of joint loads, "world", "from" or "to"
-    time_limit: longest solving time [s]; the integration checks the clock, no signal is used, so it works in every
-    thread
-    title, labels: words for readers in place of those of the spec, as `--title` and `--label` give them
-    (`{"joints.main": "Main bearing"}`)
+    time_limit: longest solving time [s]; the integration checks the clock, in any thread
+    title, labels: words in place of those of the spec (`{"joints.main": "Main bearing"}`)
 
     Raises SpecError for an invalid spec, UsageError for invalid arguments, SolveError if the scene cannot be solved,
     LimitError if a limit is reached. All are HeunError, whose `problems` have code, message, hint and location. Warns

@@ -39,7 +39,7 @@ INTEGRATED_NOTE = (
     "arithmetic."
 )
 DRIVEN_NOTE = (
-    "The drives prescribe the whole motion: every instant is solved by itself, so that no error grows over time. The "
+    "The drives prescribe the whole motion: each instant is solved separately, so that no error grows over time. The "
     "equations were solved again with values changed in their last digits; the errors stated are the differences, the "
     "rounding of the arithmetic."
 )

@@ -9,7 +9,7 @@ const MOST_WORDS = 8;
 /** Names of the colours of the curves, and the dashes that tell them apart without colour. */
 export const PENS = [["positive", []], ["negative", [7, 3]], ["force", [2, 2]], ["moment", [9, 3, 2, 3]]];
 
-/** The least and the greatest known value of some curves. @returns {number[]} */
+/** The smallest and largest known value of some curves. @returns {number[]} */
 function rangeOf(courses) {
   let [low, high] = [Infinity, -Infinity];
   for (const values of courses.flatMap((course) => [course.low, course.high])) {

@@ -5,7 +5,7 @@ import { axesOf, coursesOf, madeOf, peakOf } from "./courses.js";
 /**
  * @typedef {object} Envelope
  * @property {Float64Array} values where it is known: instants or angles, ascending
- * @property {Float64Array} low @property {Float64Array} high the least and the greatest of all cases there
+ * @property {Float64Array} low @property {Float64Array} high minimum and maximum of all cases there
  * @property {{run: number, frame: number, value: number, x: number}} least @property {object} greatest of all instants
  */
 

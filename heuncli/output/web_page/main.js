@@ -2,16 +2,9 @@
 
 import { cloudOf, coverOf } from "./cloud.js";
 import { coloursNow } from "./colours.js";
-import {
-  Chosen,
-  listenToBand,
-  listenToCurve,
-  listenToDrawn,
-  listenToSections,
-  listenToTime,
-  listenToView,
-} from "./controls.js";
+import { Chosen, listenToDrawn, listenToSections, listenToTime, listenToView } from "./controls.js";
 import { drawCurve } from "./curve.js";
+import { listenToBand, listenToCurve } from "./curve_controls.js";
 import { prepared, readData } from "./data.js";
 import { instant, short, written } from "./digits.js";
 import { by, made } from "./elements.js";
