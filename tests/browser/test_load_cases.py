@@ -15,9 +15,6 @@ from tests.shared.folders import SPECS
 from tests.shared.shown_numbers import FRAME, MOST_BYTES, SIZES, SUMMARY, choose, numbers, to_frame
 
 Pages = Callable[..., Path]
-MOST_BYTES = 300_000
-SUMMARY = """[...document.querySelectorAll("#summary tbody tr")].map(
-  row => [...row.cells].map(cell => cell.textContent))"""
 GOVERNING = "[...document.querySelectorAll('#governing button')].map(e => e.textContent)"
 INSTANT = "document.querySelector('#instant').textContent"
 SHOWN = "document.querySelector('#case').selectedOptions[0].textContent"
