@@ -25,8 +25,8 @@ from heuncli.study.model.setup import set_up
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT
-from tests.shared.settled_scenes import BALL, BAR, HEAD, PIN, POINTS, G, tree, triangle
 from tests.shared.scenes import near, solved, study
+from tests.shared.settled_scenes import BALL, BAR, HEAD, PIN, POINTS, G, tree, triangle
 
 pytestmark = pytest.mark.heavy  # families: the plain kernel has the same bits (tests/package/test_kernels_agree.py)
 

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.results.results import Results
 from tests.shared.folders import ROOT
-from tests.shared.settled_scenes import BALL, BAR, HEAD, POINTS, G, tree, triangle
 from tests.shared.scenes import near, solved
+from tests.shared.settled_scenes import BALL, BAR, HEAD, POINTS, G, tree, triangle
 
 pytestmark = pytest.mark.heavy  # the plain kernel has the same bits
 REST = "analysis: {type: rest}"
