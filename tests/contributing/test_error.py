@@ -9,10 +9,7 @@ from tests.contributing.addition import Addition, Edit, heun
 LONG_TITLE = Addition(
     "An error",
     {
-        "heuncli/scene/file_format/rules/every.py": (
-            Edit("    stops,\n)\n", "    stops,\n    titles,\n)\n"),
-            Edit("expect,\n)", "expect,\n    titles,\n)"),
-        ),
+        "heuncli/scene/file_format/rules/every.py": (Edit("    stops,\n)\n", "    stops,\n    titles,\n)\n"),),
     },
     {
         "heuncli/scene/file_format/rules/titles.py": '''"""Titles."""
