@@ -226,14 +226,14 @@ class StateSearch:
             raise self.indeterminate_error(found)
         return found
 
-    def find_unproved(self, found: Choice) -> list[str]:
+    def find_unproved(self, choice: Choice) -> list[str]:
         """Return the places that stick although their own feedback leaves open whether they could slip as well."""
-        names = []
+        names: list[str] = []
         if self.friction.is_given:
             return names
         for n, k in enumerate(self.at_rest):
-            others = [(*found[:n], slip, *found[n + 1 :]) for slip in (1, -1)]
-            if found[n] == STICKS and any(self.solve_trial(other).jam is not None for other in others):
+            others = [(*choice[:n], slip, *choice[n + 1 :]) for slip in (1, -1)]
+            if choice[n] == STICKS and any(self.solve_trial(other).jam is not None for other in others):
                 names.append(self.friction.names[k])
         return names
 
