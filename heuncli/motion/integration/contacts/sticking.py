@@ -247,17 +247,17 @@ class StateSearch:
             choice = trial.better
         return None
 
-    def find_among(self, members: list[int], chosen: Choice) -> Choice:
+    def find_among(self, members: list[int], choice: Choice) -> Choice:
         """Return the agreeing choice in which everything sticks that does in any other, of all for some members."""
         if len(members) > MAX_ENUMERATED:
             raise self.undecided_error(f"more than {MAX_ENUMERATED} of them are at rest and move each other")
-        found = [choice for choice in self.list_choices(members, chosen) if self.solve_trial(choice).agrees]
+        found = [other for other in self.list_choices(members, choice) if self.solve_trial(other).agrees]
         if not found:
             jams = [trial.jam for trial in self.trials.values() if trial.jam is not None]
             if jams:
                 raise self.jamming_error(*jams[0])
             raise self.undecided_error("no choice of them agrees with the motion that it leads to")
-        most = max(found, key=lambda choice: choice.count(STICKS))
+        most = max(found, key=lambda other: other.count(STICKS))
         for other in found:
             differs = any(x == STICKS != y for x, y in zip(other, most, strict=True)) or (
                 other != most and (self.friction.has_one_size or STICKS not in most)
@@ -268,9 +268,9 @@ class StateSearch:
                 raise self.undecided_error("several choices of them agree with the motions that they lead to")
         return most
 
-    def list_choices(self, members: list[int], chosen: Choice) -> Iterator[Choice]:
+    def list_choices(self, members: list[int], choice: Choice) -> Iterator[Choice]:
         """Yield all choices for some members; what is broken slips as it is pushed."""
-        options = [(STICKS, 1, -1) if n in members else (state,) for n, state in enumerate(chosen)]
+        options = [(STICKS, 1, -1) if n in members else (state,) for n, state in enumerate(choice)]
         if self.broken is not None:
             options[self.broken] = (self.pushed,)
         return itertools.product(*options)
