@@ -118,16 +118,8 @@ def set_up(
     mechanism, cuts = build_with_cuts(spec, stages)
     if spec.analysis.type == "rest":
         mechanism = with_slack_ropes(mechanism)
-    require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
     start_time = spec.analysis.times[0] if spec.analysis.type == "state" else 0.0
-    prepared = prepare_coupled(mechanism, start_time, stages)
-    if any(drive.by_rate for drive in spec.drives.values()):
-        from heuncli.multibody.tree.starts import require_lengths  # few scenes have them
-
-        require_lengths(prepared.mechanism, max(spec.analysis.times))
-    if not reduce:  # a scene declared planar is moved as in space, too
-        prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
-    scene, runner = make_runner(prepared, stages)
+    scene, runner = prepare_scene(spec, mechanism, start_time, reduce, stages)
     start_warnings: tuple[str, ...] = ()
     if spec.analysis.start is not None and find_rest:
         scene, runner, start_warnings = start_settled(scene, spec, stages)
@@ -163,6 +155,24 @@ def set_up(
         spec, scene, cuts, runner, chosen, note, reduced, selection,
         is_auto=auto, step=step, self_stress=redundancies.start_stress, start_warnings=start_warnings,
     )  # fmt: skip
+
+
+def prepare_scene(
+    spec: Spec, mechanism: Mechanism, start_time: float, reduce: bool, stages: Stages
+) -> tuple[PreparedScene, Runner]:
+    """Assemble and lay out the scene as it is drawn, and make its runner.
+
+    reduce: whether a scene declared planar is moved in its plane
+    """
+    require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
+    prepared = prepare_coupled(mechanism, start_time, stages)
+    if any(drive.by_rate for drive in spec.drives.values()):
+        from heuncli.multibody.tree.starts import require_lengths  # few scenes have them
+
+        require_lengths(prepared.mechanism, max(spec.analysis.times))
+    if not reduce:
+        prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
+    return make_runner(prepared, stages)
 
 
 def start_settled(scene: PreparedScene, spec: Spec, stages: Stages) -> tuple[PreparedScene, Runner, tuple[str, ...]]:
