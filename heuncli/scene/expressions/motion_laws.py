@@ -22,49 +22,49 @@ TAU, PI = math.tau, math.pi
 MAX_ARGUMENT = 100  # operations of an argument, because each piece has it several times
 
 
-class Term:
+class LawPart:
     """A part of an expression to calculate with; numbers become constants of the expression."""
 
     def __init__(self, codegen: CodeGenerator, part: Part) -> None:
         self.codegen, self.part = codegen, part
 
-    def apply(self, name: str, *operands: Term | float, argument: int = 0) -> Term:
+    def apply(self, name: str, *operands: LawPart | float, argument: int = 0) -> LawPart:
         """Apply an operation to operands."""
         parts = [
-            operand.part if isinstance(operand, Term) else self.codegen.make_number(operand, FREE)
+            operand.part if isinstance(operand, LawPart) else self.codegen.make_number(operand, FREE)
             for operand in operands
         ]
-        return Term(self.codegen, self.codegen.make_operation(name, *parts, argument=argument))
+        return LawPart(self.codegen, self.codegen.make_operation(name, *parts, argument=argument))
 
-    def __add__(self, other: Term | float) -> Term:
+    def __add__(self, other: LawPart | float) -> LawPart:
         return self.apply("add", self, other)
 
-    def __sub__(self, other: Term | float) -> Term:
+    def __sub__(self, other: LawPart | float) -> LawPart:
         return self.apply("sub", self, other)
 
-    def __rsub__(self, other: float) -> Term:
+    def __rsub__(self, other: float) -> LawPart:
         return self.apply("sub", other, self)
 
-    def __mul__(self, other: Term | float) -> Term:
+    def __mul__(self, other: LawPart | float) -> LawPart:
         return self.apply("mul", self, other)
 
     __radd__, __rmul__ = __add__, __mul__
 
-    def __pow__(self, n: int) -> Term:
+    def __pow__(self, n: int) -> LawPart:
         return self.apply("power", self, argument=n)
 
 
-def sin(x: Term) -> Term:
+def sin(x: LawPart) -> LawPart:
     """Return the sine."""
     return x.apply("sin", x)
 
 
-def cos(x: Term) -> Term:
+def cos(x: LawPart) -> LawPart:
     """Return the cosine."""
     return x.apply("cos", x)
 
 
-Formula = Callable[[Term], Term]
+Formula = Callable[[LawPart], LawPart]
 Pieces = Sequence[tuple[float, Formula]]  # the end of each piece, and the value in it
 
 # Laws from 0 to 1
@@ -80,12 +80,12 @@ def reflect(formula: Formula) -> Formula:
     return lambda x: 1.0 - formula(1.0 - x)
 
 
-def start_modified_trapezoid(x: Term) -> Term:
+def start_modified_trapezoid(x: LawPart) -> LawPart:
     """Return the value while the acceleration rises as a quarter of a sine."""
     return V1 * (x - sin(4.0 * PI * x) * (0.25 / PI))
 
 
-def accelerate_modified_trapezoid(x: Term) -> Term:
+def accelerate_modified_trapezoid(x: LawPart) -> LawPart:
     """Return the value while the acceleration is constant."""
     return S1 + (x - 0.125) * (V1 + 0.5 * A * (x - 0.125))
 
@@ -146,13 +146,13 @@ def iter_profile(
     steady = top / (rise - ramp)  # the acceleration between the ramps
     whole = 2.0 * rise + cruise
 
-    def ramp_up(t: Term) -> Term:
+    def ramp_up(t: LawPart) -> LawPart:
         return jerk / 6.0 * t**3
 
-    def accelerate(t: Term) -> Term:
+    def accelerate(t: LawPart) -> LawPart:
         return steady * ramp**2 / 6.0 + 0.5 * steady * t * (t - ramp)
 
-    def ramp_down(t: Term) -> Term:
+    def ramp_down(t: LawPart) -> LawPart:
         return 0.5 * top * rise - top * (rise - t) + jerk / 6.0 * (rise - t) ** 3
 
     first_half = [(ramp, ramp_up), (rise - ramp, accelerate), (rise, ramp_down)]
@@ -226,7 +226,7 @@ def join_pieces(codegen: CodeGenerator, x: Part, pieces: Pieces, last: float, te
         message = f"'{text}': its argument takes more than {MAX_ARGUMENT} operations, which each piece would repeat"
         raise Finding("expression-limit", message, "simplify the argument; laws within laws are rarely meant")
     x = x._replace(measure=FREE)
-    variable = Term(codegen, x)
+    variable = LawPart(codegen, x)
     joined = codegen.make_number(last, FREE)
     ends = [0.0, *(end for end, _ in pieces)]
     values = [codegen.make_number(0.0, FREE), *(formula(variable).part for _, formula in pieces)]
