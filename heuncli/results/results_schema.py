@@ -253,7 +253,7 @@ ROWS: tuple[Quantity, ...] = (
         vector("force", "N"), vector("moment", "N·m")),
     *rows("forces.FORCE", "rate at which its points separate or its joint moves", scalar("rate", "m/s | rad/s")),
     *rows("forces.FORCE", "power delivered to the bodies", scalar("power", "W")),
-    *rows("forces.FORCE", "for friction that may stick: static friction − |value|; 0 while it slips",
+    *rows("forces.FORCE", "for friction that may stick: static friction minus magnitude of value; 0 while it slips",
         scalar("reserve", "N | N·m")),
     *rows("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
