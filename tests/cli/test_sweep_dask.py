@@ -6,6 +6,7 @@ Whatever becomes of the workers, every variant is answered once, and to the bit 
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -144,7 +145,9 @@ def test_what_is_done_stands_when_the_scheduler_goes(tmp_path: Path, recipe: Rec
     local = here(recipe, plan())
     assert answers == {number: local[number] for number in answers}
     assert gone.value.exit_code == 4
-    assert str(gone.value).splitlines()[0] == f"--dask {dask.address}: the scheduler was lost [cluster-gone]"
+    # what it is depends on whether the client notices, or a call waits in vain
+    first = str(gone.value).splitlines()[0].removeprefix(f"--dask {dask.address}: the scheduler ")
+    assert first == "was lost [cluster-gone]" or re.fullmatch(r"no longer answers: .*\[cluster-gone\]", first)
 
 
 @pytest.mark.long

@@ -255,10 +255,13 @@ def test_what_is_less_than_its_error_stays_in_its_panel() -> None:
     ("unit", "largest", "given", "shown"),
     [
         ("N·m", 865.881, "N,mm", "865.9 N·m"), ("N·m", 8.65881, "N,mm", "8659 N·mm"), ("N", 12510.0, "N,mm", "12510 N"),
-        ("N", 125100.0, "N,mm", "125.1 kN"), ("N", 19.2, "kN", "19.20 N"), ("N", 0.0, "kN", "0 kN"),
+        ("N", 125100.0, "N,mm", "125100 N"), ("N", 19.2, "kN", "0.01920 kN"), ("N", 0.0, "kN", "0 kN"),
         ("rad/s", 1e6, "rpm", "9549297 rpm"), ("N", 1e18, "MN", "1000000000000 MN"),
     ],
 )  # fmt: skip
-def test_a_unit_that_makes_numbers_long_gives_way(unit: str, largest: float, given: str, shown: str) -> None:
+def test_a_product_of_units_that_makes_numbers_long_gives_way(
+    unit: str, largest: float, given: str, shown: str
+) -> None:
+    """A unit that was asked for stays."""
     style = choose_number_style(unit, largest, read_display_units("--units", given))
     assert f"{style.write(largest)} {style.unit}" == shown
