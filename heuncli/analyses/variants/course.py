@@ -80,11 +80,11 @@ class MeasureCourse:
     """The samples of g over an interval; it samples more places on request.
 
     jumps: pairs of neighbours between which g jumps; the course is interrupted there, as at variants that fail
-    steep_pairs: pairs of neighbours between which g crosses the value, closer together than min_distance
-    sampled_pairs: pairs of neighbours between which a place was sampled already
-    certain_surroundings: groups of places that need no more samples, each with the distrust for which that was decided
-    typical_magnitude: median magnitude of the measure over the scan
-    min_distance: smallest distance of places that are told apart
+    steep: pairs of neighbours between which g crosses the value, closer together than finest
+    searched_pairs: pairs of neighbours between which a place was sampled already
+    certain: groups of places that need no more samples, each with the distrust for which that was decided
+    usual: median magnitude of the measure over the scan
+    finest: smallest distance of places that are distinguished
     distrust: factor on the uncertainty of predictions; grows when one was wrong by more than its uncertainty
     """
 

@@ -2,7 +2,7 @@
 
 Each block is what `Results` holds under its name: arrays over the instants, SI units.
 
-The types that a joint's reaction passes through: the kernel's solutions (`Recovered`) are summed to `JointLoads`
+The types that a joint's reaction passes through: the kernel's solutions (`Evaluation`) are summed to `JointLoads`
 (loads/kinetostatics/reactions.py), split where redundancy requires it (loads/redundancy/resolve.py), and become a
 `JointBlock` here, with shares by cause, turned into the requested axes, and marked where they are indeterminate. JSON
 is written of that block (output/tables/export.py). For all else it becomes a `Channel` (study/quantities/channels.py),

@@ -150,7 +150,7 @@ def is_load(kind: str, unit: str) -> bool:
 
 
 def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, kind: str, unit: str) -> float:
-    """Return the error of one kind of loads, as `find_certainty` gives it without a horizon."""
+    """Return the error of one kind of loads, as `find_stated_errors` gives it without a horizon."""
     estimates = _wrench_errors(kind, results.relative_error(kind), find_scales(results, labels, kind), magnitudes.size)
     errors = {**estimates, **magnitudes.errors}
     return max(errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))

@@ -90,7 +90,7 @@ def solve_until_event(
 ) -> Study:
     """Return the motion of a study up to the instant t at which its ending condition becomes true.
 
-    found: all changes of the study; why: from `describe_reasons`
+    changes_by_name: all changes of the study; why: from `describe_reasons`
 
     If an impact, a stick or a jump happens at t, the results show the values after it: the run continues for a moment.
     """

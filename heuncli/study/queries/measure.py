@@ -51,7 +51,7 @@ class NotInThisRun(NotOneNumber):
 class MeasureRequest(NamedTuple):
     """A number to measure.
 
-    reducer: how a history becomes one number; empty for a number that has no instants, abs for the largest magnitude
+    how: how a history becomes one number; empty for a number that has no instants, abs for the largest magnitude
     time [s]: of the reducer `at`
     """
 

@@ -31,7 +31,7 @@ EXCLUDED_OPTIONS = ("measure", "only", "at", "all", "by_cause")  # options that 
 
 
 class CollectiveTask(NamedTuple):
-    """The paths to count, and how cycles are collectives."""
+    """The paths to count, and how cycles are counted."""
 
     paths: Sequence[str]
     counting: Counting
@@ -78,7 +78,7 @@ def parse_paths(words: str) -> list[str]:
 
 
 def parse_counting(request: RunRequest) -> Counting:
-    """Parse how cycles are collectives. Raises UsageError with every invalid option."""
+    """Parse how cycles are counted. Raises UsageError with every invalid option."""
     is_closed = request.repeat == CLOSED
     counting = Counting(
         slopes=() if request.slope is None else tuple(dict.fromkeys(map(parse_number, request.slope.split(",")))),
