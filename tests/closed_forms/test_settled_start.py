@@ -154,6 +154,37 @@ def test_what_moves_cannot_start_at_rest() -> None:
         solved(GOVERNOR.replace("{type: rest}", "{type: state, start: rest}"))
 
 
+CYLINDER = f"{HEAD}{POINTS}bodies: {{b: {{{BALL}}}}}\njoints: {{c: {{type: cylinder, axis: [0, 0, 1], "
+GIVEN = "from: ground.O, to: b.c, initial: {%s}}}\n"
+TRAVEL = "drives: {d: {joint: c, travel: %s*t}}\n"
+
+
+@pytest.mark.parametrize(
+    ("kind", "initial", "drive", "refused"),
+    [
+        ("steady", "rate: 2, speed: 0.5", "", "this one has a rate and a speed"),
+        ("steady", "rate: 2", TRAVEL % 3, "this one has the speed of its drive and a rate"),
+        ("rest", "rate: 2", TRAVEL % "t", "start: rest takes no initial rate"),
+        ("rest", "speed: 2", "", "start: rest takes no initial speed"),
+    ],
+)
+def test_a_rate_that_would_be_lost_is_refused(kind: str, initial: str, drive: str, refused: str) -> None:
+    """A cylinder turns and slides: what a start cannot hold of its two rates is told by its place."""
+    with pytest.raises(SpecError, match=refused):
+        started(CYLINDER + GIVEN % initial + drive, kind)
+
+
+@pytest.mark.parametrize(
+    ("initial", "drive", "turned", "moved"),
+    [("rate: 2", "", 1.0, 0.0), ("speed: 3", "", 0.0, 1.5), ("speed: 3", TRAVEL % 3, 0.0, 1.5)],
+)
+def test_a_steady_cylinder_goes_on_at_its_rate(initial: str, drive: str, turned: float, moved: float) -> None:
+    head = CYLINDER.replace("gravity: [0, 0, -9.81]", "gravity: [0, 0, 0]")
+    results = started(head + GIVEN % initial + drive, "steady")
+    near(results.coordinates["c"]["angle"][-1], turned, 1.0, 1e-12)
+    near(results.coordinates["c"]["travel"][-1], moved, 1.0, 1e-12)
+
+
 def test_what_nothing_holds_has_no_such_start() -> None:
     joint = "joints: {s: {type: slide, axis: [0, 0, 1], from: ground.O, to: b.c}}"
     with pytest.raises(SolveError) as refused:

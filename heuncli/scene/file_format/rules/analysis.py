@@ -20,7 +20,13 @@ from heuncli.scene.file_format.methods import find_tolerance_problem, iter_metho
 from heuncli.scene.file_format.names import UNTIL, is_name
 from heuncli.scene.file_format.rules.joints import iter_drives
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
-from heuncli.scene.file_format.semantics import MAX_SAMPLES, find_analysis_type, run_duration
+from heuncli.scene.file_format.semantics import (
+    DRIVEN_RATES,
+    MAX_SAMPLES,
+    find_analysis_type,
+    find_driven_coordinate,
+    run_duration,
+)
 
 if TYPE_CHECKING:
     from heuncli.scene.file_format.rules.outcome import PathTarget
@@ -193,9 +199,9 @@ def check_analysis_type(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("rest-start")
 def check_rest_start(draft: DraftDocument) -> Iterator[Violation]:
-    """A search for a rest pose has no start velocities; driven joints take theirs from the drives.
+    """A search for a rest pose has no start velocities but those of its drives.
 
-    A steady start goes on at the rates that joints have.
+    A steady start goes on at the rates that joints have, one of each: it is held as a drive, and a joint takes one.
     """
     document = draft.document
     analysis = document.analysis
@@ -203,13 +209,23 @@ def check_rest_start(draft: DraftDocument) -> Iterator[Violation]:
         return
     name_of_start = "type: rest" if analysis.type == "rest" else f"start: {analysis.start}"
     hint = "leave it out, or request a motion" if analysis.type == "rest" else "leave it out, or start as drawn"
-    driven = {drive.joint for drive in document.drives.values()}
-    for name, joint in document.joints.items() if analysis.start != "steady" else ():
+    driven = {
+        drive.joint: DRIVEN_RATES[coordinate.quantity]
+        for drive in document.drives.values()
+        if (coordinate := find_driven_coordinate(drive, draft.names.joints.get(drive.joint))) is not None
+    }
+    for name, joint in document.joints.items():
         initial = getattr(joint, "initial", None)
-        for key in ("rate", "speed"):
-            if name not in driven and getattr(initial, key, None):
-                message = f"{name_of_start} takes no initial {key}"
-                yield Violation(("joints", name, "initial", key), message, hint, key=True)
+        keys = [key for key in ("rate", "speed") if driven.get(name) != key and getattr(initial, key, None)]
+        path = ("joints", name, "initial")
+        if analysis.start != "steady":
+            for key in keys:
+                yield Violation((*path, key), f"{name_of_start} takes no initial {key}", hint, key=True)
+        elif len(keys) > (name not in driven):
+            other = f"a {keys[0]}" if name not in driven else f"the {driven[name]} of its drive"
+            message = f"start: steady goes on at one rate of a joint; this one has {other} and a {keys[-1]}"
+            remedy = f"leave out the {keys[-1]}, or split the joint: a slide and a pin on a body between them"
+            yield Violation((*path, keys[-1]), message, remedy, key=True)
     for name, body in document.bodies.items():
         for key in ("velocity", "angular_velocity"):
             value = getattr(body, key)
