@@ -65,7 +65,7 @@ def compute_fields(recovery: Recovery, body: int) -> list[AccelerationField]:
     a, g, w, u = to_body_axes(R, np.array(vectors))
     mechanism_body = recovery.setup.scene.mechanism.bodies[body]
     P = pseudo_inertia(mechanism_body.mass, mechanism_body.center, mechanism_body.inertia)
-    r = float(np.sqrt(np.trace(P[:3, :3]) / mechanism_body.mass))
+    r = float(np.sqrt(np.trace(P[:3, :3]) / (mechanism_body.mass or 1.0)))
     return [_drop_field_rounding(AccelerationField(a[k], g[k], w[k], u[k]), r) for k in range(len(R))]
 
 

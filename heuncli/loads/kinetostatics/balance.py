@@ -105,7 +105,7 @@ def find_magnitudes(
     energy: kinetic, potential, work; empty if not needed
     """
     g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))
-    mass = [body.mass for body in mechanism.bodies]
+    mass, scale_mass = [body.mass for body in mechanism.bodies], mechanism.scale_masses.tolist()
     load_magnitudes = find_load_magnitudes(states, inertia, actions, size)
     force = load_magnitudes.by_unit["N"]
     load_acceleration = 0.0  # acceleration that an applied load alone would give
@@ -114,7 +114,7 @@ def find_magnitudes(
             action_force = max(_largest(action.force), _largest(action.moment) / size)
             load_acceleration = max(
                 load_acceleration,
-                *(action_force / mass[end.body] for end, *_ in action.iter_ends() if end.body != GROUND),
+                *(action_force / scale_mass[end.body] for end, *_ in action.iter_ends() if end.body != GROUND),
                 0.0,
             )
     spin, v = _largest(states.omega), max(_largest(states.v_centre), size * _largest(states.omega))
@@ -141,7 +141,10 @@ def find_load_magnitudes(states: BodyStates, inertia: Array, actions: Sequence[A
 
 def _min_gyration(mechanism: Mechanism, size: float) -> float:
     """Return the smallest radius of gyration of a body that is no point mass; the scene's size if there is none [m]."""
-    squares = [float(np.trace(body.inertia)) / (2.0 * body.mass) for body in mechanism.bodies]
+    masses = mechanism.scale_masses.tolist()
+    squares = [
+        float(np.trace(body.inertia)) / (2.0 * mass) for body, mass in zip(mechanism.bodies, masses, strict=True)
+    ]
     return min((x**0.5 for x in squares if x > tolerances.POINT_MASS * size**2), default=size)
 
 

@@ -24,7 +24,7 @@ from heuncli.multibody.mechanism.loads import GROUND, PointLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array
 from heuncli.scene.file_format.models import Properties, Section, Spec
-from heuncli.scene.shapes.composite_solid import CompositeSolid
+from heuncli.scene.shapes.composite_solid import NO_MATTER, CompositeSolid
 from heuncli.scene.shapes.inertia import pseudo_inertia
 from heuncli.scene.shapes.rotations import cross_vectors
 
@@ -180,6 +180,8 @@ def _make_section_cuts(
     mechanism: Mechanism, spec: Spec, name: str, section: Section, index: dict[str, int], form: CompositeSolid | None
 ) -> Cuts:
     body = index[section.body]
+    if mechanism.bodies[body].mass == 0.0:
+        form = NO_MATTER
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)
     e1 = make_first_axis(n, section.first_axis)
@@ -326,6 +328,8 @@ def _make_pieces(
             ))  # fmt: skip
         piece = section.piece
         return pseudo_inertia(piece.mass, np.array(piece.center), np.array(piece.inertia))[None], None, ()
+    if form is NO_MATTER:
+        return form.piece_inertias(n, points @ n, side), None, ()
     d, is_run = points @ n, section.at is None
     # the ends of a run may lie in end faces: there the inner limits are used
     inner_side = side.copy()

@@ -9,6 +9,7 @@ use the classes of the spec (scene/file_format/models.py); its kinds of loads be
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
@@ -113,6 +114,12 @@ class Mechanism:
             return f"joints.{self.joints[k].name}"
         coupling = self.couplings[k - joints]
         return f"{'rolling' if coupling.entry.type == 'wheel' else 'couplings'}.{coupling.name}"
+
+    @cached_property
+    def scale_masses(self) -> Array:
+        """The masses by which accelerations are estimated, (n,) [kg]: of a body without mass that of the lightest."""
+        masses = np.array([body.mass for body in self.bodies])
+        return np.where(masses > 0.0, masses, np.min(masses, initial=np.inf, where=masses > 0.0))
 
     @property
     def laws(self) -> tuple[Law, ...]:
@@ -223,7 +230,7 @@ def extent_points(body: Body) -> list[Array]:
     added.
     """
     points = [body.center, *body.points.values()]
-    gyration = math.sqrt(max(float(np.trace(body.inertia)), 0.0) / (2.0 * body.mass))
+    gyration = math.sqrt(max(float(np.trace(body.inertia)), 0.0) / (2.0 * body.mass)) if body.mass > 0.0 else 0.0
     if max(x * x + y * y + z * z for x, y, z in (np.array(points) - body.center).tolist()) < gyration**2:
         points += [body.center + gyration * e for e in np.eye(3)]
     return points

@@ -116,6 +116,8 @@ def merge_parts(mechanism: Mechanism, parts: BodyParts, root: int) -> Body:
     if members == [root]:
         return body
     masses = np.array([mechanism.bodies[i].mass for i in members])
+    if not masses.any():
+        return body
     centres = np.array([parts.placements[i].transform_point(mechanism.bodies[i].center) for i in members])
     # about their common centre no moment is the difference of larger ones
     common_centre = masses @ centres / masses.sum()

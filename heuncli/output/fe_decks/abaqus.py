@@ -114,7 +114,7 @@ def needs_mesh(cases: LoadCases) -> bool:
 
 def list_calculix_notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Warn if the mesh is of a different body than the loads."""
-    if names.mesh is None or not needs_mesh(cases):
+    if names.mesh is None or not needs_mesh(cases) or cases.body.mass == 0.0:
         return []
     body, mesh_inertia = cases.body, names.mesh.pseudo_inertia(cases.body.mass)
     r = float(np.sqrt(np.trace(body.pseudo_inertia[:3, :3]) / body.mass))

@@ -125,7 +125,7 @@ def _iter_lines(moved_bodies: BodyModes, machine: Machine) -> Iterator[MovingLin
 
 def _make_box(body: Body) -> list[Array]:
     """Return the edges of the box of even density that has the mass moments of a body without shape and points."""
-    second = (0.5 * np.trace(body.inertia) - np.diag(body.inertia)) / body.mass
+    second = (0.5 * np.trace(body.inertia) - np.diag(body.inertia)) / (body.mass or 1.0)
     a, b, c = np.sqrt(3.0 * np.maximum(second, 0.0))  # half its sides: a²/3 is the mean square of x
     ring = np.array([(-a, -b), (a, -b), (a, b), (-a, b), (-a, -b)])
     ends = [np.column_stack([ring, np.full(5, side)]) for side in (-c, c)]

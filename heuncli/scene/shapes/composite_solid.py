@@ -136,7 +136,10 @@ class CompositeSolid:
     def piece_inertias(self, n: Array, d: Array, side: Array) -> Array:
         """Compute the pseudo-inertia of the pieces about the body's origin, (k, 4, 4)."""
         batches = [
-            np.sum([part.piece_inertia(n, d[batch], side[batch], self.tolerance) for part in self.parts], axis=0)
+            sum(
+                (part.piece_inertia(n, d[batch], side[batch], self.tolerance) for part in self.parts),
+                np.zeros((len(d[batch]), 4, 4)),
+            )
             for batch in iter_batches(len(d))
         ]
         return np.concatenate(batches)
@@ -148,7 +151,7 @@ class CompositeSolid:
 
     def corners(self, n: Array) -> Array:
         """Return where along n the cross-sections change their form [m]."""
-        return np.concatenate([part.corners(n) for part in self.parts])
+        return np.concatenate([np.zeros(0), *(part.corners(n) for part in self.parts)])
 
     def has_mass_in_plane(self, n: Array, d: Array) -> NDArray[np.bool_]:
         """Return whether a point mass lies in the plane, (k,): such a cut needs a side."""
@@ -203,6 +206,9 @@ class CompositeSolid:
             return CrossSections(
                 area, moment / weight[:, None], count_regions(outlines, n, tolerances.TOUCHING * self.tolerance)
             )
+
+
+NO_MATTER = CompositeSolid((), 0.0)  # of a body without mass: it may be cut, and nothing lies beyond a cut
 
 
 def make_composite_solid(shapes: Iterable[Shape]) -> CompositeSolid:

@@ -53,7 +53,7 @@ def describe_accelerations(recovery: Recovery) -> list[str]:
 def list_accelerated_bodies(recovery: Recovery) -> list[str]:
     """List the bodies that are accelerated from rest, the fastest first: of the centre of mass, or turning."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    mass = np.array([b.mass for b in mechanism.bodies])
+    mass = mechanism.scale_masses
     radius = np.sqrt(np.array([np.trace(b.inertia) for b in mechanism.bodies]) / mass)
     shift, turn = (np.sqrt(np.sum(a[0] ** 2, axis=1)) for a in (states.a_centre, states.alpha))
     fastest = np.maximum(shift, turn * radius)
@@ -79,8 +79,7 @@ def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
         abs(row["u"]) * lever > tolerances.AT_REST * size for (_, row), lever in zip(free_freedoms, levers, strict=True)
     ):
         return []
-    mass = np.array([b.mass for b in layout.mechanism.bodies])
-    least = tolerances.STARTS_MOVING * float((load_scale(recovery) / mass).max())
+    least = tolerances.STARTS_MOVING * float((load_scale(recovery) / layout.mechanism.scale_masses).max())
     found = [
         (abs(row["udot"]) * lever, f, abs(row["udot"])) for (f, row), lever in zip(free_freedoms, levers, strict=True)
     ]

@@ -149,7 +149,7 @@ class MotionPoints:
         mass, inertia = np.array([b.mass for b in bodies]), np.array([b.inertia for b in bodies])
         # second moments about the centre by the mass: squares of the semi-axes, and their directions as columns
         moments = 0.5 * np.trace(inertia, axis1=1, axis2=2)[:, None, None] * np.eye(3) - inertia
-        squares, axes = np.linalg.eigh(moments / mass[:, None, None])
+        squares, axes = np.linalg.eigh(moments / np.where(mass > 0.0, mass, 1.0)[:, None, None])
         reach = axes * np.sqrt(np.maximum(squares, 0.0))[:, None, :]
         owner, arms = [], []
         for i, body in enumerate(bodies):

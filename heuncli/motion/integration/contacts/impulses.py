@@ -363,7 +363,7 @@ def free_impulse_energy(layout: Layout, impulses: Sequence[BodyImpulse]) -> floa
     """Return the energy [J] that given impulses would give to their bodies' mass if no joint held them."""
     energy = 0.0
     for impulse in impulses:
-        mass = layout.mechanism.bodies[layout.mechanism.impulses[impulse.blow].body].mass
+        mass = float(layout.mechanism.scale_masses[layout.mechanism.impulses[impulse.blow].body])
         arm = impulse.moment / layout.size
         energy += 0.5 * float(impulse.force @ impulse.force + arm @ arm) / mass
     return energy

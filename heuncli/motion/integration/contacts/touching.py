@@ -150,7 +150,7 @@ def opening_rates(contacts_touching: TouchingContacts, columns: Table) -> Array:
 
 def find_free_response(layout: Layout, contacts_touching: TouchingContacts) -> Array:
     """Return the order of the opening rates (k,) that unit impulses at the contacts would give free bodies."""
-    mass = layout.bodies["mass"]
+    mass = layout.mechanism.scale_masses[[link.body for link in layout.spanning.links]]
     size = np.einsum("kbi,b->k", contacts_touching.loads[:, :, 3:] ** 2, 1.0 / mass)
     size += np.einsum("kbi,b->k", (contacts_touching.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
     return np.asarray(size)

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.errors import Problem, SolveError
 from heuncli.base.linear_algebra import count_rank, null_space
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
@@ -79,6 +80,8 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
     """Return the scene with artificial inertia for what massless motions of its tree turn.
 
     lacking: the bodies that lack inertia, and their axes without it
+
+    Raises SolveError [no-inertia] where a body without mass can shift without turning.
     """
     layout, poses = scene.layout, start_poses(scene)
     # the parent of the first body that turns is at rest; mostly the body itself resists
@@ -87,8 +90,11 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
     )
     if not any(null_space(resisted).size for resisted in own_resistances):
         return scene
-    if not find_massless_motions(scene, lacking, poses).count:
+    motions = find_massless_motions(scene, lacking, poses)
+    if not motions.count:
         return scene
+    if any(body.mass == 0.0 for body in scene.mechanism.bodies):
+        require_turning(scene, motions)
     rows = [
         row
         for body, axes in find_axes_in_any_pose(scene, lacking).items()
@@ -100,6 +106,21 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
             layout, tables=layout.tables | {"artificial_inertias": make_table(kernel.ArtificialInertia, rows)}
         ),
     )
+
+
+def require_turning(scene: PreparedScene, motions: MasslessMotions) -> None:
+    """Raise SolveError [no-inertia] for motions in which bodies shift and none turns: artificial inertia is of turns."""
+    shifts = null_space(motions.omega.reshape(-1, motions.count))
+    if not shifts.size:
+        return
+    reach = np.abs(motions.combine(shifts).v).max(axis=(1, 2))
+    names = [
+        f"bodies.{scene.mechanism.bodies[scene.layout.spanning.links[body].body].name}"
+        for body, moved in zip(motions.bodies, reach.tolist(), strict=True)
+        if moved > tolerances.RANK * float(reach.max())
+    ]
+    message = f"a degree of freedom has no inertia: {' and '.join(names)} can shift without moving any mass"
+    raise SolveError(Problem("no-inertia", message, hint="give a mass to what shifts, or hold it by a joint"))
 
 
 def find_loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[int, Array]:
@@ -234,8 +255,10 @@ def find_massless_motions(scene: PreparedScene, lacking: Mapping[int, Array], po
 
 def rest_conditions(layout: Layout, i: int, axes: Array | None, poses: TreePoses) -> Array:
     """Return the conditions on turn and shift of a body, (n, 6): its centre rests, it turns about `axes` without
-    inertia alone.
+    inertia alone. A body without mass has none.
     """
+    if axes is not None and layout.mechanism.bodies[layout.spanning.links[i].body].mass == 0.0:
+        return np.zeros((0, 6))
     R, c = poses.R[i], layout.mechanism.bodies[layout.spanning.links[i].body].center - layout.reference[i]
     across = np.eye(3) if axes is None else null_space(axes).T
     conditions = np.zeros((3 + len(across), 6))
@@ -342,7 +365,8 @@ def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> li
     body = mechanism.bodies[i]
     arms = [p - body.center for j in mechanism.joints for end, p in ((j.a, j.p), (j.b, j.q)) if end == i]
     reach = max([tolerances.ARTIFICIAL_RADIUS * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
-    inertia = max(body.mass * reach**2, find_massless_axes(body, scene.layout.size)[1])
+    mass = body.mass or max(other.mass for other in mechanism.bodies)
+    inertia = max(mass * reach**2, find_massless_axes(body, scene.layout.size)[1])
     return [kernel.ArtificialInertia(body=place, root=math.sqrt(inertia), axis=axis) for axis in axes]
 
 

@@ -20,13 +20,14 @@ SIZES_HINT = "give a value above 0, in SI or with its unit"
 EDGES_HINT = "its three edges, in m"
 FULL_FRICTION_HINT = "the rate at which friction is nearly full, small compared with those of the motion: 0.01"
 POSITIVE_HINTS = {
-    "mass": "a body needs a mass; a massless bar is a joint of type rod, a massless spring a force of type spring",
+    "mass": "a body with mass 0 is a frame between others that have some; a massless bar is a joint of type rod, a massless spring a force of type spring",
     "duration": "for one instant leave duration and samples out", "step": "in s, or with a unit: 1 ms",
     "inner_radius": "a solid cylinder has no inner_radius",
     "length": "leave it out for the length as assembled; for 0 use a ball",
     "scale": "the length of one unit of the file: 1 mm",
     "strength": "in Pa, or with a unit: 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
+MASSLESS_HINT = "leave the inertia out: a frame without mass; or give the body a mass"
 NEGATIVE_HINTS = {
     "torque": "it resists motion in both directions: give its magnitude",
     "force": "it resists motion in both directions: give its magnitude",
@@ -44,7 +45,7 @@ def check_has_bodies(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("mass-or-shapes")
 def check_mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
-    """A body has either mass, center and inertia, or shapes."""
+    """A body has either mass, center and inertia, or shapes; a frame without mass, `mass: 0`, needs no more."""
     for name, body in draft.document.bodies.items():
         given_keys = [key for key in ("mass", "center", "inertia") if getattr(body, key) is not None]
         path = ("bodies", name)
@@ -61,7 +62,7 @@ def check_mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(
                     (*path, "shapes"), "shapes is an empty list", "without shapes give mass, center and inertia"
                 )
-        elif len(given_keys) < 3:
+        elif len(given_keys) < 3 and body.mass != 0.0:
             missing = [key for key in ("mass", "center", "inertia") if key not in given_keys]
             hint = (
                 "inertia: [0, 0, 0] makes a point mass"
@@ -75,10 +76,12 @@ def check_mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("not-positive")
 def check_positive(draft: DraftDocument) -> Iterator[Violation]:
-    """Masses, sizes and stiffnesses are more than 0."""
+    """Masses, sizes and stiffnesses are more than 0. Some bodies may be frames without mass, not all."""
+    has_mass = any(body.mass or body.shapes for body in draft.document.bodies.values())
     for name, body in draft.document.bodies.items():
         path: Path_ = ("bodies", name)
-        yield from require_positive(path, body, "mass")
+        if body.mass != 0.0 or not has_mass:
+            yield from require_positive(path, body, "mass")
         if body.piece is not None:
             yield from require_positive((*path, "piece"), body.piece, "mass")
         for i, shape in enumerate(body.shapes or []):
@@ -268,7 +271,10 @@ def has_off_diagonal(matrix: tuple[tuple[float, ...], ...]) -> bool:
 
 @rule("inertia-not-physical")
 def check_inertia_physical(draft: DraftDocument) -> Iterator[Violation]:
-    """No principal moment is negative, or greater than the sum of the others."""
+    """No principal moment is negative, or greater than the sum of the others; without mass all are 0."""
+    for name, body in draft.document.bodies.items():
+        if body.mass == 0.0 and body.inertia is not None and any(map(any, inertia_tensor(body))):
+            yield Violation(("bodies", name, "inertia"), "the mass is 0, the inertia is not", MASSLESS_HINT)
     for path, moments, excess in iter_impossible_moments(draft):
         if excess > tolerances.INERTIA_REFUSED:
             message = f"the principal moments {moments} are impossible: each must be at most the sum of the other two"

@@ -97,10 +97,10 @@ def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) 
 
 @rule("section-matter")
 def check_section_matter(draft: DraftDocument) -> Iterator[Violation]:
-    """A cut needs shapes, or the piece that it separates."""
+    """A cut needs shapes, or the piece that it separates, unless the body has no mass."""
     for name, section in draft.document.sections.items():
         body = draft.document.bodies.get(section.body)
-        if body is None or body.shapes is not None or section.piece is not None:
+        if body is None or body.shapes is not None or section.piece is not None or body.mass == 0.0:
             continue
         if body.piece is None or is_run(section):
             message = f"{section.body} has no shapes: the mass beyond the cut is not known"
