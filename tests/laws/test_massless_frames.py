@@ -119,7 +119,7 @@ def test_a_small_mass_differs_in_first_order(scene: str) -> None:
 
 @pytest.mark.parametrize("count", [3, 6])
 def test_a_boom_without_mass_carries_its_load(count: int) -> None:
-    """A point mass welded to its end, turned by w t + a t^2/2: N = m w'^2 L, Q1 = -m a L, Q2 = -m g; moments times L - s."""
+    """A mass at its end, turned by w t + a t^2/2: N = m w'^2 L, Q1 = -m a L, Q2 = -m g, moments these times L - s."""
     w, a, L, m = 2.0, 3.0, 1.5, 5.0
     scene = (
         f"{HEAD}bodies:\n  boom: {{mass: 0, points: {{root: [0, 0, 0], end: [{L}, 0, 0]}}}}\n"

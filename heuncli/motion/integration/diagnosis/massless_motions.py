@@ -109,7 +109,7 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
 
 
 def require_turning(scene: PreparedScene, motions: MasslessMotions) -> None:
-    """Raise SolveError [no-inertia] for motions in which bodies shift and none turns: artificial inertia is of turns."""
+    """Raise SolveError [no-inertia] if bodies shift and none turns, for artificial inertia only resists turns."""
     shifts = null_space(motions.omega.reshape(-1, motions.count))
     if not shifts.size:
         return

@@ -20,7 +20,8 @@ SIZES_HINT = "give a value above 0, in SI or with its unit"
 EDGES_HINT = "its three edges, in m"
 FULL_FRICTION_HINT = "the rate at which friction is nearly full, small compared with those of the motion: 0.01"
 POSITIVE_HINTS = {
-    "mass": "a body with mass 0 is a frame between others that have some; a massless bar is a joint of type rod, a massless spring a force of type spring",
+    "mass": "a body with mass 0 is a frame between others that have some; a massless bar "
+    "is a joint of type rod, a massless spring a force of type spring",
     "duration": "for one instant leave duration and samples out", "step": "in s, or with a unit: 1 ms",
     "inner_radius": "a solid cylinder has no inner_radius",
     "length": "leave it out for the length as assembled; for 0 use a ball",
