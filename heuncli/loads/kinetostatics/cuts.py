@@ -165,7 +165,8 @@ def make_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, CompositeSolid]
     index = {b.name: i for i, b in enumerate(mechanism.bodies)}
     for name, section in spec.sections.items():
         try:
-            cuts.append(_make_section_cuts(mechanism, spec, name, section, index, forms.get(section.body)))
+            form = NO_MATTER if mechanism.bodies[index[section.body]].mass == 0.0 else forms.get(section.body)
+            cuts.append(_make_section_cuts(mechanism, spec, name, section, index, form))
         except SpecError as error:
             problems += error.problems
         except Finding as finding:
@@ -180,8 +181,6 @@ def _make_section_cuts(
     mechanism: Mechanism, spec: Spec, name: str, section: Section, index: dict[str, int], form: CompositeSolid | None
 ) -> Cuts:
     body = index[section.body]
-    if mechanism.bodies[body].mass == 0.0:
-        form = NO_MATTER
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)
     e1 = make_first_axis(n, section.first_axis)
