@@ -41,6 +41,43 @@ HOLDS, FAILS = "passed", "FAILED"
 HEADS = ("line", "case", "quantity", "unit", "at", "expected", "found", "allowed", "verdict")
 NUMBERS = frozenset({"line", "expected", "found", "allowed"})
 MAX_NUMBERS = 6  # of a list
+INTEGRATED_NOTE = (
+    "The motion was integrated over time twice, the second time to a tolerance 30 times finer. The error stated for a "
+    "quantity is twice the greatest difference between the two solutions, and not less than the rounding of the "
+    "arithmetic."
+)
+DRIVEN_NOTE = (
+    "The drives prescribe the whole motion: each instant is solved separately, so that no error grows over time. The "
+    "equations were solved again with values changed in their last digits; the errors stated are the differences, the "
+    "rounding of the arithmetic."
+)
+EQUILIBRIUM_NOTE = (
+    "The rest position was searched for twice, the second time ten times finer. The errors stated follow from the "
+    "distance between the two positions, and from the rounding of the arithmetic."
+)
+ONE_INSTANT_NOTE = (
+    "The equations were solved at one instant. The errors stated are the rounding of the arithmetic, from solving "
+    "again with values changed in their last digits."
+)
+LIMITS_NOTE = (
+    "These are errors of the calculation alone. How well the results describe the machine depends on the data of the "
+    "model and on the assumptions on the first page."
+)
+QUANTITIES = {  # kind of error and unit -> words
+    ("motion", "m"): "positions of points", ("reactions", "N"): "forces in joints",
+    ("reactions", "N·m"): "moments in joints", ("drives", "N"): "drive forces", ("drives", "N·m"): "drive torques",
+    ("foundation", "N"): "forces on the ground", ("foundation", "N·m"): "moments on the ground",
+    ("sections", "N"): "forces in sections", ("sections", "N·m"): "moments in sections",
+    ("sections", "Pa"): "stresses",
+}  # fmt: skip
+MAX_CERTAIN_DIGITS = 15
+BALANCE = "forces and moments on each body against its mass times acceleration", "of the body's largest load"
+ENERGY = "energy at each instant against the work done since the start", "of the largest kinetic energy"
+GAP = "distance of the points that a joint holds together, where joints close a loop"
+TOLD_ELSEWHERE = ("model", "warning", "accuracy", "moved", "omitted", "split", "status", "horizon")  # of the heading
+SOLUTION_HEADS = ("case", "time covered", "output times", "solved by")
+CASE_COLUMN = OutputColumn("case", "text")
+DIGEST_DIGITS = 12  # of a digest of 64
 
 
 def make_check_parts(data: ReportData) -> list[Part]:
@@ -117,45 +154,6 @@ def _format_allowed(style: ReaderStyle, tolerance: float, scale: float) -> str:
     if tolerance <= 0.0:
         return "0"
     return f"{format_power(100.0 * tolerance / scale, 2)} %" if scale else format_power(style.size * tolerance, 2)
-
-
-INTEGRATED_NOTE = (
-    "The motion was integrated over time twice, the second time to a tolerance 30 times finer. The error stated for a "
-    "quantity is twice the greatest difference between the two solutions, and not less than the rounding of the "
-    "arithmetic."
-)
-DRIVEN_NOTE = (
-    "The drives prescribe the whole motion: each instant is solved separately, so that no error grows over time. The "
-    "equations were solved again with values changed in their last digits; the errors stated are the differences, the "
-    "rounding of the arithmetic."
-)
-EQUILIBRIUM_NOTE = (
-    "The rest position was searched for twice, the second time ten times finer. The errors stated follow from the "
-    "distance between the two positions, and from the rounding of the arithmetic."
-)
-ONE_INSTANT_NOTE = (
-    "The equations were solved at one instant. The errors stated are the rounding of the arithmetic, from solving "
-    "again with values changed in their last digits."
-)
-LIMITS_NOTE = (
-    "These are errors of the calculation alone. How well the results describe the machine depends on the data of the "
-    "model and on the assumptions on the first page."
-)
-QUANTITIES = {  # kind of error and unit -> words
-    ("motion", "m"): "positions of points", ("reactions", "N"): "forces in joints",
-    ("reactions", "N·m"): "moments in joints", ("drives", "N"): "drive forces", ("drives", "N·m"): "drive torques",
-    ("foundation", "N"): "forces on the ground", ("foundation", "N·m"): "moments on the ground",
-    ("sections", "N"): "forces in sections", ("sections", "N·m"): "moments in sections",
-    ("sections", "Pa"): "stresses",
-}  # fmt: skip
-MAX_CERTAIN_DIGITS = 15
-BALANCE = "forces and moments on each body against its mass times acceleration", "of the body's largest load"
-ENERGY = "energy at each instant against the work done since the start", "of the largest kinetic energy"
-GAP = "distance of the points that a joint holds together, where joints close a loop"
-TOLD_ELSEWHERE = ("model", "warning", "accuracy", "moved", "omitted", "split", "status", "horizon")  # of the heading
-SOLUTION_HEADS = ("case", "time covered", "output times", "solved by")
-CASE_COLUMN = OutputColumn("case", "text")
-DIGEST_DIGITS = 12  # of a digest of 64
 
 
 def make_accuracy_parts(data: ReportData) -> list[Part]:

@@ -34,6 +34,18 @@ from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NO
 
 MAGNITUDE_LABELS = {"force": "|F|", "moment": "|M|"}  # of a vector
 TOTAL = "total"  # of the foundation
+MAX_NUMBER_COLUMNS = 8  # of cases beside each other; if there are more, their envelope
+MAX_HALF_COLUMNS = 4  # columns of numbers with which a table runs through two columns of a page
+MIN_SPLIT_ROWS = 9  # rows of a table that runs through two columns
+PARTLY_OPEN_MARK = "*"
+BOLD_NOTE = (
+    "bold: minimum and maximum over all load cases, for magnitudes only the maximum; not where a case may be open, the "
+    "value is rounding error, or all cases agree"
+)
+NOISE_NOTE = f"{DASH}: below 1/1000 of the largest of its kind; rows of dashes only are left out"
+STEADY_NOTE = "one value: the same at all {}"
+ENVELOPE_NOTE = "least and greatest value of {} load cases; each case: heun run SPEC --case all"
+HIDDEN_CASES_NOTE = "open or unknown, where it may be larger: {}"
 
 
 class LoadNumber(NamedTuple):
@@ -101,20 +113,6 @@ def _iter_numbers(data: ReportData, prefix: str, quantities: Sequence[str]) -> I
 def drop_components(group: LoadGroup) -> LoadGroup:
     """Drop the components of vectors from a group, keeping their magnitudes."""
     return group._replace(rows=[row for row in group.rows if row.is_magnitude or not row.vector])
-
-
-MAX_NUMBER_COLUMNS = 8  # of cases beside each other; if there are more, their envelope
-MAX_HALF_COLUMNS = 4  # columns of numbers with which a table runs through two columns of a page
-MIN_SPLIT_ROWS = 9  # rows of a table that runs through two columns
-PARTLY_OPEN_MARK = "*"
-BOLD_NOTE = (
-    "bold: minimum and maximum over all load cases, for magnitudes only the maximum; not where a case may be open, the "
-    "value is rounding error, or all cases agree"
-)
-NOISE_NOTE = f"{DASH}: below 1/1000 of the largest of its kind; rows of dashes only are left out"
-STEADY_NOTE = "one value: the same at all {}"
-ENVELOPE_NOTE = "least and greatest value of {} load cases; each case: heun run SPEC --case all"
-HIDDEN_CASES_NOTE = "open or unknown, where it may be larger: {}"
 
 
 def make_cases_table(

@@ -47,6 +47,20 @@ ASSUMPTIONS = (
     "shown, unless a ± follows; they do not say how well the model represents the machine."
 )
 NO_CHECKS = "No acceptance checks are defined."
+MAX_SPEC_LINES = 2000  # of a spec that is printed
+CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
+    "machine": ("The machine", lambda data: make_drawing_parts(data, is_first_page=False)),
+    "loads": ("Loads", make_load_parts),
+    "sections": ("Sections", make_section_parts),
+    "histories": ("Time histories", make_history_parts),
+    "polar": ("Load directions", make_polar_parts),
+    "events": ("Impulses and events", lambda data: make_event_parts(data)),
+    "checks": ("Checks", make_check_parts),
+    "open": ("Indeterminate loads", make_open_parts),
+    "model": ("The model", make_model_parts),
+    "accuracy": ("Accuracy of the results", make_accuracy_parts),
+    "spec": ("Spec", lambda data: make_spec_parts(data)),
+}
 
 
 def make_first_page(data: ReportData) -> list[Part]:
@@ -216,22 +230,6 @@ def _iter_warnings(data: ReportData) -> Iterator[Sentence]:
         is_in_all = len(set(names)) == len(data.runs) > 1
         case = " (all cases)" if is_in_all else f" (case {join_names(names)})" if any(names) else ""
         yield Sentence(f"Warning: {describe_sentence(text, data.labels)}{case}", "unsure")
-
-
-MAX_SPEC_LINES = 2000  # of a spec that is printed
-CHAPTERS: Mapping[str, tuple[str, Callable[[ReportData], list[Part]]]] = {
-    "machine": ("The machine", lambda data: make_drawing_parts(data, is_first_page=False)),
-    "loads": ("Loads", make_load_parts),
-    "sections": ("Sections", make_section_parts),
-    "histories": ("Time histories", make_history_parts),
-    "polar": ("Load directions", make_polar_parts),
-    "events": ("Impulses and events", lambda data: make_event_parts(data)),
-    "checks": ("Checks", make_check_parts),
-    "open": ("Indeterminate loads", make_open_parts),
-    "model": ("The model", make_model_parts),
-    "accuracy": ("Accuracy of the results", make_accuracy_parts),
-    "spec": ("Spec", lambda data: make_spec_parts(data)),
-}
 
 
 def make_report(data: ReportData) -> OutputDocument:

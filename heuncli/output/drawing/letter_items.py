@@ -29,7 +29,7 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
-from heuncli.output.drawing.label_placement import count_columns
+from heuncli.output.drawing.labels import count_columns
 from heuncli.output.drawing.style import find_pen
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
