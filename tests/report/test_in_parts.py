@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import OutputError, SolveError
-from heuncli.output.documents import as_json
 from heuncli.output.tables import export
 from heuncli.output.tables.export import iter_csv_pieces, iter_json_pieces
 from heuncli.results import stored_arrays

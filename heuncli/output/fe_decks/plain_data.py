@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, PointAction
-from heuncli.output.documents.as_csv import format_line
-from heuncli.output.documents.as_json import dump_json
+from heuncli.output.documents.as_data import dump_json, format_line
 from heuncli.output.documents.document import Cell
 from heuncli.output.fe_decks.parts import DeckNames
 from heuncli.results.results import Array

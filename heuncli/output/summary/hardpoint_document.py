@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.as_data import FORMAT
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.summary.hardpoints import Hardpoint, HardpointRun
 from heuncli.output.tables.extremes_tables import NOT_SEARCHED

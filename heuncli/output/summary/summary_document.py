@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.as_data import FORMAT
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, TextCell
 from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
 from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow

@@ -12,8 +12,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_text import INDENT
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, format_cell, is_zero_cell
-from heuncli.output.documents.text_table import INDENT
 from heuncli.output.tables.cut_runs import format_place
 from heuncli.output.tables.table_blocks import TableBlock
 from heuncli.results.path_words import BY_CAUSE

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, append_unit
 from heuncli.results.results import Array
 from heuncli.study.load_collectives import REFERENCE, Collective

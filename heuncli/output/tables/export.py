@@ -16,7 +16,7 @@ import numpy as np
 
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_json import AT_ONCE, FORMAT, iter_json
+from heuncli.output.documents.as_data import AT_ONCE, FORMAT, iter_json
 from heuncli.results.cut_rows import cut_indices
 from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, Results

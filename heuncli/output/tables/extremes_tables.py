@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_text import INDENT, select_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
-from heuncli.output.documents.text_table import INDENT, select_columns
 from heuncli.output.tables.nouns import join_ranges
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, make_cells
 from heuncli.results.results import Array, Extremes

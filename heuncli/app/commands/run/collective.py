@@ -12,7 +12,7 @@ from heuncli.app.cli.solving import collect_results
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.as_data import FORMAT
 from heuncli.output.documents.document import OutputDocument
 from heuncli.output.snapshots.collectives import count_collectives, make_option_problem
 from heuncli.output.snapshots.measure import require_known_paths

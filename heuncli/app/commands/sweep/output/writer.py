@@ -13,7 +13,7 @@ from heuncli.app.cli.output import emit
 from heuncli.base import files
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_csv import format_line
+from heuncli.output.documents.as_data import format_line
 from heuncli.output.documents.document import OutputDocument, OutputTable
 from heuncli.study.quantities.table_units import Units
 
