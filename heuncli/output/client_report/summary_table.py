@@ -16,8 +16,8 @@ from heuncli.output.client_report.extremes import (
 )
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import OutputTable, join_names
+from heuncli.output.figures.posed_machine import select_worst
 from heuncli.output.figures.turning import find_span, is_monotonic
-from heuncli.output.figures.worst_instant import select_worst
 from heuncli.output.snapshots.tables import SearchedPage
 from heuncli.output.summary.run_document import summarise
 from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases

@@ -25,9 +25,8 @@ from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.curves import MeasuredPoints
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.output.figures.histories import make_history
-from heuncli.output.figures.planes import AXIS_LETTERS, list_rotation_paths
 from heuncli.output.figures.polar import make_polar_figure
-from heuncli.output.figures.tips import list_firing_paths
+from heuncli.output.figures.tips import AXIS_LETTERS, list_firing_paths, list_rotation_paths
 from heuncli.output.figures.turning import list_angle_paths
 from heuncli.output.snapshots import measure
 from heuncli.results.path_words import split_path
