@@ -25,13 +25,13 @@ from heuncli.output.figures.posed_machine import (
     compute_area,
     to_pair,
 )
-from heuncli.output.machine_geometry.joint_symbols import (
+from heuncli.output.machine_geometry.machine import BodyGeometry, JointGeometry, LineGeometry
+from heuncli.output.machine_geometry.marks import (
     find_scene_joint_kind,
 )
-from heuncli.output.machine_geometry.machine import BodyGeometry, JointGeometry, LineGeometry
 from heuncli.output.machine_geometry.ropes import iter_rope_lines
-from heuncli.output.machine_geometry.silhouettes import SolidEdges, find_silhouette, select_visible_edges
 from heuncli.output.machine_geometry.solids import compute_convex_hull
+from heuncli.output.machine_geometry.views import SolidEdges, find_silhouette, select_visible_edges
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import GROUND

@@ -16,17 +16,17 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.output.drawing.axes import format_short
 from heuncli.output.figures.curves import choose_number_style
-from heuncli.output.machine_geometry.joint_symbols import (
+from heuncli.output.machine_geometry.machine import Machine
+from heuncli.output.machine_geometry.marks import (
     find_guided_actuators,
     find_shaft_bearings,
 )
-from heuncli.output.machine_geometry.machine import Machine
 from heuncli.output.machine_geometry.poses import Poses
-from heuncli.output.machine_geometry.silhouettes import (
+from heuncli.output.machine_geometry.views import (
+    SceneView,
     SolidEdges,
     find_solid_edges,
 )
-from heuncli.output.machine_geometry.views import SceneView
 from heuncli.output.summary.summary_rows import SummaryRow
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values

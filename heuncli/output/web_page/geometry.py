@@ -14,8 +14,14 @@ from heuncli.base import tolerances
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.symbols import SYMBOLS
-from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_coupling_forces
-from heuncli.output.machine_geometry.machine import BodyGeometry, LineGeometry, Machine, make_machine
+from heuncli.output.machine_geometry.machine import (
+    BodyGeometry,
+    CouplingForce,
+    LineGeometry,
+    Machine,
+    iter_coupling_forces,
+    make_machine,
+)
 from heuncli.output.machine_geometry.marks import Mark
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, compute_span_ends
