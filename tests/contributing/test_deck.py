@@ -9,7 +9,7 @@ from tests.contributing.addition import Addition, Edit, after, heun
 PLAIN = Addition(
     "An FE deck",
     {
-        "heuncli/output/fe_decks/registry.py": (
+        "heuncli/output/fe_decks/decks.py": (
             after('    Deck("abaqus", "abaqus"),\n', '    Deck("plain", "plain"),\n'),
         ),
         "heuncli/app/commands/export.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
@@ -21,8 +21,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes
-from heuncli.output.fe_decks.parts import exact, readme
+from heuncli.output.fe_decks.decks import DeckNames, DeckNodes
+from heuncli.output.fe_decks.decks import exact, readme
 from heuncli.analyses.load_cases.model import LoadCases
 
 MARK = "!"

@@ -19,8 +19,7 @@ from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_u
 from heuncli.app.commands.export import FORMATS
 from heuncli.base.records import replace
 from heuncli.output.fe_decks import nastran
-from heuncli.output.fe_decks.parts import DeckNames, exact
-from heuncli.output.fe_decks.registry import DECKS
+from heuncli.output.fe_decks.decks import DECKS, DeckNames, exact
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_vectors
 from tests.shared.load_cases import cases_of, point_masses

@@ -37,8 +37,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.base.spelling import list_words, suggest
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, explain_invalid_set
-from heuncli.output.fe_decks.registry import DECKS
+from heuncli.output.fe_decks.decks import DECKS, DeckNames, DeckNodes, explain_invalid_set
 from heuncli.output.tables.nouns import format_count
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec

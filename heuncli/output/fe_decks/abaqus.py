@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
 from heuncli.analyses.load_cases.solid_mesh import SolidMesh
-from heuncli.output.fe_decks.parts import (
+from heuncli.output.fe_decks.decks import (
     DeckNames,
     DeckNodes,
     NodeLoad,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, NodeLoad, case_heading, exact, part_lines, readme
+from heuncli.output.fe_decks.decks import DeckNames, DeckNodes, NodeLoad, case_heading, exact, part_lines, readme
 from heuncli.results.results import Array
 
 MARK = "!"

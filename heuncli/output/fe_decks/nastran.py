@@ -18,7 +18,7 @@ import numpy as np
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
 from heuncli.base.records import replace
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, NodeLoad, case_heading, part_lines, readme, step_name
+from heuncli.output.fe_decks.decks import DeckNames, DeckNodes, NodeLoad, case_heading, part_lines, readme, step_name
 from heuncli.results.results import Array
 
 MARK = "$"

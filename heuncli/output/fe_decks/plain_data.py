@@ -10,7 +10,7 @@ import numpy as np
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, PointAction
 from heuncli.output.documents.as_data import dump_json, format_line
 from heuncli.output.documents.document import Cell
-from heuncli.output.fe_decks.parts import DeckNames
+from heuncli.output.fe_decks.decks import DeckNames
 from heuncli.results.results import Array
 
 HEADER = ("case", "time", "kind", "name", "by", "point", "quantity", "unit", "x", "y", "z")

@@ -1,4 +1,4 @@
-"""The geometry of a scene: shapes of its bodies in their own axes, and the positions of joints, springs, ropes, symbols.
+"""The geometry of a scene: shapes of its bodies in their own axes, and where joints, springs, ropes, symbols are.
 
 Everything is in body axes [m]; positions in the world follow from the body's pose. A body with shapes is drawn as these
 shapes, with arms to points outside of them. A body without shapes is drawn as the wheel that it is, or by its points

@@ -1,4 +1,4 @@
-"""Make surfaces of flat faces, in body axes: of shapes, round ones approximated, of the hull of a body's points, of meshes.
+"""Make surfaces of flat faces, in body axes: of shapes, with round ones approximated, of hulls of points, of meshes.
 
 A fine mesh is simplified for drawing: all corners in one cell of a grid are merged in their centre, and the sharp edges
 show the shape. Nothing is computed with the simplified mesh.

@@ -1,10 +1,17 @@
-"""What decks have in common: names and nodes that are safe for other programs, and the comments at the top."""
+"""The formats of load cases, a row each, and what decks share: safe names and nodes, numbers, the comments at the top.
+
+A new format is a module of this folder and a row here. For a format, say ansys, its module has
+`write_ansys(cases, names)`, which yields the text in pieces; and `list_ansys_notes(cases, names)` if there is
+something that the user has to know.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from importlib import import_module
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +24,7 @@ from heuncli.results.results import Array
 
 SET_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}\Z")
 MAX_TEXT_LENGTH, MAX_NAME_LENGTH = 200, 60  # characters of a text in a comment, and of a step name
+MAX_NUMBER_LENGTH = 20  # characters of a number that Abaqus and CalculiX read: beyond that, the exponent would be lost
 
 
 class DeckNames(NamedTuple):
@@ -30,6 +38,39 @@ class DeckNames(NamedTuple):
     first_node: int
     elements: str
     mesh: SolidMesh | None = None
+
+
+class Deck(NamedTuple):
+    """A format: its name, the module that writes it, and whether it holds only forces, as decks of static loads do."""
+
+    name: str
+    module: str
+    static: bool = True
+
+    def iter_text(self, cases: LoadCases, names: DeckNames) -> Iterable[str]:
+        """Yield the text, in pieces."""
+        pieces: Iterable[str] = getattr(self._import_module(), f"write_{self.name}")(cases, names)
+        return pieces
+
+    def notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
+        """Return sentences on steps that the user must do by hand after import."""
+        function = f"list_{self.name}_notes"
+        list_notes: Callable[[LoadCases, DeckNames], list[str]] | None = getattr(self._import_module(), function, None)
+        return list_notes(cases, names) if list_notes is not None else []
+
+    def _import_module(self) -> Any:
+        return import_module(f"heuncli.output.fe_decks.{self.module}")
+
+
+ROWS = (
+    Deck("csv", "plain_data", static=False),
+    Deck("json", "plain_data", static=False),
+    Deck("ansys", "ansys"),
+    Deck("nastran", "nastran"),
+    Deck("calculix", "abaqus"),
+    Deck("abaqus", "abaqus"),
+)
+DECKS = {row.name: row for row in ROWS}
 
 
 def explain_invalid_set(name: str) -> str:
@@ -238,9 +279,6 @@ def format_number(value: float) -> str:
 def format_vector(values: Array) -> str:
     """Format a vector for reading."""
     return f"({', '.join(map(format_number, values.tolist()))})"
-
-
-MAX_NUMBER_LENGTH = 20  # characters of a number that Abaqus and CalculiX read: beyond that, the exponent would be lost
 
 
 def exact(value: float) -> str:
