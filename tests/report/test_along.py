@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from heuncli.output.documents.document import OutputTable, format_cell
-from heuncli.output.snapshots import tables as snapshot_tables
+from heuncli.output.tables import page as snapshot_tables
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load

@@ -233,7 +233,7 @@ def _solve_scene(request: ExportRequest, spec: Spec, body: str, instants: Sequen
     """Solve the scene as far as the load cases need it."""
     path_measures: list[MeasureRequest] = make_extreme_requests(instants)
     if path_measures:
-        from heuncli.output.snapshots.measure import require_known_paths  # only needed for extremes
+        from heuncli.output.tables.measure import require_known_paths  # only needed for extremes
 
         require_known_paths(path_measures, spec, "--at")
     ends = {name: {joint.a, joint.b} for name, joint in spec.joints.items()}

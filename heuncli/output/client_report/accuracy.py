@@ -26,9 +26,9 @@ from heuncli.output.documents.document import (
     join_names,
 )
 from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.certain_sums import make_sums_table
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.tables.indeterminate import make_sums_table
 from heuncli.output.tables.nouns import format_count
+from heuncli.output.tables.run_description import make_heading
 from heuncli.results.path_words import error_kind_of_path
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_path, parse_path

@@ -35,8 +35,12 @@ from heuncli.output.documents.document import (
     has_content,
     join_names,
 )
-from heuncli.output.tables.event_table import make_events_table
-from heuncli.output.tables.impulse_tables import ImpactReport, find_largest_impulses, make_impulse_tables
+from heuncli.output.tables.event_tables import (
+    ImpactReport,
+    find_largest_impulses,
+    make_events_table,
+    make_impulse_tables,
+)
 from heuncli.output.tables.nouns import format_count
 from heuncli.study.quantities.captions import describe_object, describe_path, describe_sentence
 from heuncli.study.quantities.reader_numbers import choose_reader_style

@@ -15,9 +15,15 @@ import numpy as np
 from heuncli.base.errors import Finding
 from heuncli.base.joint_kinds import TYPES
 from heuncli.base.tolerances import SAME_INSTANT
-from heuncli.output.snapshots.columns import ResultView, SnapshotScope, collect_all_columns
 from heuncli.output.snapshots.golden_file import N_EVEN, RunSnapshot
-from heuncli.output.snapshots.record import SnapshotBounds, SnapshotCourse, make_run_snapshot
+from heuncli.output.snapshots.record import (
+    ResultView,
+    SnapshotBounds,
+    SnapshotCourse,
+    SnapshotScope,
+    collect_all_columns,
+    make_run_snapshot,
+)
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Block, Magnitudes, Results

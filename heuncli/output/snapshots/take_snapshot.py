@@ -15,13 +15,6 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.output.snapshots.columns import (
-    ResultView,
-    SnapshotScope,
-    collect_all_columns,
-    collect_columns,
-    collect_values,
-)
 from heuncli.output.snapshots.course_sums import (
     GAUSS,
     NO_PIECES,
@@ -37,14 +30,18 @@ from heuncli.output.snapshots.course_sums import (
 )
 from heuncli.output.snapshots.golden_file import N_EVEN, RunSnapshot
 from heuncli.output.snapshots.record import (
+    ResultView,
     SnapshotBounds,
     SnapshotCourse,
+    SnapshotScope,
+    collect_all_columns,
+    collect_columns,
+    collect_values,
     estimate_impact_error,
     find_ending_error,
     make_run_snapshot,
 )
-from heuncli.output.snapshots.tables import search_stresses
-from heuncli.output.tables.page import Page, make_page
+from heuncli.output.tables.page import Page, make_page, search_stresses
 from heuncli.results.results import Array, Extremes, Results
 from heuncli.results.results_schema import SHARES, add_shared_reports
 from heuncli.study.quantities.channels import Channel, collect_run_loads

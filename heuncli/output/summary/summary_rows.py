@@ -14,10 +14,9 @@ import numpy as np
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import Action
-from heuncli.output.snapshots.tables import SearchedPage
+from heuncli.output.tables.event_tables import make_impact_results
 from heuncli.output.tables.extremes_tables import DoubtfulInstants
-from heuncli.output.tables.impulse_tables import make_impact_results
-from heuncli.output.tables.page import Page
+from heuncli.output.tables.page import Page, SearchedPage
 from heuncli.output.tables.table_blocks import build_block
 from heuncli.output.tables.table_plans import IMPULSES as IMPULSE_PLANS
 from heuncli.results.path_words import IMPULSE_UNITS

@@ -13,7 +13,7 @@ from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
 from heuncli.output.machine_geometry.poses import extract_poses
 from heuncli.output.machine_geometry.views import find_motion_plane
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.tables.run_description import make_heading
 from heuncli.output.tables.table_plans import SECTIONS
 from heuncli.output.web_page.drawn_loads import make_acting_loads, make_sections
 from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_frames, find_peaks, resample_at_frames

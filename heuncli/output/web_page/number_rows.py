@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.output.tables.certain_sums import make_sums_table
+from heuncli.output.tables.indeterminate import make_sums_table
 from heuncli.output.tables.table_blocks import choose_styles
 from heuncli.output.tables.table_plans import AXIS, IMPULSES, PLANS, TablePlan
 from heuncli.output.web_page.packing import pack_values

@@ -28,7 +28,7 @@ from heuncli.output.figures.histories import make_history
 from heuncli.output.figures.polar import make_polar_figure
 from heuncli.output.figures.tips import AXIS_LETTERS, list_firing_paths, list_rotation_paths
 from heuncli.output.figures.turning import list_angle_paths
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.results.path_words import split_path
 from heuncli.results.results_schema import EVENTS, IMPULSES, SPACE
 from heuncli.scene.file_format.models import Spec

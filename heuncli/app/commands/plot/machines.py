@@ -36,7 +36,7 @@ from heuncli.output.machine_geometry.views import (
     make_view_at_angles,
     parse_view,
 )
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.results.results import Array
 from heuncli.study.queries.measure import MeasureRequest
 

@@ -1,7 +1,12 @@
-"""Tables of impacts, in newton seconds: what met when, and for each impact the jumps of velocity and the impulses."""
+"""Tables of events and of impacts.
+
+Events are instants at which conditions change. Tables of impacts are in newton seconds: what met when, and for each
+impact the jumps of velocity and the impulses.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -20,7 +25,7 @@ from heuncli.output.documents.document import (
     make_number_cells,
 )
 from heuncli.output.tables import cut_runs
-from heuncli.output.tables.certain_sums import make_sums_table
+from heuncli.output.tables.indeterminate import make_sums_table
 from heuncli.output.tables.instants_tables import make_group_cells, make_instants_tables
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, build_block
 from heuncli.output.tables.table_plans import IMPULSES
@@ -36,15 +41,52 @@ from heuncli.study.quantities.digits import (
     ZERO_NOTE,
     StatedErrors,
     add_axis_errors,
+    choose_style,
     largest_magnitude,
+    trim_zeros,
     write_times,
 )
 from heuncli.study.quantities.labels import Labels
 
+EVENTS_HEADING = "EVENTS  times at which conditions change, and their new values"
+EVENT_COLUMNS = (
+    OutputColumn("event", "text"),
+    OutputColumn("condition", "text"),
+    OutputColumn("t [s]"),
+    OutputColumn("becomes", "text"),
+)
+ONLY_JUST = "marginal: the margin is as small as the error, so a slightly different run may not show it"
+MAX_INSTANTS = 20  # instants of an event in a table, unless all are requested
 MAX_SHOWN, MAX_LISTED = 3, 20  # impacts with tables, impacts in the list, unless all are requested
 UNIT = "N·s"
 HEADING = "all impulses of the run: largest impulse and angular impulse on a joint, stop or the ground; kinetic energy"
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
+
+
+def make_events_table(results: Results, *, all_instants: bool = False) -> OutputTable:
+    """Make the table of events; all_instants: show every instant of each event."""
+    rows: list[tuple[str, ...]] = []
+    only_just = False
+    for name, event in results.events.items():
+        event_lines = list(iter_event_lines(event))
+        only_just = only_just or any(not math.isfinite(error) for error in event["error"])
+        shown = event_lines if all_instants else event_lines[:MAX_INSTANTS]
+        begins = "true" if event["begins"] else "false"
+        shown = shown or [("", f"{begins} at all times")]
+        rows += [(name, event["condition"], *shown[0]), *(("", "", *line) for line in shown[1:])]
+        if len(event_lines) > len(shown):
+            rows.append(("", f"{len(event_lines) - len(shown)} more with --all", "", ""))
+    return OutputTable(EVENTS_HEADING, EVENT_COLUMNS, tuple(rows), (ONLY_JUST,) if only_just else ())
+
+
+def iter_event_lines(event: Block) -> Iterator[tuple[str, str]]:
+    """Yield each instant with the digits that its error leaves, and what the condition becomes there."""
+    for t, error, to in zip(event["time"].tolist(), event["error"].tolist(), event["to"], strict=True):
+        becomes = "true" if to else "false"
+        known = math.isfinite(error)
+        number_style = choose_style(t, error if known else 0.5 * t)
+        text = trim_zeros([number_style.write(t)])[0] if number_style.is_known else UNKNOWN
+        yield (text, becomes) if known else (f"{t:.3g}", f"{becomes}, marginal")
 
 
 class ImpactReport(NamedTuple):

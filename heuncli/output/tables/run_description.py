@@ -1,16 +1,21 @@
-"""The lines above every table: what was solved, and its estimated errors."""
+"""What a run solved, in words: the lines above every table, the model as `heun model` has it, warnings and hints."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.output.documents.document import Facts, Listing, OutputTable, Part
 from heuncli.output.tables.nouns import format_count
-from heuncli.results.results import ErrorEstimate, Results
-from heuncli.study.quantities.digits import LOADS, format_error
+from heuncli.results.results import Array, ErrorEstimate, Results
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.compose.recovery import Recovery
+from heuncli.study.quantities.digits import LOADS, OPEN_NOTE, format_error
+from heuncli.study.queries.study import Study
 
 MAX_SENTENCES = 5
 MAX_MOVED_BODIES = 3
@@ -18,6 +23,20 @@ PLANAR_NOTE = "; out-of-plane components are 0"
 STIFF_PREFIXES = ("stiff: ", "stiff system: ")  # beginnings of the reason for a restart with an implicit method
 NO_METHOD = "none"  # how the name of a method begins that integrates nothing
 PRESCRIBED = "motion fully prescribed: solved at each instant, nothing integrated"
+MAX_NAMES = 12
+PLANE = {"found": "detected", "declared": "declared"}  # how a model came to be planar -> its text
+# Key of the model -> title of its list of sentences.
+LIST_TITLES = (
+    ("reasons", "Why this model"),
+    ("reduced", "Simplifications"),
+    ("not_reduced", "Not simplified"),
+    ("cannot_tell", "Not covered by this model"),
+    ("integrates", "Integrated variables"),
+    ("chosen", "Initial values chosen by heun"),
+    ("moved", "Moved from the given start position"),
+    ("started", "Start of the motion"),
+    ("notes", "Notes"),
+)
 
 
 def make_heading(results: Results, show_reductions: bool = False, *, brief: bool = False) -> list[tuple[str, str]]:
@@ -160,3 +179,115 @@ def _describe_residuals(results: Results) -> str:
 def _fill_number(text: str, value: float | None) -> list[str]:
     known = value is not None and math.isfinite(value)
     return [text.format(format_error(float(np.float64(value))))] if known and value is not None else []
+
+
+def make_description_parts(model: Mapping[str, Any], label_indent: str = "") -> list[Part]:
+    """Make the facts of the model block, and its lists of sentences."""
+    facts = Facts([(label_indent + label, text) for label, text in collect_facts(model) if text])
+    lists = [Listing(title, list(map(str, model[key]))) for key, title in LIST_TITLES if model.get(key)]
+    return [facts, *lists]
+
+
+def collect_facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return label and text of each count, and of the method; the text is empty if there is none."""
+    freedoms, names = model.get("freedoms"), model.get("names", {})
+    grubler = model.get("grubler")
+    spins = int(model.get("undetermined", 0))
+    among = f", including {format_count(spins, 'undetermined spin')}" if spins else ""
+    grubler_text = f" (Grübler's count: {grubler}{among})" if grubler is not None else ""
+    return [
+        ("space", str(model.get("space", "")) + (f" ({PLANE[model['plane']]})" if "plane" in model else "")),
+        ("bodies", _format_names(names.get("bodies", model.get("bodies")))),
+        ("joints", _format_names(names.get("joints", model.get("joints")))),
+        ("DOF", f"{freedoms}{grubler_text}" if freedoms is not None else ""),
+        ("loops", _format_loops(model)),
+        ("redundant", _format_redundant(model.get("redundant"))),
+        ("method", str(model.get("method") or "")),
+    ]
+
+
+def _format_names(counts: Any) -> str:
+    """Format a count, or names with their count: `2: upper, lower`; the values of a mapping are the kinds of its
+    names.
+    """
+    if isinstance(counts, Mapping):
+        names = [f"{name} ({kind})" if isinstance(kind, str) else str(name) for name, kind in counts.items()]
+    elif isinstance(counts, (list, tuple)):
+        names = [str(name) for name in counts]
+    else:
+        return "" if counts is None else str(counts)
+    hidden_text = f", ... ({len(names) - MAX_NAMES} more)" if len(names) > MAX_NAMES else ""
+    return f"{len(names)}: {', '.join(names[:MAX_NAMES])}{hidden_text}" if names else "none"
+
+
+def _format_loops(model: Mapping[str, Any]) -> str:
+    """Format the number of loops closed by joints, and of couplings between bodies in addition."""
+    loops, coupled = model.get("loops"), int(model.get("couplings", 0))
+    if not isinstance(loops, int):
+        return ""
+    closed = format_count(loops, "closed loop")
+    return f"{closed} of joints; {format_count(coupled, 'coupling')}" if coupled else closed
+
+
+def _format_redundant(redundant: Any) -> str:
+    if isinstance(redundant, int):
+        return format_count(redundant, "redundant constraint") if redundant else "none"
+    return _format_names(redundant) if redundant else ""
+
+
+def collect_warnings(spec: Spec, results: Results | None, later: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Return the warnings of reading, with their places, and those of solving and later ones that are not among
+    them.
+    """
+    reading_messages = {problem.message for problem in spec.warnings}
+    solving_warnings = [text for text in results.warnings if text not in reading_messages] if results else []
+    return [str(problem) for problem in spec.warnings], solving_warnings + list(later)
+
+
+PINS_NOTE = (
+    "pins in a spatial model constrain more than the motion requires: try `space: planar`, or `line` or `ball` in "
+    "place of some pins; heun model lists what helps, heun explain open says why"
+)
+HEADING = "JOINTS"  # as tables of joints begin
+
+
+def add_pins_note(tables: Sequence[OutputTable], study: Study) -> list[OutputTable]:
+    """Add the hint to the tables of joints with open reactions, if parallel pins are the reason."""
+    places = [n for n, each in enumerate(tables) if each.heading.startswith(HEADING) and OPEN_NOTE in each.notes]
+    if not places or not has_open_parallel_pins(study):
+        return list(tables)
+    last = places[-1]
+    return [
+        table._replace(notes=(*table.notes, PINS_NOTE)) if number == last else table
+        for number, table in enumerate(tables)
+    ]
+
+
+def has_open_parallel_pins(study: Study) -> bool:
+    """Whether several pins of a spatial model have open reactions, the axes of all these are parallel, and something
+    is open that a planar model does not have: gears leave open what is in the plane, which no other joints change.
+    """
+    names = {name for name, block in study.results.joints.items() if block["open"]}
+    if len(names) < 2 or study.results.model.get("space") != "spatial":
+        return False
+    recovery = study.find_recovery(study.results.time[:1], frozenset({"joints"}))
+    axes = [
+        load.axis[0]
+        for load in recovery.requested_joints
+        if load.joint.name in names and load.joint.kind == "pin" and load.axis is not None
+    ]
+    if len(axes) < 2:
+        return False
+    sines = np.linalg.norm(np.cross(axes[0], np.array(axes[1:])), axis=1)
+    return bool((sines < tolerances.PARALLEL).all()) and is_open_across_plane(recovery, axes[0])
+
+
+def is_open_across_plane(recovery: Recovery, normal: Array) -> bool:
+    """Whether a joint's force along a normal (3,), or its moment about an axis in the plane, is open."""
+    stress = recovery.indeterminate
+    if stress is None:
+        return False
+    forces, moments = stress.shares[:, :, :3], stress.shares[:, :, 3:]
+    along = np.einsum("i,jtik->jtk", normal, forces)[:, :, None]
+    tilting = moments - normal[:, None] * np.einsum("i,jtik->jtk", normal, moments)[:, :, None]
+    return bool(stress.has_share(along).any() or stress.has_share(tilting, stress.length).any())
