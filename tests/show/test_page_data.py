@@ -16,8 +16,8 @@ from heuncli.output.machine_geometry.poses import compute_poses
 from heuncli.output.tables.export import to_json
 from heuncli.output.web_page.geometry import make_page_machine
 from heuncli.output.web_page.moving_page import render_moving_page
-from heuncli.output.web_page.number_rows import ZERO_ROWS_PREFIX
 from heuncli.output.web_page.packing import NUMBER_STEPS
+from heuncli.output.web_page.page_numbers import ZERO_ROWS_PREFIX
 from heuncli.results.path_words import split_leading_key
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load

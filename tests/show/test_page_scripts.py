@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.output.web_page.page_assembly import bundle_scripts, sort_scripts
+from heuncli.output.web_page.moving_page import bundle_scripts, sort_scripts
 from heuncli.study.quantities.digits import Style
 
 NODE = shutil.which("node")

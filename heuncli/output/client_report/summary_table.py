@@ -16,12 +16,12 @@ from heuncli.output.client_report.extremes import (
 )
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import OutputTable, join_names
+from heuncli.output.figures.courses import find_span, is_monotonic
 from heuncli.output.figures.posed_machine import select_worst
-from heuncli.output.figures.turning import find_span, is_monotonic
-from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases, summarise
-from heuncli.output.summary.summary_rows import MIN_TURN, SummaryRow
 from heuncli.output.tables.nouns import format_count
 from heuncli.output.tables.page import SearchedPage
+from heuncli.output.tables.summary_document import Summary, group_alike, make_table, merge_cases, summarise
+from heuncli.output.tables.summary_rows import MIN_TURN, SummaryRow
 from heuncli.results.results import NOWHERE, Extremes
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.cut_runs import collect_runs

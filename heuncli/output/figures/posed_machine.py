@@ -27,7 +27,7 @@ from heuncli.output.machine_geometry.views import (
     SolidEdges,
     find_solid_edges,
 )
-from heuncli.output.summary.summary_rows import SummaryRow
+from heuncli.output.tables.summary_rows import SummaryRow
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec

@@ -17,13 +17,16 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.figures.courses import (
     FigureSource,
     NotDrawable,
+    TurningRun,
+    VectorSource,
     choose_instants,
     describe_number,
+    find_turning_run,
     find_values,
     find_vectors,
     is_varying,
+    list_angle_paths,
 )
-from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run, list_angle_paths
 from heuncli.output.machine_geometry.poses import Poses, compute_poses
 from heuncli.results.results import Array
 from heuncli.results.results_schema import SPACE

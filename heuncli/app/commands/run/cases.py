@@ -17,7 +17,7 @@ from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
-from heuncli.output.summary.summary_document import RunParts, Summary, merge_cases
+from heuncli.output.tables.summary_document import RunParts, Summary, merge_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
 

@@ -15,7 +15,9 @@ from heuncli.app.commands.run.scene import RunTask, finish, make_query
 from heuncli.base.errors import Problem
 from heuncli.base.records import replace
 from heuncli.output.documents.document import OutputDocument, Sentence
-from heuncli.output.summary.summary_document import (
+from heuncli.output.tables.page import search_run
+from heuncli.output.tables.run_description import make_heading
+from heuncli.output.tables.summary_document import (
     Summary,
     make_blocks,
     make_records,
@@ -23,8 +25,6 @@ from heuncli.output.summary.summary_document import (
     merge_cases,
     summarise,
 )
-from heuncli.output.tables.page import search_run
-from heuncli.output.tables.run_description import make_heading
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.study.model.setup import attach_locations
@@ -102,7 +102,7 @@ def _make_summary(
 def _make_hardpoints(
     task: RunTask, title: str, scenes: Mapping[str, Spec], studies: Mapping[str, Study]
 ) -> OutputDocument:
-    from heuncli.output.summary.hardpoints import make_hardpoint_document, make_hardpoints
+    from heuncli.output.tables.hardpoints import make_hardpoint_document, make_hardpoints
 
     axes = task.request.axes or "world"
     runs, labels = [], None

@@ -16,9 +16,9 @@ from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
-from heuncli.output.summary.summary_document import RunParts, Summary, make_run_parts
 from heuncli.output.tables.page import TablesQuery
 from heuncli.output.tables.run_description import make_heading
+from heuncli.output.tables.summary_document import RunParts, Summary, make_run_parts
 from heuncli.results.results import Results
 from heuncli.results.stored_arrays import StoredArray, iter_chunks
 from heuncli.scene.file_format.models import Spec

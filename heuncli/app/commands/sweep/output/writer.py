@@ -86,7 +86,7 @@ def make_tables(
     from heuncli.app.commands.sweep.output.statistics_tables import make_statistics_tables
     from heuncli.app.commands.sweep.output.tables import make_row_table, make_summary_table
     from heuncli.app.commands.sweep.output.top_k import select_rows
-    from heuncli.output.tables.sparkline import choose_characters
+    from heuncli.output.documents.as_text import choose_characters
 
     selection = select_rows(head, rows, all_of_them)
     statistics = list(iter_statistics(head, selection.columns))

@@ -1,4 +1,4 @@
-"""The summary of a run, or of all its load cases, as a table of a dozen lines, as data and CSV; the document of a run."""
+"""The summary of a run, or of all its load cases, as a short table, as data and as CSV; the document of a run."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.as_data import FORMAT
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable, TextCell
-from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow, make_run_summary
 from heuncli.output.tables.extremes_tables import CONSTANT, MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
 from heuncli.output.tables.indeterminate import IndeterminateGroup, find_indeterminate_groups, format_indeterminate
 from heuncli.output.tables.nouns import join_ranges
 from heuncli.output.tables.page import SearchedPage, TablesQuery, make_tables_of_page, search_run
 from heuncli.output.tables.run_description import make_heading
+from heuncli.output.tables.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow, make_run_summary
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.cut_runs import collect_runs
