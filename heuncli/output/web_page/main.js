@@ -22,12 +22,12 @@ const PAUSE = 0.25; // ms for each cell beyond these until they are written agai
 
 /** What is to be known of the run, below; above only that there is something. */
 function tellRun(data, signal) {
-  const notes = `${data.alerts} ${data.alerts === 1 ? "note" : "notes"} on this run`;
+  const count = `${data.alerts} ${data.alerts === 1 ? "note" : "notes"} on this run`;
   document.title = by("title").textContent = data.title;
   by("alert").hidden = !data.alerts;
-  by("alert").textContent = notes;
+  by("alert").textContent = count;
   by("alert").addEventListener("click", () => (by("about").open = true), { signal });
-  by("told").replaceChildren(...data.told.map((sentence) => made("li", sentence)));
+  by("notes").replaceChildren(...data.notes.map((sentence) => made("li", sentence)));
   const lines = [...data.about, ["heun", data.version], ["file", data.file]];
   for (const [label, text] of lines) if (text) by("lines").append(made("dt", label), made("dd", text));
 }

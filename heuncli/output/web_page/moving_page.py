@@ -114,7 +114,7 @@ def make_page_data(
         "case": escape(case),
         "alerts": sum(1 for _ in _iter_notes(original, horizon)),
         "worst": _find_worst_frame(results),
-        "told": [*frames.notes, *[PEAKS_NOTE] * (not peaks.is_searched), *_iter_notes(original, horizon)],
+        "notes": [*frames.notes, *[PEAKS_NOTE] * (not peaks.is_searched), *_iter_notes(original, horizon)],
         "horizon": horizon,
         "count": len(frames.times),
         "time": pack_exact(frames.times),

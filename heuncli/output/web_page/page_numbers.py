@@ -52,8 +52,8 @@ def make_blocks(results: Results, labels: Labels, certain: StatedErrors) -> list
     found = [_make_block(plan, channels, plan.heading(results, labels), labels, certain) for plan in plans]
     sums = make_sums_table(results, certain)
     if sums is not None:
-        found.append({**split_heading(sums.heading), "kind": "joints", "groups": [], "told": list(sums.notes)})
-    return [block for block in found if block["groups"] or block["told"]]
+        found.append({**split_heading(sums.heading), "kind": "joints", "groups": [], "notes": list(sums.notes)})
+    return [block for block in found if block["groups"] or block["notes"]]
 
 
 def make_impact_page_tables(
@@ -103,7 +103,7 @@ def _make_block(
         and channels_by_name
         and all(np.isnan(item.values).all() for members in channels_by_name.values() for item in members)
     ):
-        return {**head, "groups": [], "told": [plan.missing[1]]}
+        return {**head, "groups": [], "notes": [plan.missing[1]]}
     groups, zero_labels = [], []
     for name, members in channels_by_name.items():
         label = name.replace("supports.", "support ", 1).replace("elements.", "element ", 1)
@@ -115,7 +115,7 @@ def _make_block(
             title = "" if plan.only else label or ("total" if plan.is_foundation else "")
             groups.append({"name": title, "note": plan.note(label, labels), "rows": shown})
     notes += [f"{ZERO_ROWS_PREFIX}{', '.join(zero_labels)}"] if zero_labels else []
-    return {**head, "groups": groups, "told": notes}
+    return {**head, "groups": groups, "notes": notes}
 
 
 def split_heading(heading: str) -> dict[str, str]:

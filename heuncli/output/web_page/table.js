@@ -82,8 +82,8 @@ export class NumberTable {
       if (group.name || group.note) headed(body, group.name, "group", group.note);
       for (const row of group.rows) body.append(this.rowOf(row, block.missing));
     }
-    for (const text of block.told) {
-      const line = made("tr", "", { class: "told" });
+    for (const text of block.notes) {
+      const line = made("tr", "", { class: "notes" });
       line.append(made("td", text, { colspan: "6" }));
       body.append(line);
     }
