@@ -113,7 +113,10 @@ def test_what_is_0_throughout_is_named(file: Path) -> None:
     data = data_of(page)
     there = {row["path"] for row in rows(data)}
     said = [
-        name for block in data["blocks"] for note in block["notes"] for name in note[len(ZERO_ROWS_PREFIX) :].split(", ")
+        name
+        for block in data["blocks"]
+        for note in block["notes"]
+        for name in note[len(ZERO_ROWS_PREFIX) :].split(", ")
     ]
     for name, joint in study.results.joints.items():
         for quantity in ("force", "moment"):

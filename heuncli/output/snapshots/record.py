@@ -34,7 +34,7 @@ from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, CutPosition, DeterminateSum, Results
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
-from heuncli.study.quantities.cut_runs import CutRun, collect_runs
+from heuncli.study.quantities.cut_runs import CutSeries, collect_cut_series
 from heuncli.study.quantities.digits import StatedErrors, largest_magnitude
 from heuncli.study.quantities.labels import Labels
 
@@ -57,7 +57,7 @@ def _collect_shown(plans: Iterable[TablePlan]) -> frozenset[ShownQuantity]:
     )
 
 
-SHOWN, SHOWN_AT_A_BLOW = _collect_shown(PLANS), _collect_shown(IMPULSE_PLANS)
+SHOWN, SHOWN_AT_IMPACT = _collect_shown(PLANS), _collect_shown(IMPULSE_PLANS)
 FOUNDATION_PARTS = frozenset({MASS_EFFECT.only, AXIS.only})  # parts of the foundation besides its total load
 
 
@@ -89,9 +89,9 @@ class SnapshotScope(NamedTuple):
     reports: frozenset[str]
     labels: Labels
 
-    def collect_runs(self, results: Results) -> list[CutRun]:
+    def collect_cut_series(self, results: Results) -> list[CutSeries]:
         """Collect the series of cuts, if sections are requested."""
-        return collect_runs(results, self.labels) if "sections" in self.reports else []
+        return collect_cut_series(results, self.labels) if "sections" in self.reports else []
 
 
 def collect_columns(results: Results, scope: SnapshotScope) -> list[Channel]:
@@ -113,9 +113,9 @@ def is_shown(channel: Channel, shown_quantities: frozenset[ShownQuantity]) -> bo
     return ShownQuantity(channel.kind, only, channel.quantity) in shown_quantities
 
 
-def iter_run_columns(run: CutRun) -> Iterator[Channel]:
+def iter_series_columns(series: CutSeries) -> Iterator[Channel]:
     """Yield the lowest and highest value of a run's cuts, for each quantity; open if one of the cuts is open."""
-    for channel in run.channels:
+    for channel in series.channels:
         for word, extreme in (("lowest", channel.values.min(axis=1)), ("highest", channel.values.max(axis=1))):
             yield channel._replace(component=word, values=extreme, axes=())
 
@@ -123,7 +123,7 @@ def iter_run_columns(run: CutRun) -> Iterator[Channel]:
 def collect_all_columns(results: Results, scope: SnapshotScope) -> dict[str, Channel]:
     """Collect all columns by their paths."""
     columns = collect_columns(results, scope)
-    columns += [column for run in scope.collect_runs(results) for column in iter_run_columns(run)]
+    columns += [column for series in scope.collect_cut_series(results) for column in iter_series_columns(series)]
     return {column.path: column for column in columns}
 
 
@@ -284,11 +284,11 @@ def _make_impact(impulse: Block, view: ResultView, scope: SnapshotScope) -> Impa
     columns = [
         column
         for channel in iter_impulse_channels(impulse, view.labels)
-        if not channel.has_cuts and is_shown(channel, SHOWN_AT_A_BLOW)
+        if not channel.has_cuts and is_shown(channel, SHOWN_AT_IMPACT)
         for column in channel.numbers
     ]
-    runs = collect_runs(impact_view.results, scope.labels, IMPULSE_UNITS)
-    columns += [column for run in runs for column in iter_run_columns(run)]
+    all_series = collect_cut_series(impact_view.results, scope.labels, IMPULSE_UNITS)
+    columns += [column for series in all_series for column in iter_series_columns(series)]
     time = float(impulse["time"])
     numbers = {
         column.path: NumberSnapshot(

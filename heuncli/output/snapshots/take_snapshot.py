@@ -44,7 +44,7 @@ from heuncli.output.snapshots.record import (
 from heuncli.output.tables.page import Page, make_page, search_stresses
 from heuncli.results.results import Array, Extremes, Results
 from heuncli.results.results_schema import SHARES, add_shared_reports
-from heuncli.study.quantities.channels import Channel, collect_run_loads
+from heuncli.study.quantities.channels import Channel, collect_series_loads
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
@@ -80,7 +80,7 @@ def is_searched_between_samples(study: Study, reports: frozenset[str]) -> bool:
     """Return whether the extremes of a snapshot are searched between the samples, or there is nothing between them."""
     results = study.results
     scope = SnapshotScope(reports, make_labels(study.spec))
-    n_run_columns = sum(len(run.loads) for run in scope.collect_runs(results))
+    n_run_columns = sum(len(run.loads) for run in scope.collect_cut_series(results))
     return study.has_one_instant or study.is_searched(len(collect_columns(results, scope)) + n_run_columns)
 
 
@@ -211,14 +211,14 @@ def _search_bounds(
 
     Also returns what was evaluated of the columns during the search, if there was one.
     """
-    columns, runs = collect_columns(page.results, scope), scope.collect_runs(page.results)
+    columns, runs = collect_columns(page.results, scope), scope.collect_cut_series(page.results)
     samples = SampledColumns()
 
     def collect(results: Results) -> list[Channel]:
         own = collect_columns(results, scope)
         values = [column.values for column in own]
         samples.add(results.time, np.stack(values, axis=1) if own else np.zeros((len(results.time), 0)))
-        return own + (collect_run_loads(results) if runs else [])
+        return own + (collect_series_loads(results) if runs else [])
 
     n_channels = len(columns) + sum(len(run.loads) for run in runs)
     is_searched = study.is_searched(n_channels)

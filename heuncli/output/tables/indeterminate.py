@@ -18,7 +18,7 @@ from heuncli.results.results import Array, DeterminateSum, Results
 from heuncli.results.results_schema import AXIAL_FORCES, RESULTANTS, SECTION_FORCES, XYZ
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import Channel
-from heuncli.study.quantities.cut_runs import CutRun
+from heuncli.study.quantities.cut_runs import CutSeries
 from heuncli.study.quantities.digits import StatedErrors, format_unclaimed, largest_magnitude, write_numbers
 from heuncli.study.quantities.labels import Labels
 
@@ -41,10 +41,12 @@ class IndeterminateGroup(NamedTuple):
     paths: tuple[str, ...]
 
 
-def find_indeterminate_groups(blocks: Iterable[TableBlock], runs: Iterable[CutRun]) -> list[IndeterminateGroup]:
+def find_indeterminate_groups(
+    blocks: Iterable[TableBlock], cut_series: Iterable[CutSeries]
+) -> list[IndeterminateGroup]:
     """Find the groups of a run, in the order of its tables, which show these blocks and series of cuts."""
     groups: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
-    for kind, name, rows in _iter_things(blocks, runs):
+    for kind, name, rows in _iter_things(blocks, cut_series):
         unknown = [channel for channel in rows if np.isnan(channel.values).all()]
         if unknown and PART not in name:
             names, paths = groups.setdefault((kind, _describe_loads(kind, unknown)), ([], []))
@@ -53,12 +55,14 @@ def find_indeterminate_groups(blocks: Iterable[TableBlock], runs: Iterable[CutRu
     return [IndeterminateGroup(*key, tuple(names), tuple(paths)) for key, (names, paths) in groups.items()]
 
 
-def _iter_things(blocks: Iterable[TableBlock], runs: Iterable[CutRun]) -> Iterator[tuple[str, str, Sequence[Channel]]]:
+def _iter_things(
+    blocks: Iterable[TableBlock], cut_series: Iterable[CutSeries]
+) -> Iterator[tuple[str, str, Sequence[Channel]]]:
     """Yield kind, name and channels of all that may be indeterminate; supports and elements repeat joints and loads."""
     for block in blocks:
         if block.kind in ("joints", "stops", "couplings", "sections"):
             yield from ((block.kind, group.name, group.rows) for group in block.groups)
-    yield from (("sections", run.name, run.loads) for run in runs)
+    yield from (("sections", series.name, series.loads) for series in cut_series)
 
 
 def _describe_loads(kind: str, unknown: Sequence[Channel]) -> str:

@@ -248,12 +248,12 @@ PINS_NOTE = (
     "pins in a spatial model constrain more than the motion requires: try `space: planar`, or `line` or `ball` in "
     "place of some pins; heun model lists what helps, heun explain open says why"
 )
-HEADING = "JOINTS"  # as tables of joints begin
+JOINTS_HEADING = "JOINTS"  # as tables of joints begin
 
 
 def add_pins_note(tables: Sequence[OutputTable], study: Study) -> list[OutputTable]:
     """Add the hint to the tables of joints with open reactions, if parallel pins are the reason."""
-    places = [n for n, each in enumerate(tables) if each.heading.startswith(HEADING) and OPEN_NOTE in each.notes]
+    places = [n for n, each in enumerate(tables) if each.heading.startswith(JOINTS_HEADING) and OPEN_NOTE in each.notes]
     if not places or not has_open_parallel_pins(study):
         return list(tables)
     last = places[-1]

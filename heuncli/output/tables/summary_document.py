@@ -20,7 +20,7 @@ from heuncli.output.tables.run_description import make_heading
 from heuncli.output.tables.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow, make_run_summary
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.cut_runs import collect_runs
+from heuncli.study.quantities.cut_runs import collect_cut_series
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.queries.study import Study
@@ -325,6 +325,6 @@ def summarise(study: Study, searched: SearchedPage, case: str = "") -> Summary:
     groups = []
     if any(np.isnan(channel.values).any() for channel in channels):
         blocks = page.make_blocks(page.results, only_searched=True)
-        groups = find_indeterminate_groups(blocks, collect_runs(page.results, page.labels))
+        groups = find_indeterminate_groups(blocks, collect_cut_series(page.results, page.labels))
     redundant = int(model.get("redundant", 0))
     return Summary(found.rows, groups, page.labels, axes, redundant, span, found.crank, notes)

@@ -18,7 +18,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.integrated_scene import find_one_sided_limits
 from heuncli.results.results import Array, Indices, Results
 from heuncli.results.results_schema import REPORT_OF, RESULTANTS
-from heuncli.study.quantities.channels import Channel, collect_run_loads, iter_channels
+from heuncli.study.quantities.channels import Channel, collect_series_loads, iter_channels
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.queries.study import Study
@@ -74,7 +74,7 @@ def _collect_loads(results: Results, labels: Labels) -> list[Channel]:
     vectors = [channel for channel in channels if channel.quantity in ("force", "moment")]
     loads = [channel for channel in vectors if channel.kind == "joints" or channel.path in FOUNDATION_LOADS]
     loads += [channel for channel in channels if channel.kind == "sections" and channel.quantity in RESULTANTS]
-    return loads + collect_run_loads(results)
+    return loads + collect_series_loads(results)
 
 
 def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES) -> PageFrames:
