@@ -96,11 +96,11 @@ class SnapshotScope(NamedTuple):
 
 def collect_columns(results: Results, scope: SnapshotScope) -> list[Channel]:
     """Collect the numbers of the tables except those of series of cuts; of a vector components and magnitude."""
-    runs = {name for name, section in results.sections.items() if "s" in section}
+    cut_series = {name for name, section in results.sections.items() if "s" in section}
     columns: list[Channel] = []
     for channel in iter_channels(results, scope.labels):
-        is_of_run = channel.kind == "sections" and channel.name.split(".")[0] in runs
-        if REPORT_OF[channel.kind] in scope.reports and not is_of_run and is_shown(channel, SHOWN):
+        is_of_series = channel.kind == "sections" and channel.name.split(".")[0] in cut_series
+        if REPORT_OF[channel.kind] in scope.reports and not is_of_series and is_shown(channel, SHOWN):
             columns += channel.numbers
     return columns
 
@@ -114,7 +114,7 @@ def is_shown(channel: Channel, shown_quantities: frozenset[ShownQuantity]) -> bo
 
 
 def iter_series_columns(series: CutSeries) -> Iterator[Channel]:
-    """Yield the lowest and highest value of a run's cuts, for each quantity; open if one of the cuts is open."""
+    """Yield for each quantity the lowest and highest value of the cuts of a series; open if one of them is open."""
     for channel in series.channels:
         for word, extreme in (("lowest", channel.values.min(axis=1)), ("highest", channel.values.max(axis=1))):
             yield channel._replace(component=word, values=extreme, axes=())
@@ -179,8 +179,8 @@ class SnapshotBounds(NamedTuple):
     def to_fields(self, view: ResultView) -> dict[str, Any]:
         """Return the bounds as fields of a NumberSnapshot."""
         fields: dict[str, Any] = {}
-        both = (("least", self.low, self.low_spread), ("greatest", self.high, self.high_spread))
-        for word, bound, spread in both:
+        bounds = (("least", self.low, self.low_spread), ("greatest", self.high, self.high_spread))
+        for word, bound, spread in bounds:
             if bound is None:
                 continue
             value, time, place = bound
