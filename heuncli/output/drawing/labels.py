@@ -132,9 +132,9 @@ class WordField:
 
         is_centred: whether a place in the middle above it is better than one beside it, as for a bar
         """
-        return self.occupy_best(self._iter_candidate_boxes(mark, width, height, is_centred))
+        return self.occupy_best(self._iter_boxes_around(mark, width, height, is_centred))
 
-    def _iter_candidate_boxes(
+    def _iter_boxes_around(
         self, mark: WordBox, width: float, height: float, is_centred: bool
     ) -> Iterator[tuple[float, WordBox]]:
         """Yield boxes about a mark after their costs: above, below, to its right and left, then farther away."""
@@ -338,7 +338,7 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
         width, height = estimate_width(text, SMALL_SIZE), HEIGHT_FACTOR * SMALL_SIZE
         if label.number:
             width = height = 2.0 * CIRCLE_SIZE + CIRCLE_GAP
-        place = field.occupy_best(_iter_candidate_boxes(x, y, width, height))
+        place = field.occupy_best(_iter_boxes_on_circles(x, y, width, height))
         if place is None:
             omitted += [] if label.is_optional else [label.text]
             continue
@@ -357,7 +357,7 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
     return [*lines, *texts], omitted
 
 
-def _iter_candidate_boxes(x: float, y: float, width: float, height: float) -> Iterator[tuple[float, WordBox]]:
+def _iter_boxes_on_circles(x: float, y: float, width: float, height: float) -> Iterator[tuple[float, WordBox]]:
     """Yield boxes that touch circles about a place with their nearest side or corner, each after its cost."""
     for distance in DISTANCES:
         for k in range(N_DIRECTIONS):

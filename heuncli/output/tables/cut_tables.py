@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from heuncli.output.documents.as_text import select_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell, make_number_cells
 from heuncli.results.results import Array, CutPosition, Extremes, Indices
 from heuncli.results.results_schema import STRESSES
@@ -207,14 +208,11 @@ def _make_diagram(
 def _drop_zero_columns(series: CutSeries, table: OutputTable) -> OutputTable:
     """Drop the quantities that are zero throughout, unless all of them are."""
     cells = [row for row in table.rows if not isinstance(row, str)]
-    lead = len(table.columns) - len(series.channels)
-    shown_columns = [
-        i for i in range(len(table.columns)) if i < lead or {format_cell(row[i]) for row in cells} != {"0"}
-    ]
-    if len(shown_columns) in (lead, len(table.columns)):
+    lead, n = len(table.columns) - len(series.channels), len(table.columns)
+    shown_columns = [i for i in range(n) if i < lead or {format_cell(row[i]) for row in cells} != {"0"}]
+    if len(shown_columns) in (lead, n):
         return table
-    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
-    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, (*table.notes, ZERO_NOTE))
+    return select_columns(table, shown_columns)._replace(notes=(*table.notes, ZERO_NOTE))
 
 
 def _choose_styles(series: CutSeries, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:

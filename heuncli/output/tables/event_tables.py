@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_text import select_columns
 from heuncli.output.documents.document import (
     Cell,
     NumberCell,
@@ -338,5 +339,4 @@ def _drop_empty_columns(table: OutputTable) -> OutputTable:
     """Drop the columns that are empty or zero in every row."""
     cells = [row for row in table.rows if not isinstance(row, str)]
     shown_columns = [i for i in range(len(table.columns)) if not all(is_zero_cell(row[i]) for row in cells)]
-    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
-    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, table.notes)
+    return select_columns(table, shown_columns)

@@ -50,14 +50,14 @@ def make_heading(results: Results, show_reductions: bool = False, *, brief: bool
         *(_label_sentences("reduced", results.model.get("reduced", ())) if show_reductions else ()),
         *(("omitted", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_describe_moved_bodies(results.model.get("moved", ())),
-        *_describe_start(results.model.get("started", ())),
+        *_label_first_sentences("start", results.model.get("started", ()), ": see heun model"),
         *([] if brief else [("run", _describe_run(results))]),
         *_describe_stiff_restart(results.model.get("reasons", ())),
         *_label_sentences("rest", results.model.get("rest", ())),
         *(("until", sentence) for sentence in results.model.get("until", ())),
         ("accuracy", _describe_errors(results)),
         *([] if brief else [("", _describe_residuals(results))]),
-        *_describe_contacts(results.model.get("contacts", ())),
+        *_label_first_sentences("contacts", results.model.get("contacts", ()), " in --format json, model.contacts"),
         *(("moves", sentence) for sentence in results.model.get("moves", ())),
     ]
     if results.model.get("split"):
@@ -87,20 +87,12 @@ def _describe_moved_bodies(displacements: Sequence[str]) -> list[tuple[str, str]
     return [("moved", f"to assemble the joints: {first_displacements}{more}; see heun model")] if displacements else []
 
 
-def _describe_start(sentences: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the lines on what starts to move, or rests, in an unexpected manner."""
+def _label_first_sentences(label: str, sentences: Sequence[str], source: str) -> list[tuple[str, str]]:
+    """Return a line for each of the first MAX_SENTENCES sentences, then their further number and where these are."""
     shown_sentences = list(sentences[:MAX_SENTENCES])
     if len(sentences) > MAX_SENTENCES:
-        shown_sentences.append(f"{len(sentences) - MAX_SENTENCES} more: see heun model")
-    return _label_sentences("start", shown_sentences)
-
-
-def _describe_contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the lines on contacts, at most MAX_SENTENCES of them."""
-    shown_sentences = list(sentences[:MAX_SENTENCES])
-    if len(sentences) > MAX_SENTENCES:
-        shown_sentences.append(f"{len(sentences) - MAX_SENTENCES} more in --format json, model.contacts")
-    return _label_sentences("contacts", shown_sentences)
+        shown_sentences.append(f"{len(sentences) - MAX_SENTENCES} more{source}")
+    return _label_sentences(label, shown_sentences)
 
 
 def _describe_stiff_restart(reasons: Sequence[str]) -> list[tuple[str, str]]:
