@@ -82,35 +82,28 @@ def _prefix_paths(block: dict[str, Any], number: int) -> dict[str, Any]:
 def _make_block(
     plan: TablePlan, channels: Iterable[Channel], heading: str, labels: Labels, certain: StatedErrors
 ) -> dict[str, Any]:
-    """Make one table: heading, groups of rows by object, the list of rows that are zero at all times, and the text for
-    nan.
-    """
+    """Make one table: heading, groups of rows by object, a note on the rows that are zero throughout, word for nan."""
     head = {**split_heading(heading), "kind": plan.kind, "missing": plan.missing[0]}
     channels_by_name: dict[str, list[Channel]] = {}
     for item in channels:
         if item.kind == plan.kind and item.quantity in plan.quantities and _is_in_plan(plan, item.name):
             channels_by_name.setdefault(item.name, []).append(item)
     notes: list[str] = []
-    if (
-        plan.is_foundation
-        and len(channels_by_name) == 2
-        and (only := [name for name in channels_by_name if name.startswith("supports.")])
-    ):
+    supports = [name for name in channels_by_name if name.startswith("supports.")]
+    if plan.is_foundation and len(channels_by_name) == 2 and supports:
         channels_by_name = {"": channels_by_name[""]}
-        notes = [f"carried entirely by {only[0].removeprefix('supports.')}, the only support"]
-    if (
-        plan is AXIS
-        and channels_by_name
-        and all(np.isnan(item.values).all() for members in channels_by_name.values() for item in members)
-    ):
+        notes = [f"carried entirely by {supports[0].removeprefix('supports.')}, the only support"]
+    all_channels = [channel for members in channels_by_name.values() for channel in members]
+    if plan is AXIS and all_channels and all(np.isnan(channel.values).all() for channel in all_channels):
         return {**head, "groups": [], "notes": [plan.missing[1]]}
     groups, zero_labels = [], []
     for name, members in channels_by_name.items():
         label = name.replace("supports.", "support ", 1).replace("elements.", "element ", 1)
         channels_in_order = sorted(members, key=lambda item: plan.quantities.index(item.quantity))
         rows = list(iter_page_rows(channels_in_order, labels, certain))
-        shown = [row for row, seen in rows if seen or plan is AXIS]
-        zero_labels += [f"{label} {row['label']}".strip() for row, seen in rows if not seen and plan is not AXIS]
+        shown = [row for row, is_nonzero in rows if is_nonzero or plan is AXIS]
+        hidden = [row for row, is_nonzero in rows if not is_nonzero and plan is not AXIS]
+        zero_labels += [f"{label} {row['label']}".strip() for row in hidden]
         if shown:
             title = "" if plan.only else label or ("total" if plan.is_foundation else "")
             groups.append({"name": title, "note": plan.note(label, labels), "rows": shown})
