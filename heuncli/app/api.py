@@ -20,7 +20,7 @@ from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.base.spelling import find_similar
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
-from heuncli.output.snapshots.selection import ReportChoice, parse_choice, select_reports
+from heuncli.output.tables.report_selection import ReportChoice, parse_choice, select_reports
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import Overrides, load, load_with_cases
 from heuncli.scene.file_format.models import Spec

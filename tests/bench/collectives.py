@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from heuncli.output.snapshots.collectives import count_collectives
+from heuncli.output.tables.collective_tables import count_collectives
 from heuncli.scene.file_format.load import load
 from heuncli.study.load_collectives import Counting, LoadHistory, make_collective
 from heuncli.study.model.options import Options

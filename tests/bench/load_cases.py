@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.analyses.load_cases.assembly import assemble_load_cases
-from heuncli.output.fe_decks.parts import DeckNames
-from heuncli.output.fe_decks.registry import DECKS
+from heuncli.output.fe_decks.decks import DECKS, DeckNames
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.queries.at_option import parse

@@ -96,4 +96,4 @@ def test_nothing_is_shown_beyond_the_horizon(browser: Chromium, page: Pages, res
         tab.press("End")
         last = float(tab.evaluate("document.querySelector('#instant').dataset.value"))
         assert 0.9 * horizon < last < horizon
-        assert f"t = {horizon:.6g} s" in tab.evaluate("document.querySelector('#told').textContent")
+        assert f"t = {horizon:.6g} s" in tab.evaluate("document.querySelector('#notes').textContent")

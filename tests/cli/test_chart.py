@@ -15,7 +15,7 @@ import pytest
 
 from heuncli.analyses.work_precision.results import COMPLETED, ChartRow, ChartRun
 from heuncli.analyses.work_precision.study import ChartRunner, TimedRun
-from heuncli.output.drawing import drawing_files, matplotlib_file
+from heuncli.output.drawing import drawing_files
 from tests.shared.command import HANGING, SPEC_TEXTS, TURNED, Heun
 
 FEW = ("--methods", "DOP853", "--tolerances", "1e-4,1e-8")
@@ -90,7 +90,7 @@ def test_one_file_is_not_written_twice(heun: Heun) -> None:
 
 
 def test_a_missing_extra_is_told_before_the_work(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(drawing_files.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(drawing_files, "CONVERTERS", ())
     done = heun("chart", "long.yaml", "--save", "chart.png")
     assert done.returncode == 2 and "[missing-extra]" in done.stderr and 'pip install "heuncli[plot]"' in done.stderr

@@ -13,8 +13,7 @@ from junitparser import Error, Failure, JUnitXml, Skipped
 from heuncli.app.commands.check.junit import render_junit
 from heuncli.app.commands.check.results import CheckResult
 from heuncli.base.errors import Problem
-from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.tables.workflow_lines import MAX_OF_KIND, Annotation, iter_lines
+from heuncli.output.snapshots.outcomes import MAX_OF_KIND, Annotation, Outcome, iter_lines
 from tests.shared.command import HANGING, Heun
 
 SCHEMA = xmlschema.XMLSchema(str(Path(__file__).with_name("junit.xsd")))

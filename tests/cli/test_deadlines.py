@@ -310,7 +310,7 @@ def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pyt
 def test_what_is_still_made_is_given_up(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a file that is written whole or not at all the limit holds until its last piece is made."""
     (folder / "out.json").write_text("old")
-    monkeypatch.setattr("heuncli.output.documents.as_json._format_json", rung)
+    monkeypatch.setattr("heuncli.output.documents.as_data._format_json", rung)
     done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", "60")
     assert (done.returncode, done.stdout) == (4, "")
     assert "while the results were written" in done.stderr
@@ -320,7 +320,7 @@ def test_what_is_still_made_is_given_up(heun: Heun, folder: Path, monkeypatch: p
 
 def test_text_for_a_pipe_counts_against_the_limit(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Under a limit no half of a table reaches a pipe."""
-    monkeypatch.setattr("heuncli.output.documents.as_json._format_json", rung)
+    monkeypatch.setattr("heuncli.output.documents.as_data._format_json", rung)
     done = heun("run", "hanging.yaml", "--format", "json", "--time-limit", "60")
     assert (done.returncode, done.stdout) == (4, "")
     assert "while the results were written" in done.stderr

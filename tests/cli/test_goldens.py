@@ -16,8 +16,8 @@ import pytest
 from heuncli.base import files
 from heuncli.output.snapshots.changes import find_changes
 from heuncli.output.snapshots.golden_file import NumberSnapshot, RunSnapshot, format_golden_file, read_golden_file
-from heuncli.output.snapshots.selection import find_default_reports
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
+from heuncli.output.tables.report_selection import find_default_reports
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import HeunError
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from tests.shared.fakes import ACCURATE, FakeStudy
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))

@@ -25,7 +25,7 @@ from heuncli.app.commands.sweep.cluster import scheduler as cluster
 from heuncli.app.commands.sweep.cluster import workers as cluster_lots
 from heuncli.app.commands.sweep.cluster.connection import ClusterGone
 from heuncli.app.commands.sweep.cluster.scheduler import WORKER_DIED, solve_variants
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
 from heuncli.version import VERSION

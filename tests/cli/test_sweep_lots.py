@@ -23,7 +23,7 @@ from heuncli.app.commands.sweep.cluster.workers import (
     VariantBatch,
     WorkerPace,
 )
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.study.model.options import Options
 from heuncli.version import VERSION
 from tests.shared.command import TURNED

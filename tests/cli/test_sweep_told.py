@@ -23,7 +23,7 @@ from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable, 
 from heuncli.analyses.variants.plans import Plan, make_axes_plan, make_draws
 from heuncli.app.commands.sweep.output import as_parquet, writer
 from heuncli.app.commands.sweep.output.writer import SweepOutput, make_tables
-from heuncli.output.documents.text_table import format_plain
+from heuncli.output.documents.as_text import format_plain
 from heuncli.study.quantities.table_units import Units, parse_units
 from tests.shared.command import Heun
 

@@ -11,7 +11,7 @@ import pytest
 import heuncli
 from heuncli.analyses.modes import compute_spec_modes
 from heuncli.base.errors import SolveError, SpecError
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.tables.run_description import make_heading
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.gear_trains import STATE, pair, pin, wheel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.results.results import Array
 from heuncli.results.results_schema import REPORTS
 from tests.shared.scenes import near, solved, study

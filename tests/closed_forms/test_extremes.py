@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.output.documents.document import format_cell
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.output.tables.page import make_page
 from heuncli.results.results_schema import REPORTS
 from heuncli.study.quantities.labels import make_labels

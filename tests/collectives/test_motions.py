@@ -12,7 +12,7 @@ import pytest
 
 import heuncli
 from heuncli.base.errors import HeunError
-from heuncli.output.snapshots.collectives import count_collective
+from heuncli.output.tables.collective_tables import count_collective
 from heuncli.output.tables.results_json_schema import make_results_schema
 from heuncli.results.results import Array
 from heuncli.study.load_collectives import Collective, Counting, LoadHistory, make_collective

@@ -9,7 +9,7 @@ from tests.contributing.addition import Addition, Edit, after, heun
 PLAIN = Addition(
     "An FE deck",
     {
-        "heuncli/output/fe_decks/registry.py": (
+        "heuncli/output/fe_decks/decks.py": (
             after('    Deck("abaqus", "abaqus"),\n', '    Deck("plain", "plain"),\n'),
         ),
         "heuncli/app/commands/export.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
@@ -21,8 +21,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes
-from heuncli.output.fe_decks.parts import exact, readme
+from heuncli.output.fe_decks.decks import DeckNames, DeckNodes
+from heuncli.output.fe_decks.decks import format_exact, iter_header
 from heuncli.analyses.load_cases.model import LoadCases
 
 MARK = "!"
@@ -30,11 +30,11 @@ MARK = "!"
 
 def write_plain(cases: LoadCases, names: DeckNames) -> Iterator[str]:
     """The text in pieces."""
-    yield from readme(cases, DeckNodes(cases, names), MARK, "Points are tied by hand.", ("Field is g - a.",))
+    yield from iter_header(cases, DeckNodes(cases, names), MARK, "Points are tied by hand.", ("Field is g - a.",))
     for k, case in enumerate(cases.cases, start=1):
         yield f"Case {k}\\n"
         for axis, a in enumerate(case.field.linear.tolist(), start=1):
-            yield f"  Field {axis} = {exact(-a)}\\n"
+            yield f"  Field {axis} = {format_exact(-a)}\\n"
         yield "End\\n"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.results.results import Array
 from heuncli.study.queries.study import Study
 from tests.oracle.blows import with_blows

@@ -9,8 +9,7 @@ import pytest
 
 import heuncli
 from heuncli.analyses.load_cases.model import LoadCases
-from heuncli.output.fe_decks.parts import DeckNames
-from heuncli.output.fe_decks.registry import DECKS
+from heuncli.output.fe_decks.decks import DECKS, DeckNames
 
 SCENE: dict[str, Any] = {
     "heun": 1,

@@ -19,8 +19,7 @@ from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_u
 from heuncli.app.commands.export import FORMATS
 from heuncli.base.records import replace
 from heuncli.output.fe_decks import nastran
-from heuncli.output.fe_decks.parts import DeckNames, exact
-from heuncli.output.fe_decks.registry import DECKS
+from heuncli.output.fe_decks.decks import DECKS, DeckNames, format_exact
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import cross_vectors
 from tests.shared.load_cases import cases_of, point_masses
@@ -341,7 +340,7 @@ def test_numbers_have_room() -> None:
     """Of all magnitudes and signs, with a point: twelve digits and more in 20 characters, eleven in a large field."""
     rng = np.random.default_rng(0)
     for x in [0.0, -0.0, 0.3, 0.1 + 0.2, 6000.000000000001, *numbers(rng)]:
-        for text, room, digits in ((nastran.format_real(x), 16, 1e-10), (exact(x), 20, 1e-12)):
+        for text, room, digits in ((nastran.format_real(x), 16, 1e-10), (format_exact(x), 20, 1e-12)):
             assert len(text) <= room and "." in text
             assert abs(real(text) - x) <= digits * abs(x)
         assert nastran.parse_real(nastran.format_real(x)) == real(nastran.format_real(x))

@@ -29,7 +29,7 @@ from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.analyses.variants.samples import Sample
 from heuncli.app.cli.entry import enter
 from heuncli.app.commands.find.page import FindPage, to_block
-from heuncli.output.documents.as_json import dump_json
+from heuncli.output.documents.as_data import dump_json
 from heuncli.study.quantities.table_units import Units
 
 Rng = np.random.Generator

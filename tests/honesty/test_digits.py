@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from heuncli.output.documents.as_text import format_plain
 from heuncli.output.documents.document import format_cell
-from heuncli.output.documents.text_table import format_plain
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.output.tables.page import make_page
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.expectations import compare

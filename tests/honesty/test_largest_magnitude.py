@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.queries.measure import measure_value

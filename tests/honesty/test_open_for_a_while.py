@@ -7,7 +7,7 @@ import math
 import pytest
 
 from heuncli.analyses.variants.evaluation import measure_study
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.queries.measure import measure_value

@@ -58,7 +58,7 @@ REDUNDANT = {
 RARE = {
     "heuncli.scene.file_format.tables",
     "heuncli.loads.redundancy.advice",
-    "heuncli.output.snapshots.measure",
+    "heuncli.output.tables.measure",
     "heuncli.study.queries.measure",
     "heuncli.study.queries.expectations",
     "heuncli.output.tables.export",
@@ -98,7 +98,7 @@ def test_a_plain_run_loads_what_it_needs() -> None:
         (("run", "-"), BAR, SHAPED),
         (("run", "-"), DOOR, REDUNDANT),
         (("model", "-"), DOOR, {"heuncli.loads.redundancy.advice"}),
-        (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.output.snapshots.measure"}),
+        (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.output.tables.measure"}),
         (("run", "-", "--format", "json"), CHAIN, {"heuncli.output.tables.export"}),
         (("run", "--help"), "", {"heuncli.app.cli.typer_reader", "typer"}),
     ],

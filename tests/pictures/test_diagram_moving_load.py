@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.output.snapshots.measure import measure_number, parse_measure
+from heuncli.output.tables.measure import measure_number, parse_measure
 from heuncli.study.queries.study import Study
 from tests.shared.drawn_bars import panels_of
 from tests.shared.drawn_panels import edges, heights, upright_at

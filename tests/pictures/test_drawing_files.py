@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.base.errors import SpecError
-from heuncli.output.drawing import drawing_files, matplotlib_file
+from heuncli.output.drawing import drawing_files
 from heuncli.output.drawing.shapes import Area, Text, VectorDrawing
 from tests.shared.chromium import found
 
@@ -84,7 +84,7 @@ def test_where_one_fails_the_next_draws(script: str, programs: Path) -> None:
 
 
 def test_where_there_is_none_it_is_said_before_the_work(programs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(drawing_files.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(SpecError) as refused:
         drawing_files.require_encoder("pdf", "-o x.pdf")
     (problem,) = refused.value.problems

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.app.commands.show.command import REPORTS
-from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_coupling_forces
-from heuncli.output.machine_geometry.machine import Machine, make_machine
+from heuncli.output.machine_geometry.machine import CouplingForce, Machine, iter_coupling_forces, make_machine
 from heuncli.output.machine_geometry.poses import Poses, extract_poses
 from heuncli.output.machine_geometry.ropes import iter_rope_lines
 from heuncli.output.web_page.moving_page import render_moving_page

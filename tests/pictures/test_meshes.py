@@ -7,10 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.output.machine_geometry.mesh_simplification import MAX_TRIANGLES
-from heuncli.output.machine_geometry.silhouettes import find_silhouette, find_solid_edges, select_visible_edges
-from heuncli.output.machine_geometry.solids import Surface, find_nearest_place, make_surfaces
-from heuncli.output.machine_geometry.views import parse_view
+from heuncli.output.machine_geometry.solids import MAX_TRIANGLES, Surface, find_nearest_place, make_surfaces
+from heuncli.output.machine_geometry.views import find_silhouette, find_solid_edges, parse_view, select_visible_edges
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape
 from heuncli.scene.meshes.reading import read_closed_mesh

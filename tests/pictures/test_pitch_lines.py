@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.output.machine_geometry.discs import make_pitch_geometry
 from heuncli.output.machine_geometry.machine import make_machine
-from heuncli.output.machine_geometry.pitch_lines import make_pitch_geometry
 from heuncli.scene.file_format.load import load
 
 SCENE = """heun: 1

@@ -8,7 +8,7 @@ import pytest
 
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.target import COMMON_OPTIONS, KINDS
-from heuncli.output.drawing import drawing_files, matplotlib_file
+from heuncli.output.drawing import drawing_files
 from tests.shared.command import HANGING, Heun
 
 SECTIONED = (
@@ -91,7 +91,7 @@ def test_other_forms_of_pictures_are_refused(heun: Heun, files: Path, name: str)
 def test_without_matplotlib_it_is_said_how_to_install_it(
     heun: Heun, files: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(drawing_files.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(drawing_files, "CONVERTERS", ())
     done = heun("plot", "hanging.yaml", PATH, "-o", "x.png")
     assert done.returncode == 2 and "heuncli[plot]" in done.stderr and not (files / "x.png").exists()

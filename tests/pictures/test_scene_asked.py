@@ -10,7 +10,7 @@ import pytest
 from heuncli.base.joint_kinds import JOINTS, TYPES
 from heuncli.output.drawing.figure import Symbol
 from heuncli.output.drawing.symbols import LINKS, SYMBOLS
-from heuncli.output.figures.joint_items import HOLD_SYMBOLS, TURN_SYMBOLS, find_turn_key
+from heuncli.output.figures.machine_items import HOLD_SYMBOLS, TURN_SYMBOLS, find_turn_key
 from heuncli.output.figures.scenes import make_assembly_figure
 from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.output.machine_geometry.threads import make_threads
+from heuncli.output.machine_geometry.elements import make_threads
 from heuncli.scene.file_format.load import load
 
 SCENE = """heun: 1

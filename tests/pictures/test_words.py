@@ -10,8 +10,7 @@ import pytest
 
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace, VerticalMark
-from heuncli.output.drawing.label_placement import WordBox
-from heuncli.output.drawing.labels import estimate_width
+from heuncli.output.drawing.labels import WordBox, estimate_width
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
 from heuncli.output.drawing.shapes import Mark, Text

@@ -14,7 +14,7 @@ from heuncli.base.text_safety import escape
 from heuncli.base.tolerances import LOST
 from heuncli.output.documents.as_text import draw_figure
 from heuncli.output.documents.document import make_panels
-from heuncli.output.drawing import matplotlib_file
+from heuncli.output.drawing import drawing_files
 from heuncli.output.drawing.figure import Figure, Panel, Spot, Strokes, Trace
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.shapes import Area, Line, VectorDrawing, to_svg
@@ -126,9 +126,9 @@ def test_below_the_table_letters_stand_where_time_and_error_say() -> None:
 
 
 def test_without_its_extra_a_picture_is_refused_with_the_way_to_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(drawing_files.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(HeunError) as refused:
-        matplotlib_file.render(VectorDrawing(10.0, 10.0, "", "", ()), "png")
+        drawing_files.render_by_matplotlib(VectorDrawing(10.0, 10.0, "", "", ()), "png")
     problem = refused.value.problems[0]
     assert problem.code == "missing-extra" and 'pip install "heuncli[plot]"' in str(problem.hint)
 
@@ -136,5 +136,7 @@ def test_without_its_extra_a_picture_is_refused_with_the_way_to_it(monkeypatch: 
 @pytest.mark.parametrize(("form", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_with_its_extra_it_is_drawn_the_same_every_time(form: str, begins: bytes) -> None:
     pytest.importorskip("matplotlib")
-    first, second = (matplotlib_file.render(lay_out(make_work_precision_figure(MANY)), form) for _ in range(2))
+    first, second = (
+        drawing_files.render_by_matplotlib(lay_out(make_work_precision_figure(MANY)), form) for _ in range(2)
+    )
     assert first.startswith(begins) and first == second and svg() == svg(make_work_precision_figure(MANY))

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from heuncli.output.documents.document import OutputTable, format_cell
-from heuncli.output.snapshots import tables as snapshot_tables
+from heuncli.output.tables import page as snapshot_tables
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
-from heuncli.study.quantities.cut_runs import collect_runs, find_sample_extremes, merge_extremes
+from heuncli.study.quantities.cut_runs import collect_cut_series, find_sample_extremes, merge_extremes
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.measure import find_peak
 from heuncli.study.queries.study import Study
@@ -56,7 +56,7 @@ def cells(table: OutputTable) -> list[tuple[str, ...]]:
 @pytest.mark.heavy
 def test_at_each_cut_stand_the_extremes_of_the_motion(solved: tuple[Study, Page, Extremes]) -> None:
     study, page, _ = solved
-    (run,) = collect_runs(page.results, page.labels)
+    (run,) = collect_cut_series(page.results, page.labels)
     found = page.cut_extremes["bar"]
     for i, own in enumerate(run.channels):
         name = own.path
@@ -90,7 +90,7 @@ def test_the_better_of_two_searches_stands_in_both() -> None:
     """3.1 of the cut against 3.0 of the stretch there; at the other end the stretch has the better one."""
     from tests.shared.fakes import LABELS, pendulum
 
-    (run,) = collect_runs(pendulum(np.linspace(0.0, 1.0, 3)), LABELS)
+    (run,) = collect_cut_series(pendulum(np.linspace(0.0, 1.0, 3)), LABELS)
     run = run._replace(channels=run.channels[:1])
     one = np.zeros(1, dtype=np.intp)
     places = ((CutPosition(0.0, None, 0), CutPosition(0.2, None, 1)),)
@@ -144,7 +144,7 @@ def test_the_place_of_a_stress_is_not_sought_in_rounding(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(cuts, "cut_at", counted)
     found = solve(load("box.yaml", LOADED_BOX), Options())
-    run = next(iter(collect_runs(found.results, make_labels(found.spec))))
+    run = next(iter(collect_cut_series(found.results, make_labels(found.spec))))
     certain = make_page(found.results, make_labels(found.spec), found.magnitudes).certain
     told = snapshot_tables.search_stresses(run, certain, found)
     assert told.places[-1][1] == CutPosition(0.0, "beyond", 0)  # of the utilisation

@@ -18,11 +18,9 @@ from heuncli.analyses.work_precision.results import (
 )  # fmt: skip
 from heuncli.app.commands import chart as report
 from heuncli.base.records import replace
-from heuncli.output.documents.as_csv import render_csv
-from heuncli.output.documents.as_json import dump_json
-from heuncli.output.documents.as_text import DEFAULT_WIDTH, render_text
+from heuncli.output.documents.as_data import dump_json, render_csv
+from heuncli.output.documents.as_text import DEFAULT_WIDTH, format_plain, render_text
 from heuncli.output.documents.document import OutputDocument
-from heuncli.output.documents.text_table import format_plain
 from tests.shared.fake_charts import FAILS, REFERENCE, TOO_LONG, chart, run
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base import records
-from heuncli.output.documents.text_table import format_plain
+from heuncli.output.documents.as_text import format_plain
 from heuncli.output.tables.page import make_page
 from heuncli.results.results import Magnitudes, Results
 from heuncli.study.quantities.labels import JointInfo, Labels

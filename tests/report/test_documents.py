@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 
-from heuncli.output.documents.as_csv import render_csv
+from heuncli.output.documents.as_data import render_csv, render_json
 from heuncli.output.documents.as_html import render_html
-from heuncli.output.documents.as_json import render_json
 from heuncli.output.documents.as_markdown import render_markdown
 from heuncli.output.documents.as_text import TextStyle, render_text
 from heuncli.output.documents.document import (

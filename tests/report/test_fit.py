@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from heuncli.base.spelling import wrap_text
+from heuncli.output.documents.as_text import format_plain, split_to_width
 from heuncli.output.documents.document import OutputColumn, OutputTable
-from heuncli.output.documents.text_table import format_plain, split_to_width
 
 WIDE = OutputTable(
     "JOINTS",

@@ -15,8 +15,8 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.run.scene import _check_strict
 from heuncli.base.errors import SpecError
 from heuncli.output.documents.as_markdown import render_table
-from heuncli.output.documents.text_table import format_plain
-from heuncli.output.snapshots import measure
+from heuncli.output.documents.as_text import format_plain
+from heuncli.output.tables import measure
 from heuncli.output.tables.export import to_csv, to_json
 from heuncli.output.tables.page import make_page
 from heuncli.results.results import Block, Results

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import OutputError, SolveError
-from heuncli.output.documents import as_json
+from heuncli.output.documents import as_data
 from heuncli.output.tables import export
 from heuncli.output.tables.export import iter_csv_pieces, iter_json_pieces
 from heuncli.results import stored_arrays
@@ -53,7 +53,7 @@ def swinging(samples: int, cuts: int = 3) -> Spec:
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of eight instants, and texts of a few numbers."""
     for module, name, value in (
-        (parts, "FEW", 0), (parts, "AT_ONCE", 1), (export, "AT_ONCE", 11), (as_json, "AT_ONCE", 11),
+        (parts, "FEW", 0), (parts, "AT_ONCE", 1), (export, "AT_ONCE", 11), (as_data, "AT_ONCE", 11),
         (export, "READ", 23),
         (stored_arrays, "TOGETHER", 5), (stored_arrays, "AT_ONCE", 7),
     ):  # fmt: skip
@@ -80,7 +80,7 @@ def test_parts_are_written_as_the_whole_is(name: str, small: None, monkeypatch: 
     assert (divided.result_recovery is None) == (name in TREES)
     assert divided.results.warnings == whole.results.warnings
     found = texts(divided)
-    for module, name_of_part in ((as_json, "AT_ONCE"), (export, "AT_ONCE"), (export, "READ")):
+    for module, name_of_part in ((as_data, "AT_ONCE"), (export, "AT_ONCE"), (export, "READ")):
         monkeypatch.setattr(module, name_of_part, 10**9)
     assert found == texts(whole)
     json.loads(found[0])
@@ -220,7 +220,7 @@ def pieces(form: str, spec: Spec) -> Any:
 def little(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As little at a time as memory shows it: the parts themselves would hide how it grows."""
     for module, name, value in (
-        (parts, "FEW", 0), (parts, "AT_ONCE", 20_000), (export, "AT_ONCE", 2_000), (as_json, "AT_ONCE", 2_000),
+        (parts, "FEW", 0), (parts, "AT_ONCE", 20_000), (export, "AT_ONCE", 2_000), (as_data, "AT_ONCE", 2_000),
         (export, "READ", 20_000),
         (load_errors, "CUTS_AT_ONCE", 2_000),
     ):  # fmt: skip

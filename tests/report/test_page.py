@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.output.documents.as_text import format_plain
 from heuncli.output.documents.document import format_cell
-from heuncli.output.documents.text_table import format_plain
 from heuncli.output.tables.extremes_tables import MAX_FULL_GROUPS
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.results import Array, Extremes, Results

@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.app.cli.entry import UsageError
 from heuncli.base.errors import SpecError
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.output.tables.export import to_csv
 from heuncli.results.path_hints import iter_readings
 from heuncli.results.path_words import join_path, split_path

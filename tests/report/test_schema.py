@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.base.units import parse_unit
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.output.tables.export import to_csv
 from heuncli.output.tables.page import select_instants
 from heuncli.results.path_words import TREE, Node, find_quantity

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.output.tables.sparkline import (
+from heuncli.output.documents.as_text import (
     ASCII_CHARACTERS,
     BLOCK_CHARACTERS,
     choose_characters,

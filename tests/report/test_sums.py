@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.loads.redundancy.determinate_sums import find_factors
-from heuncli.output.tables.certain_sums import make_sums_table
+from heuncli.output.tables.indeterminate import make_sums_table
 from heuncli.study.quantities.digits import StatedErrors
 from tests.shared.fakes import pendulum
 

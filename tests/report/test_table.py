@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from heuncli.output.documents.as_markdown import render_table
+from heuncli.output.documents.as_text import format_plain
 from heuncli.output.documents.document import OutputColumn, OutputTable
-from heuncli.output.documents.text_table import format_plain
 
 TABLE = OutputTable(
     "HEADING  what it is",

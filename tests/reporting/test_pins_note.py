@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.output.snapshots.run_notes import PINS_NOTE
+from heuncli.output.tables.run_description import PINS_NOTE
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS
 

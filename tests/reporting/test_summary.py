@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.output.summary.summary_document import MAX_LINES, choose_rows, format_direction
-from heuncli.output.summary.summary_rows import SummaryRow
 from heuncli.output.tables.nouns import join_ranges
+from heuncli.output.tables.summary_document import MAX_LINES, choose_rows, format_direction
+from heuncli.output.tables.summary_rows import SummaryRow
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 

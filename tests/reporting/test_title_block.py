@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.output.documents.decimal_comma import use_decimal_comma
+from heuncli.output.documents.document import use_decimal_comma
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS
 from tests.shared.page_reader import PageReader

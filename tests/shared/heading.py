@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from heuncli.output.documents.as_text import render_text
 from heuncli.output.documents.document import OutputDocument
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.tables.run_description import make_heading
 from heuncli.results.results import Results
 
 

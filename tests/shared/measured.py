@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.study.queries.study import Study
 
 

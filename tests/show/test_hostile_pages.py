@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from heuncli.base.text_safety import escape
+from heuncli.output.web_page.moving_page import assemble_page
 from heuncli.output.web_page.packing import encode_data
-from heuncli.output.web_page.page_assembly import assemble_page
 from tests.shared.command import TURNED, Heun
 from tests.shared.moving_pages import PageElements, data_of, decoded
 

@@ -16,8 +16,8 @@ from heuncli.output.machine_geometry.poses import compute_poses
 from heuncli.output.tables.export import to_json
 from heuncli.output.web_page.geometry import make_page_machine
 from heuncli.output.web_page.moving_page import render_moving_page
-from heuncli.output.web_page.number_rows import ZERO_ROWS_PREFIX
 from heuncli.output.web_page.packing import NUMBER_STEPS
+from heuncli.output.web_page.page_numbers import ZERO_ROWS_PREFIX
 from heuncli.results.path_words import split_leading_key
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
@@ -113,7 +113,10 @@ def test_what_is_0_throughout_is_named(file: Path) -> None:
     data = data_of(page)
     there = {row["path"] for row in rows(data)}
     said = [
-        name for block in data["blocks"] for told in block["told"] for name in told[len(ZERO_ROWS_PREFIX) :].split(", ")
+        name
+        for block in data["blocks"]
+        for note in block["notes"]
+        for name in note[len(ZERO_ROWS_PREFIX) :].split(", ")
     ]
     for name, joint in study.results.joints.items():
         for quantity in ("force", "moment"):

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.output.web_page import page_assembly
-from heuncli.output.web_page.page_assembly import (
+from heuncli.output.web_page import moving_page
+from heuncli.output.web_page.moving_page import (
     EXPORT,
     FOLDER,
     IMPORT,
@@ -50,9 +50,9 @@ def test_wheels_carry_all_of_its_files() -> None:
 
 
 def test_every_script_is_used_once_and_after_what_it_needs() -> None:
-    orders = [sort_scripts(main) for main in page_assembly.TEMPLATES]
+    orders = [sort_scripts(main) for main in moving_page.TEMPLATES]
     assert sorted(set().union(*orders)) == SCRIPTS
-    for main, order in zip(page_assembly.TEMPLATES, orders, strict=True):
+    for main, order in zip(moving_page.TEMPLATES, orders, strict=True):
         assert order[-1] == main and len(set(order)) == len(order)
         for place, name in enumerate(order):
             needed = {found[2] for found in IMPORT.finditer(read_page_file(f"{name}.js"))}

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.output.web_page.page_assembly import bundle_scripts, sort_scripts
+from heuncli.output.web_page.moving_page import bundle_scripts, sort_scripts
 from heuncli.study.quantities.digits import Style
 
 NODE = shutil.which("node")
@@ -49,7 +49,7 @@ def test_numbers_have_the_digits_of_tables() -> None:
         cases.append((float(scale * random.normal()), how))
     cases += [(0.0, Style(3)), (-0.00049, Style(3)), (1e-300, Style(5, True))]
     found = run(
-        "return given.map(([value, style]) => digits_js.written(value, style));", [[v, list(s)] for v, s in cases]
+        "return given.map(([value, style]) => digits_js.formatNumber(value, style));", [[v, list(s)] for v, s in cases]
     )
     wanted = [how.write(value) for value, how in cases]
     # an exponent is written as each of the two languages does: 1e+07, 1e+7
@@ -58,7 +58,7 @@ def test_numbers_have_the_digits_of_tables() -> None:
 
 
 def test_what_is_open_is_told() -> None:
-    code = "return [NaN, -Infinity].map((value) => digits_js.written(value, [3, false, 0, true]));"
+    code = "return [NaN, -Infinity].map((value) => digits_js.formatNumber(value, [3, false, 0, true]));"
     assert run(code, None) == ["open", "unbounded"]
 
 

@@ -76,7 +76,7 @@ def written(heun: Heun, folder: Path, *words: str) -> dict[str, object]:
 def test_a_long_run_is_thinned_and_that_is_said(heun: Heun, folder: Path) -> None:
     (folder / "fine.yaml").write_text(TURNED + "analysis: {duration: 1, samples: 3001}\n")
     found = written(heun, folder, "fine.yaml")
-    assert found["count"] == MAX_PAGE_FRAMES and "of the 3001 output times" in str(found["told"])
+    assert found["count"] == MAX_PAGE_FRAMES and "of the 3001 output times" in str(found["notes"])
     found = written(heun, folder, "fine.yaml", "--frames", "10")
     times = unpacked(found["time"], 10)  # type: ignore[arg-type]
     assert found["count"] == 10 and times[0] == 0.0 and times[-1] == 1.0
@@ -99,7 +99,7 @@ def test_nothing_is_shown_beyond_the_horizon(heun: Heun, folder: Path) -> None:
     horizon = found["horizon"]
     times = unpacked(found["time"], int(str(found["count"])))  # type: ignore[arg-type]
     assert isinstance(horizon, float) and horizon < 60.0
-    assert 0.9 * horizon < times[-1] < horizon and "later results are not claimed" in str(found["told"])
+    assert 0.9 * horizon < times[-1] < horizon and "later results are not claimed" in str(found["notes"])
 
 
 def test_units_are_those_asked_for_and_numbers_stay_si(heun: Heun, folder: Path) -> None:
@@ -123,7 +123,7 @@ def test_largest_loads_without_room_are_told(heun: Heun, folder: Path) -> None:
     spec = str(SPECS / "engine.yaml")
     for frames, told in (("8", True), ("60", False)):
         assert heun("show", spec, "-o", "page.html", "--frames", frames, "-q").returncode == 0
-        said = data_of((folder / "page.html").read_text())["told"]
+        said = data_of((folder / "page.html").read_text())["notes"]
         assert any("of the times at which loads are largest" in text for text in said) == told, said
 
 
@@ -133,7 +133,7 @@ def test_loads_that_were_not_sought_between_the_instants_are_told(
     for most, told in ((10**6, False), (0, True)):
         monkeypatch.setattr("heuncli.study.queries.study.MOST_SEARCHED", most)
         assert heun("show", "swinging.yaml", "-o", "page.html").returncode == 0
-        said = data_of((folder / "page.html").read_text())["told"]
+        said = data_of((folder / "page.html").read_text())["notes"]
         assert any("Too many loads to search" in text for text in said) == told, said
 
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Literal
 from heuncli.app.cli import terminal
 from heuncli.app.cli.output import emit
 from heuncli.base.text_safety import escape
-from heuncli.output.documents.as_text import PLAIN, TextStyle, iter_text, render_text
+from heuncli.output.documents.as_text import PLAIN, TextStyle, align_cells, iter_text, render_text
 from heuncli.output.documents.document import OutputDocument, OutputTable, is_governing
-from heuncli.output.documents.text_table import align_cells
 
 if TYPE_CHECKING:
     from heuncli.output.drawing.figure import Figure
@@ -74,9 +73,9 @@ def _draw_on_terminal(figure: Figure) -> str:
 def _find_writer(form: str) -> Callable[[OutputDocument], str]:
     """Return the writer of a format; each is imported where it is used."""
     if form == "json":
-        from heuncli.output.documents.as_json import render_json as render
+        from heuncli.output.documents.as_data import render_json as render
     elif form == "csv":
-        from heuncli.output.documents.as_csv import render_csv as render
+        from heuncli.output.documents.as_data import render_csv as render
     elif form == "html":
         from heuncli.output.documents.as_html import render_html as render
     else:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from heuncli.app.cli.output import print_stderr
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.text_safety import escape
-from heuncli.output.snapshots.run_notes import collect_warnings
+from heuncli.output.tables.run_description import collect_warnings
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options

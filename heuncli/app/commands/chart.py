@@ -33,8 +33,8 @@ from heuncli.base.errors import Problem
 from heuncli.base.method_rows import AUTO, METHODS, find_method
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.output.documents.as_csv import make_columns
-from heuncli.output.documents.as_json import FORMAT as FORMAT_NUMBER
+from heuncli.output.documents.as_data import FORMAT as FORMAT_NUMBER
+from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import (
     Cell,
     NumberCell,

@@ -25,10 +25,10 @@ from heuncli.output.snapshots.change import Change, format_difference, format_va
 from heuncli.output.snapshots.changes import EXTRA, MISSING, THROUGHOUT, find_changes
 from heuncli.output.snapshots.golden_file import RunSnapshot, is_text_cut_off, validate_golden_data
 from heuncli.output.snapshots.json_results import find_common_instants, read_instants, read_run_snapshot
-from heuncli.output.snapshots.selection import find_default_reports
+from heuncli.output.snapshots.outcomes import Annotation, iter_lines
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
 from heuncli.output.tables.nouns import format_count
-from heuncli.output.tables.workflow_lines import Annotation, iter_lines
+from heuncli.output.tables.report_selection import find_default_reports
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 from heuncli.study.model.options import Options

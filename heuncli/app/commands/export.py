@@ -37,8 +37,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.base.spelling import list_words, suggest
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, explain_invalid_set
-from heuncli.output.fe_decks.registry import DECKS
+from heuncli.output.fe_decks.decks import DECKS, DeckNames, DeckNodes, explain_invalid_set
 from heuncli.output.tables.nouns import format_count
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
@@ -234,7 +233,7 @@ def _solve_scene(request: ExportRequest, spec: Spec, body: str, instants: Sequen
     """Solve the scene as far as the load cases need it."""
     path_measures: list[MeasureRequest] = make_extreme_requests(instants)
     if path_measures:
-        from heuncli.output.snapshots.measure import require_known_paths  # only needed for extremes
+        from heuncli.output.tables.measure import require_known_paths  # only needed for extremes
 
         require_known_paths(path_measures, spec, "--at")
     ends = {name: {joint.a, joint.b} for name, joint in spec.joints.items()}
@@ -255,7 +254,7 @@ def _solve_scene(request: ExportRequest, spec: Spec, body: str, instants: Sequen
 def _require_writable(form: str, cases: LoadCases) -> None:
     """Raise UsageError for an impulse in a deck, which can only hold forces."""
     impulse_cases = [case.name for case in cases.cases if case.is_impulse]
-    if impulse_cases and DECKS[form].static:
+    if impulse_cases and DECKS[form].is_static:
         message = f"--at {impulse_cases[0]}: impulses are in {cases.units[0]} s, but a deck for {form} takes forces"
         hint = "--blow-over SECONDS gives the mean loads over this duration; or use --format csv"
         raise UsageError(Problem("bad-option", message, hint=hint))
@@ -304,5 +303,5 @@ def _print_sums(cases: LoadCases, form: str, names: DeckNames) -> None:
         what = f"{format_count(len(case.actions), 'load')} and inertia, largest {largest}"
         remainder = f"force and moment sums balance to {sums.relative:.1e} of the largest"
         print_stderr(f"heun: {case.name}: t = {case.time:.6g} s, {what}, {remainder}")
-    for note in DECKS[form].notes(cases, names):
+    for note in DECKS[form].list_notes(cases, names):
         print_stderr(f"heun: {note}")

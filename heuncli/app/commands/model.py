@@ -15,7 +15,7 @@ from heuncli.app.cli.target import choose_format
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputDocument, Sentence
-from heuncli.output.tables.model_text import make_description_parts
+from heuncli.output.tables.run_description import make_description_parts
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.workflow import describe

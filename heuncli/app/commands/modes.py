@@ -16,7 +16,7 @@ from heuncli.app.cli.target import choose_format
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.linearisation.oscillations import Mode, SceneModes
-from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes
 from heuncli.scene.file_format.load import load

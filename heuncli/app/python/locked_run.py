@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.app.python.python_warnings import emit_warnings
 from heuncli.base.errors import Problem, SpecError, UsageError
-from heuncli.output.snapshots.run_notes import collect_warnings
+from heuncli.output.tables.run_description import collect_warnings
 from heuncli.results.results import Array, Results
 from heuncli.study.model.options import require_within_run
 from heuncli.study.model.setup import attach_locations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from heuncli.output.documents.document import append_unit
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
 

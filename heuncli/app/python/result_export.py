@@ -16,9 +16,9 @@ from heuncli.base.records import replace
 from heuncli.output.documents.as_html import escape_text, make_element, render_table
 from heuncli.output.documents.as_text import render_text
 from heuncli.output.documents.document import format_head
-from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
-from heuncli.output.snapshots.tables import TablesQuery
-from heuncli.output.summary.run_document import RunParts, make_run_parts
+from heuncli.output.tables.page import TablesQuery
+from heuncli.output.tables.report_selection import ReportChoice, find_default_reports, parse_choice, select_reports
+from heuncli.output.tables.summary_document import RunParts, make_run_parts
 from heuncli.results.results import Array
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.model.selection import Selection

@@ -16,7 +16,7 @@ from heuncli.base.errors import Problem, SpecError, UsageError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.document import format_head
-from heuncli.output.snapshots.measure import SUMS, find_sum_unit
+from heuncli.output.tables.measure import SUMS, find_sum_unit
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Mask, Results
 from heuncli.results.results_paths import PathValues, find_section, find_values

@@ -184,7 +184,7 @@ class Solved(Mapping[str, "Signal"]):
 
         Ranges and levels are in SI. Raises HeunError for a number that has no collective.
         """
-        from heuncli.output.snapshots.collectives import count_collective
+        from heuncli.output.tables.collective_tables import count_collective
 
         check_arguments(("path", path, TEXT), ("slopes", slopes, NUMBERS), ("bins", bins, INTEGER), optional=False)
         check_arguments(("repeat", repeat, INTEGER), ("closed", closed, BOOLEAN), optional=False)

@@ -1,6 +1,6 @@
-"""Tables of extremes: a row for each number, with its least and greatest value in each load case.
+"""Tables of extremes: a row for each number of the results, with its least and greatest value in each load case.
 
-The value that no other case exceeds governs, and is bold. If there are many cases, their envelope is shown.
+The numbers come in groups, one for each joint, support and load, as in the tables of `heun run`.
 """
 
 from __future__ import annotations
@@ -20,13 +20,20 @@ from heuncli.output.client_report.extremes import (
     format_place,
     iter_run_extremes,
 )
-from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Fill, OutputColumn, OutputTable, TextCell, join_names
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.tables.extremes_tables import MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
+from heuncli.output.tables.table_blocks import format_component
+from heuncli.output.tables.table_plans import TablePlan
+from heuncli.results.results import Results
+from heuncli.results.results_schema import MAGNITUDES, XYZ
+from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.channels import FAMILIES
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE
 
+MAGNITUDE_LABELS = {"force": "|F|", "moment": "|M|"}  # of a vector
+TOTAL = "total"  # of the foundation
 MAX_NUMBER_COLUMNS = 8  # of cases beside each other; if there are more, their envelope
 MAX_HALF_COLUMNS = 4  # columns of numbers with which a table runs through two columns of a page
 MIN_SPLIT_ROWS = 9  # rows of a table that runs through two columns
@@ -39,6 +46,73 @@ NOISE_NOTE = f"{DASH}: below 1/1000 of the largest of its kind; rows of dashes o
 STEADY_NOTE = "one value: the same at all {}"
 ENVELOPE_NOTE = "least and greatest value of {} load cases; each case: heun run SPEC --case all"
 HIDDEN_CASES_NOTE = "open or unknown, where it may be larger: {}"
+
+
+class LoadNumber(NamedTuple):
+    """A number of the results: label, path, and the family of numbers with which it shares its decimals.
+
+    is_magnitude: whether it is a magnitude, whose minimum governs nothing
+    vector: path of the vector of which it is a component or the magnitude
+    """
+
+    label: str
+    path: str
+    family: str
+    is_magnitude: bool = False
+    vector: str = ""
+
+
+class LoadGroup(NamedTuple):
+    """The numbers of one object, with its words and the note next to it; key: its name in the spec."""
+
+    name: str
+    note: str
+    rows: Sequence[LoadNumber]
+    key: str = ""
+
+
+def iter_groups(data: ReportData, plan: TablePlan) -> Iterator[LoadGroup]:
+    """Yield the objects of a kind, each with its numbers."""
+    results = data.runs[0].results
+    for name, prefix in _iter_objects(results, plan):
+        rows = list(_iter_numbers(data, prefix, plan.quantities))
+        if rows:
+            words = name if plan.is_foundation else describe_object(plan.kind, name, data.labels)
+            yield LoadGroup(words, plan.note(name, data.labels), rows, name)
+
+
+def _iter_objects(results: Results, plan: TablePlan) -> Iterator[tuple[str, str]]:
+    """Yield the names of the objects of a kind, each with the prefix of its paths."""
+    block = getattr(results, plan.kind)
+    if not plan.is_foundation:
+        yield from ((name, f"{plan.kind}.{name}") for name in block)
+        return
+    yield TOTAL, "foundation"
+    for part, word in (("supports", "support"), ("elements", "element")):
+        yield from ((f"{word} {name}", f"foundation.{part}.{name}") for name in block.get(part, {}))
+
+
+def _iter_numbers(data: ReportData, prefix: str, quantities: Sequence[str]) -> Iterator[LoadNumber]:
+    """Yield the numbers of one object; for a vector its components and its magnitude."""
+    numbers = data.runs[0].snapshot.numbers
+    for quantity in quantities:
+        path, family = f"{prefix}.{quantity}", FAMILIES.get(quantity, quantity)
+        components = [f"{path}.{axis}" for axis in XYZ]
+        is_vector = all(component in numbers for component in components)
+        for axis, component in zip(XYZ, components, strict=True):
+            if is_vector:
+                yield LoadNumber(format_component(f"{quantity}.{axis}"), component, family, vector=path)
+        if is_vector:
+            yield LoadNumber(
+                MAGNITUDE_LABELS.get(quantity, f"|{quantity}|"), path, family, is_magnitude=True, vector=path
+            )
+        elif path in numbers:
+            yield LoadNumber(quantity.replace("_", " "), path, family, quantity in MAGNITUDES)
+
+
+def drop_components(group: LoadGroup) -> LoadGroup:
+    """Drop the components of vectors from a group, keeping their magnitudes."""
+    return group._replace(rows=[row for row in group.rows if row.is_magnitude or not row.vector])
 
 
 def make_cases_table(

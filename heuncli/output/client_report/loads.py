@@ -11,7 +11,14 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.client_report.cases_table import has_instants, make_cases_table
+from heuncli.output.client_report.cases_table import (
+    TOTAL,
+    LoadGroup,
+    drop_components,
+    has_instants,
+    iter_groups,
+    make_cases_table,
+)
 from heuncli.output.client_report.extremes import (
     DASH,
     MINUS,
@@ -20,7 +27,6 @@ from heuncli.output.client_report.extremes import (
     find_extremes,
     format_instant,
 )
-from heuncli.output.client_report.load_groups import TOTAL, LoadGroup, drop_components, iter_groups
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import OutputColumn, OutputTable, Part, Sentence, TextCell
 from heuncli.output.machine_geometry.poses import extract_poses

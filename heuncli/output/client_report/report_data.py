@@ -12,9 +12,9 @@ from heuncli.base.records import record
 from heuncli.output.snapshots.envelopes import NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.outcomes import Outcome
-from heuncli.output.summary.summary_document import Summary
 from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants
 from heuncli.output.tables.page import Page
+from heuncli.output.tables.summary_document import Summary
 from heuncli.results.results import Array, Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.client_report.cases_table import has_instants, make_cases_table
+from heuncli.output.client_report.cases_table import LoadGroup, LoadNumber, has_instants, make_cases_table
 from heuncli.output.client_report.extremes import (
     CaseExtremes,
     Family,
@@ -18,7 +18,6 @@ from heuncli.output.client_report.extremes import (
     format_place,
     iter_run_extremes,
 )
-from heuncli.output.client_report.load_groups import LoadGroup, LoadNumber
 from heuncli.output.client_report.machine import HALF_WIDTH
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import Drawing, OutputColumn, OutputTable, Part, Sentence, TextCell, join_names

@@ -16,16 +16,15 @@ from heuncli.output.client_report.extremes import (
 )
 from heuncli.output.client_report.report_data import ReportData, ReportedRun
 from heuncli.output.documents.document import OutputTable, join_names
-from heuncli.output.figures.turning import find_span, is_monotonic
-from heuncli.output.figures.worst_instant import select_worst
-from heuncli.output.snapshots.tables import SearchedPage
-from heuncli.output.summary.run_document import summarise
-from heuncli.output.summary.summary_document import Summary, group_alike, make_table, merge_cases
-from heuncli.output.summary.summary_rows import MIN_TURN, SummaryRow
+from heuncli.output.figures.courses import find_span, is_monotonic
+from heuncli.output.figures.posed_machine import select_worst
 from heuncli.output.tables.nouns import format_count
+from heuncli.output.tables.page import SearchedPage
+from heuncli.output.tables.summary_document import Summary, group_alike, make_table, merge_cases, summarise
+from heuncli.output.tables.summary_rows import MIN_TURN, SummaryRow
 from heuncli.results.results import NOWHERE, Extremes
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.cut_runs import collect_runs
+from heuncli.study.quantities.cut_runs import collect_cut_series
 
 MORE_NOTE = "{}: chapter Loads"
 UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"
@@ -53,7 +52,7 @@ def _read_extremes(run: ReportedRun) -> SearchedPage:
     """Return the page of a run with the extremes of its snapshot, which were searched for the tables."""
     page = run.page._replace(doubtful=run.uncertain_instants)
     paths = [channel.path for channel in page.make_search().collect(page.results)]
-    paths += [channel.path for own in collect_runs(page.results, page.labels) for channel in own.stresses]
+    paths += [channel.path for own in collect_cut_series(page.results, page.labels) for channel in own.stresses]
     rows, places, known = [], [], []
     for path in paths:
         ends = find_extremes(run, path)

@@ -10,7 +10,6 @@ from typing import Any, Literal
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
-from heuncli.output.documents.decimal_comma import use_decimal_comma
 from heuncli.output.documents.document import (
     Brand,
     Cell,
@@ -26,6 +25,7 @@ from heuncli.output.documents.document import (
     format_cell,
     has_content,
     is_governing,
+    use_decimal_comma,
 )
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.shapes import Text, to_svg

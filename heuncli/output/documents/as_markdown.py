@@ -9,7 +9,6 @@ from typing import Any
 
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.as_text import draw_figure
-from heuncli.output.documents.decimal_comma import use_decimal_comma
 from heuncli.output.documents.document import (
     Brand,
     Cell,
@@ -26,6 +25,7 @@ from heuncli.output.documents.document import (
     format_cell,
     has_content,
     is_governing,
+    use_decimal_comma,
 )
 from heuncli.version import VERSION
 

@@ -2,11 +2,12 @@
 
 A command builds one document from its result: facts below the title, tables with typed columns, sentences, figures.
 Numbers stay numbers with their errors until a writer prints them. `app/cli/documents.py` writes it in the asked format;
-`as_text`, `as_markdown`, `as_html`, `as_json` and `as_csv` are the writers.
+`as_text`, `as_markdown`, `as_html` and `as_data` (JSON, CSV) are the writers.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -20,6 +21,8 @@ MAX_NAMES = 8  # of a list in a sentence
 Kind = Literal["number", "text", "instant", "path", "verdict"]  # of a column; numbers are aligned at their points
 Mood = Literal["plain", "good", "bad", "unsure"]
 Fill = Literal["", "page", "columns", "half"]  # of a table on paper
+NUMBER_WITH_POINT = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\d.]|[A-Za-z_]\w*\.)")  # no version, date or file name
+LIST_COMMA = re.compile(r"(?<=\d), (?=[−-]?\d+(?:\.\d+)?(?![\d.\w]))")  # between numbers
 
 
 class NumberCell(NamedTuple):
@@ -256,3 +259,52 @@ def join_names(names: Sequence[str]) -> str:
     """Join the first few names, and state how many more there are."""
     rest = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
     return ", ".join(names[:MAX_NAMES]) + rest
+
+
+def write_decimal_comma(document: OutputDocument) -> OutputDocument:
+    """Return the document with decimal commas."""
+    return document._replace(parts=[_convert_part(part) for part in document.parts])
+
+
+def use_decimal_comma(text: str) -> str:
+    """Return a text with decimal commas, and with semicolons between the numbers of a list."""
+    return NUMBER_WITH_POINT.sub(r"\1,\2", LIST_COMMA.sub("; ", text))
+
+
+def _convert_part(part: Part) -> Part:
+    """Convert a part; a title block and a verbatim text stay as they are."""
+    if isinstance(part, Chapter):
+        return part._replace(parts=[_convert_part(each) for each in part.parts])
+    if isinstance(part, Sentence):
+        return part._replace(text=use_decimal_comma(part.text))
+    if isinstance(part, Facts) and not part.is_block:
+        return Facts([(label, use_decimal_comma(text)) for label, text in part.rows])
+    if isinstance(part, Listing):
+        return Listing(part.title, [use_decimal_comma(item) for item in part.items])
+    if isinstance(part, OutputTable):
+        return _convert_table(part)
+    if isinstance(part, Drawing):
+        return part._replace(caption=use_decimal_comma(part.caption), has_decimal_comma=True)
+    return part
+
+
+def _convert_table(table: OutputTable) -> OutputTable:
+    return table._replace(
+        heading=use_decimal_comma(table.heading),
+        rows=[_convert_row(row, table.columns) for row in table.rows],
+        notes=[use_decimal_comma(note) for note in table.notes],
+    )
+
+
+def _convert_row(row: Sequence[Cell] | str, columns: Sequence[OutputColumn]) -> Sequence[Cell] | str:
+    if isinstance(row, str):
+        return use_decimal_comma(row)
+    return [_convert_cell(cell, column) for cell, column in zip(row, columns, strict=True)]
+
+
+def _convert_cell(cell: Cell, column: OutputColumn) -> Cell:
+    if isinstance(cell, TextCell):
+        return cell._replace(text=use_decimal_comma(cell.text))
+    if isinstance(cell, (NumberCell, float)) or column.is_number:
+        return use_decimal_comma(format_cell(cell))
+    return use_decimal_comma(cell) if isinstance(cell, str) else cell

@@ -11,7 +11,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import (
     Scaling,
 )
-from heuncli.output.drawing.label_placement import WordBox, WordField, count_columns
+from heuncli.output.drawing.labels import WordBox, WordField, count_columns
 from heuncli.output.drawing.style import find_pen
 
 BRAILLE = 0x2800

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import log
 
+import numpy as np
+
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.results.results import Array
@@ -213,6 +215,14 @@ class Cells(NamedTuple):
     x_edges: Array
     y_edges: Array
     values: Array
+
+    def find_shares(self) -> Array:
+        """Return the values as shares between the lowest and the highest, (n_y, n_x); 0.5 if all are equal."""
+        known = self.values[np.isfinite(self.values)]
+        low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+        if high > low:
+            return (self.values - low) / (high - low)
+        return np.where(np.isfinite(self.values), 0.5, self.values)
 
 
 Item = (

@@ -224,15 +224,12 @@ def _draw_cells(item: Cells, box: PanelBox) -> Iterator[Shape]:
         box.to_pixels(item.x_edges, np.full(len(item.x_edges), box.y_scaling.low))[:, 0],
         box.to_pixels(np.full(len(item.y_edges), box.x_scaling.low), item.y_edges)[:, 1],
     )
-    known = item.values[np.isfinite(item.values)]
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
     is_known = np.pad(np.isfinite(item.values), ((0, 1), (0, 1)))
-    for j, row in enumerate(item.values.tolist()):
-        for i, value in enumerate(row):
+    for j, row in enumerate(item.find_shares().tolist()):
+        for i, share in enumerate(row):
             if not is_known[j, i]:
                 yield from _hatch_box(xs[i], ys[j + 1], xs[i + 1], ys[j])
-            if is_known[j, i]:
-                share = (value - low) / (high - low) if high > low else 0.5
+            else:
                 right = xs[i + 1] + (CELL_OVERLAP if is_known[j, i + 1] else 0.0)
                 upper = ys[j + 1] - (CELL_OVERLAP if is_known[j + 1, i] else 0.0)
                 corners = ((xs[i], ys[j]), (right, ys[j]), (right, upper), (xs[i], upper))

@@ -29,7 +29,7 @@ from heuncli.output.drawing.figure import (
     VerticalMark,
     Words,
 )
-from heuncli.output.drawing.label_placement import count_columns
+from heuncli.output.drawing.labels import count_columns
 from heuncli.output.drawing.style import find_pen
 from heuncli.output.drawing.symbols import SYMBOLS, SymbolPart, make_link
 from heuncli.results.results import Array
@@ -186,18 +186,15 @@ def _draw_bars(item: Bars, canvas: Canvas) -> None:
 
 
 def _draw_cells(item: Cells, canvas: Canvas) -> None:
-    known = item.values[np.isfinite(item.values)]
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    shades = SHADES if canvas.style.has_braille else PLAIN_SHADES
+    shares, shades = item.find_shares(), SHADES if canvas.style.has_braille else PLAIN_SHADES
     for row in range(canvas.rows):
         for column in range(canvas.columns):
             i, j = (
                 _find_cell(item.x_edges, column / canvas.columns, canvas.x_scaling),
                 _find_cell(item.y_edges, 1.0 - row / canvas.rows, canvas.y_scaling),
             )
-            value = float(item.values[j, i])
-            if math.isfinite(value):
-                share = (value - low) / (high - low) if high > low else 0.5
+            share = float(shares[j, i])
+            if math.isfinite(share):
                 canvas.words.setdefault((row, column), (shades[round(share * (len(shades) - 1))], NO_PEN))
 
 

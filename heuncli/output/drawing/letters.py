@@ -26,8 +26,7 @@ from heuncli.output.drawing.figure import (
     Trace,
     VerticalMark,
 )
-from heuncli.output.drawing.label_placement import count_columns, make_omitted_note
-from heuncli.output.drawing.labels import order_items
+from heuncli.output.drawing.labels import count_columns, make_omitted_note, order_items
 from heuncli.output.drawing.letter_items import DRAW_FUNCTIONS, choose_mark
 from heuncli.output.drawing.style import PANEL_HEIGHT, find_pen
 

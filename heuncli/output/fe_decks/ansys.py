@@ -10,7 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, NodeLoad, case_heading, exact, part_lines, readme
+from heuncli.output.fe_decks.decks import (
+    DeckNames,
+    DeckNodes,
+    NodeLoad,
+    format_case_heading,
+    format_exact,
+    iter_header,
+    iter_part_lines,
+)
 from heuncli.results.results import Array
 
 MARK = "!"
@@ -30,35 +38,36 @@ FORCE_LABELS = ("FX", "FY", "FZ", "MX", "MY", "MZ")
 def write_ansys(cases: LoadCases, names: DeckNames) -> Iterator[str]:
     """Yield the text of the macro, in pieces."""
     nodes = DeckNodes(cases, names)
-    yield from readme(cases, nodes, MARK, TIE_NOTE, CARD_NOTES)
+    yield from iter_header(cases, nodes, MARK, TIE_NOTE, CARD_NOTES)
     yield "/PREP7\n"
     for node in nodes.nodes:
-        yield f"N,{node.number},{','.join(map(exact, node.place.tolist()))}\n"
+        yield f"N,{node.number},{','.join(map(format_exact, node.place.tolist()))}\n"
     yield "FINISH\n/SOLU\nANTYPE,STATIC\n"
     for k, case in enumerate(cases.cases, start=1):
-        yield from _case_lines(cases, case, nodes, k)
+        yield from _iter_case_lines(cases, case, nodes, k)
 
 
-def _case_lines(cases: LoadCases, case: LoadCase, nodes: DeckNodes, number: int) -> Iterator[str]:
-    yield from case_heading(case, number, MARK)
+def _iter_case_lines(cases: LoadCases, case: LoadCase, nodes: DeckNodes, number: int) -> Iterator[str]:
+    """Yield the load step of a case: its forces in place of the former ones, and the acceleration of the body."""
+    yield from format_case_heading(case, number, MARK)
     yield f"TIME,{number}\n"
     for node in nodes.nodes:
         yield f"FDELE,{node.number},ALL\n"
     for load in nodes.find_loads(case):
-        yield from part_lines(load, cases.units, MARK)
-        yield from _force_lines(load)
+        yield from iter_part_lines(load, cases.units, MARK)
+        yield from _iter_force_lines(load)
     field = case.field
     for command, value in (("ACEL", field.linear), ("OMEGA", field.angular_velocity),
                            ("DOMEGA", field.angular_acceleration)):  # fmt: skip
-        yield _vector_line(command, value)
+        yield _format_vector_line(command, value)
     yield f"LSWRITE,{number}\n"
 
 
-def _force_lines(load: NodeLoad) -> Iterator[str]:
+def _iter_force_lines(load: NodeLoad) -> Iterator[str]:
     for label, value in zip(FORCE_LABELS, [*load.force.tolist(), *load.moment.tolist()], strict=True):
         if value:
-            yield f"F,{load.node.number},{label},{exact(value)}\n"
+            yield f"F,{load.node.number},{label},{format_exact(value)}\n"
 
 
-def _vector_line(command: str, value: Array) -> str:
-    return f"{command},{','.join(map(exact, value.tolist()))}\n"
+def _format_vector_line(command: str, value: Array) -> str:
+    return f"{command},{','.join(map(format_exact, value.tolist()))}\n"

@@ -18,7 +18,15 @@ import numpy as np
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases
 from heuncli.base.records import replace
-from heuncli.output.fe_decks.parts import DeckNames, DeckNodes, NodeLoad, case_heading, part_lines, readme, step_name
+from heuncli.output.fe_decks.decks import (
+    DeckNames,
+    DeckNodes,
+    NodeLoad,
+    format_case_heading,
+    iter_header,
+    iter_part_lines,
+    make_step_name,
+)
 from heuncli.results.results import Array
 
 MARK = "$"
@@ -43,55 +51,56 @@ SETS_PER_CASE = 10  # load set numbers reserved for a case: the sum, then forces
 def write_nastran(cases: LoadCases, names: DeckNames) -> Iterator[str]:
     """Yield the text of the deck, in pieces."""
     nodes = DeckNodes(cases, names)
-    yield from readme(cases, nodes, MARK, TIE_NOTE, (*CARD_NOTES, _rounding_note(cases)))
+    yield from iter_header(cases, nodes, MARK, TIE_NOTE, (*CARD_NOTES, _describe_rounding(cases)))
     yield "SOL 101\nCEND\nECHO = NONE\nOLOAD = ALL\nSPCFORCES = ALL\n$ SPC = 1\n"
     for k, case in enumerate(cases.cases, start=1):
-        yield f"SUBCASE {k}\n  SUBTITLE = {step_name(k, case)}\n  LOAD = {SETS_PER_CASE * k}\n"
+        yield f"SUBCASE {k}\n  SUBTITLE = {make_step_name(k, case)}\n  LOAD = {SETS_PER_CASE * k}\n"
     yield "BEGIN BULK\n$ INCLUDE 'mesh.bdf'\n"
     for node in nodes.nodes:
-        yield from format_card("GRID", [node.number, "", *node.place.tolist(), ""])
+        yield from iter_card_lines("GRID", [node.number, "", *node.place.tolist(), ""])
     for k, case in enumerate(cases.cases, start=1):
-        yield from _case_cards(cases, case, nodes, k)
+        yield from _iter_case_cards(cases, case, nodes, k)
     yield "ENDDATA\n"
 
 
-def _case_cards(cases: LoadCases, case: LoadCase, nodes: DeckNodes, k: int) -> Iterator[str]:
-    yield from case_heading(case, k, MARK)
+def _iter_case_cards(cases: LoadCases, case: LoadCase, nodes: DeckNodes, k: int) -> Iterator[str]:
+    """Yield the cards of the case number k: forces, GRAV, RFORCE of A and of RACC, and their sum."""
+    yield from format_case_heading(case, k, MARK)
     load_set, field = SETS_PER_CASE * k, case.field
     used: list[int] = []
     for load in nodes.find_loads(case):
-        yield from part_lines(load, cases.units, MARK)
-        yield from _force_cards(load, load_set + 1)
+        yield from iter_part_lines(load, cases.units, MARK)
+        yield from _iter_force_cards(load, load_set + 1)
         used = [load_set + 1]
     if field.linear.any():
         used.append(load_set + 2)
-        yield from format_card("GRAV", [load_set + 2, 0, 1.0, *(-field.linear).tolist()])
-    for number, rotation, rate in ((3, field.angular_velocity, True), (4, field.angular_acceleration, False)):
+        yield from iter_card_lines("GRAV", [load_set + 2, 0, 1.0, *(-field.linear).tolist()])
+    for number, rotation, is_speed in ((3, field.angular_velocity, True), (4, field.angular_acceleration, False)):
         size = float(np.sqrt(rotation @ rotation))
         if size > 0.0:
             used.append(load_set + number)
-            axis, a = (rotation / size).tolist(), size / FULL_TURN
-            last_fields = [2] if rate else [1, -a]
-            yield from format_card("RFORCE", [load_set + number, 0, 0, a if rate else 0.0, *axis, *last_fields])
+            axis, turns = (rotation / size).tolist(), size / FULL_TURN
+            speed, last_fields = (turns, [2]) if is_speed else (0.0, [1, -turns])  # METHOD; then the value of RACC
+            yield from iter_card_lines("RFORCE", [load_set + number, 0, 0, speed, *axis, *last_fields])
     if not used:  # LOAD needs at least one set
         used.append(load_set + 2)
-        yield from format_card("GRAV", [load_set + 2, 0, 0.0, 1.0, 0.0, 0.0])
-    yield from _load_card(load_set, used)
+        yield from iter_card_lines("GRAV", [load_set + 2, 0, 0.0, 1.0, 0.0, 0.0])
+    yield from _iter_sum_card(load_set, used)
 
 
-def _load_card(first: int, used: Sequence[int]) -> Iterator[str]:
+def _iter_sum_card(first: int, used: Sequence[int]) -> Iterator[str]:
     """Yield the card that adds up the sets of a case; they need different numbers."""
-    yield from format_card("LOAD", [first, 1.0, *(part for load_set in used for part in (1.0, load_set))])
+    yield from iter_card_lines("LOAD", [first, 1.0, *(part for load_set in used for part in (1.0, load_set))])
 
 
-def _force_cards(load: NodeLoad, number: int) -> Iterator[str]:
+def _iter_force_cards(load: NodeLoad, number: int) -> Iterator[str]:
     for name, value in (("FORCE", load.force), ("MOMENT", load.moment)):
         if value.any():
-            yield from format_card(name, [number, load.node.number, 0, 1.0, *value.tolist()])
+            yield from iter_card_lines(name, [number, load.node.number, 0, 1.0, *value.tolist()])
 
 
-def format_card(name: str, fields: Sequence[int | float | str]) -> Iterator[str]:
-    """Format a card in large fields, four a line."""
+def iter_card_lines(name: str, fields: Sequence[int | float | str]) -> Iterator[str]:
+    """Yield the lines of a card in large fields, four a line."""
     texts = [format_real(value) if isinstance(value, float) else str(value) for value in fields]
     lines = [texts[i : i + 4] for i in range(0, len(texts), 4)]
     for i, line in enumerate(lines):
@@ -117,7 +126,7 @@ def format_real(value: float) -> str:
     raise AssertionError(value)
 
 
-def _rounding_note(cases: LoadCases) -> str:
+def _describe_rounding(cases: LoadCases) -> str:
     """Describe the imbalance of the sums due to the digits of the cards."""
     imbalance = max((cases.body.balance(_round_as_written(case)).relative for case in cases.cases), default=0.0)
     imbalance_text = f"{imbalance:.1e}" if imbalance else "0"

@@ -8,23 +8,22 @@ from typing import Any
 import numpy as np
 
 from heuncli.analyses.load_cases.model import LoadCase, LoadCases, PointAction
-from heuncli.output.documents.as_csv import format_line
-from heuncli.output.documents.as_json import dump_json
+from heuncli.output.documents.as_data import dump_json, format_line
 from heuncli.output.documents.document import Cell
-from heuncli.output.fe_decks.parts import DeckNames
+from heuncli.output.fe_decks.decks import DeckNames
 from heuncli.results.results import Array
 
 HEADER = ("case", "time", "kind", "name", "by", "point", "quantity", "unit", "x", "y", "z")
 
 
 def write_csv(cases: LoadCases, names: DeckNames) -> Iterator[str]:
-    """Yield the lines."""
+    """Yield the lines of the CSV, with all digits."""
     yield format_line(HEADER)
-    for row in iter_rows(cases):
+    for row in iter_vector_rows(cases):
         yield format_line(row)
 
 
-def iter_rows(cases: LoadCases) -> Iterator[tuple[Cell, ...]]:
+def iter_vector_rows(cases: LoadCases) -> Iterator[tuple[Cell, ...]]:
     """Yield one row for each vector: first the body, then the cases."""
     _, length, mass, _ = cases.units
     body = cases.body
@@ -86,11 +85,11 @@ def write_json(cases: LoadCases, names: DeckNames) -> Iterator[str]:
         "body": {"name": body.name, "mass": body.mass, "center": body.center, "inertia": body.inertia},
         "estimate": {"reactions": cases.estimate},
         **({"split": cases.split} if cases.split else {}),
-        "cases": [_case_to_dict(cases, case) for case in cases.cases],
+        "cases": [_make_case_block(cases, case) for case in cases.cases],
     })  # fmt: skip
 
 
-def _case_to_dict(cases: LoadCases, case: LoadCase) -> dict[str, Any]:
+def _make_case_block(cases: LoadCases, case: LoadCase) -> dict[str, Any]:
     sums, f = cases.body.compute_sums(case), case.field
     field: dict[str, Any] = {
         "acceleration": f.origin, "gravity": f.gravity, "angular_velocity": f.angular_velocity,

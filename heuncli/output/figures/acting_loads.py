@@ -19,9 +19,8 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.multibody.mechanism.loads import GROUND as ON_GROUND
 from heuncli.multibody.mechanism.loads import PointLoad
 from heuncli.output.figures.curves import choose_number_style
-from heuncli.output.machine_geometry.coupling_forces import iter_coupling_forces
-from heuncli.output.machine_geometry.joint_symbols import find_guided_actuators
-from heuncli.output.machine_geometry.machine import Machine
+from heuncli.output.machine_geometry.machine import Machine, iter_coupling_forces
+from heuncli.output.machine_geometry.marks import find_guided_actuators
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block

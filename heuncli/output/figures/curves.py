@@ -1,4 +1,5 @@
-"""The curves of a figure: traces, bands, envelopes of long oscillations, bars of load cases, marked extremes, points.
+"""The curves of a figure: traces, bands, envelopes of long oscillations, bars of load cases, marked extremes, points;
+and its vertical marks: events, impacts, jumps of the curves, horizons.
 
 Of a long course each short interval shows its minimum, its maximum, and its gaps.
 """
@@ -11,12 +12,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.axes import format_short
-from heuncli.output.drawing.figure import Arrow, Band, Bars, Item, Scaling, Spot, Trace
+from heuncli.output.drawing.figure import Arrow, Band, Bars, Item, Scaling, Spot, Trace, VerticalMark
 from heuncli.output.drawing.style import PANEL_HEIGHT
-from heuncli.output.figures.courses import FigureSource, NumberCourse, find_values, is_varying
-from heuncli.results.results import Array
+from heuncli.output.figures.courses import FigureSource, NumberCourse, find_jumps, find_values, is_varying
+from heuncli.results.results import Array, Results
 from heuncli.study.quantities.digits import UNKNOWN, format_error
 from heuncli.study.quantities.reader_numbers import PREFIXES, ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
@@ -30,6 +32,8 @@ MIN_HALF_WIDTH = 0.5  # pixels: half width of a band
 # The largest number of a panel in a product of chosen units, such as N·mm; beyond, its unit is chosen by size.
 MIN_READABLE, MAX_READABLE = 0.1, 1e4
 MAX_SPOTS = 150  # more points are drawn as a line
+MAX_REPEATED_LABELS = 5  # more repetitions are labelled once
+INSTANT_DIGITS = 4
 
 
 def choose_number_style(unit: str, largest: float, units: Units) -> ReaderStyle:
@@ -244,3 +248,83 @@ def draw_points(points: MeasuredPoints, pen: int, size_x: float, size_y: float) 
         return
     visible = find_visible_points(y)
     yield Trace(points.name, x[visible], y[visible], pen, is_thin=True)
+
+
+def make_marks(
+    sources: Sequence[FigureSource], courses: Sequence[NumberCourse]
+) -> tuple[list[VerticalMark], list[str]]:
+    """Make the marks, ascending, each instant once, and notes; of several runs the events of any of them.
+
+    An event that repeats often is a tick without a label; a note tells how often it happens.
+    """
+    names: dict[float, dict[str, None]] = {}  # by instant: names of what happens in any run, in order
+    for source in sources:
+        results = source.study.results
+        horizon_time = _find_horizon(results)
+        for time, words in (*_iter_impacts(results), *_iter_events(results)):
+            if time < horizon_time:
+                names.setdefault(time, {})[words] = None
+    if len(sources) > 1:  # with one run the panel is hatched beyond the horizon instead
+        for source in sources:
+            if (horizon := _find_horizon(source.study.results)) < np.inf:
+                names.setdefault(horizon, {})[f"horizon of {source.name}"] = None
+    texts = {time: ", ".join(own) for time, own in names.items()}
+    sorted_times = np.sort(np.array(list(texts)))
+    for time in (time for course in courses for time in find_jumps(course).tolist()):
+        if not _has_instant(sorted_times, time):
+            texts.setdefault(time, "")
+    times_of_text: dict[str, list[float]] = {}
+    for time, words in sorted(texts.items()):
+        times_of_text.setdefault(words, []).append(time)
+    marks = [
+        VerticalMark(
+            time,
+            words if len(times_of_text[words]) <= MAX_REPEATED_LABELS else "",
+            format_event(words, time),
+            is_tick=bool(words) and len(times_of_text[words]) > MAX_REPEATED_LABELS,
+        )
+        for time, words in sorted(texts.items())
+    ]
+    return marks, [
+        f"{words}: {len(repeated_times)} times, first at {format_instant(repeated_times[0])}, last at "
+        f"{format_instant(repeated_times[-1])}"
+        for words, repeated_times in times_of_text.items()
+        if words and len(repeated_times) > MAX_REPEATED_LABELS
+    ]
+
+
+def _find_horizon(results: Results) -> float:
+    """Return the horizon of a run, or infinity."""
+    horizon = results.horizon
+    return np.inf if horizon is None else float(horizon)
+
+
+def format_event(words: str, time: float) -> str:
+    """Format an event with its instant."""
+    return f"{words} at {format_instant(time)}" if words else ""
+
+
+def format_instant(time: float) -> str:
+    """Format an instant."""
+    return f"{format_short(time, INSTANT_DIGITS)} s"
+
+
+def _has_instant(times: Array, time: float) -> bool:
+    """Return whether one of the ascending instants equals the time within rounding."""
+    if not times.size:
+        return False
+    k = int(np.searchsorted(times, time))
+    return bool(np.abs(times[max(k - 1, 0) : k + 1] - time).min() <= tolerances.SAME_INSTANT * max(1.0, abs(time)))
+
+
+def _iter_impacts(results: Results) -> Iterator[tuple[float, str]]:
+    """Yield the instants of impacts with the names of what met."""
+    for impulse in results.impulses:
+        yield float(impulse["time"]), ", ".join(impulse["names"]) or "impulse"
+
+
+def _iter_events(results: Results) -> Iterator[tuple[float, str]]:
+    """Yield the instants at which conditions change, with their names."""
+    for name, event in results.events.items():
+        for time in np.asarray(event["time"]).tolist():
+            yield float(time), name

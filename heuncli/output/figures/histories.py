@@ -36,8 +36,8 @@ from heuncli.output.figures.curves import (
     draw_curves,
     draw_points,
     find_visible_points,
+    make_marks,
 )
-from heuncli.output.figures.event_marks import make_marks
 from heuncli.results.results import Array
 from heuncli.study.compose.warnings import has_smoothed_friction
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style

@@ -13,11 +13,16 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.output.drawing.axes import choose_ends, choose_ticks, format_short
 from heuncli.output.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Strokes, Trace, Words
-from heuncli.output.figures.courses import FigureSource, describe_number, find_vectors, make_title
+from heuncli.output.figures.courses import FigureSource, TurningRun, describe_number, find_vectors, make_title
 from heuncli.output.figures.curves import choose_number_style, draw_direction_arrows, format_number
-from heuncli.output.figures.planes import project_vectors
-from heuncli.output.figures.tips import LargestVector, TipCurve, find_firings, find_largest, make_tip_curves
-from heuncli.output.figures.turning import TurningRun
+from heuncli.output.figures.tips import (
+    LargestVector,
+    TipCurve,
+    find_firings,
+    find_largest,
+    make_tip_curves,
+    project_vectors,
+)
 from heuncli.output.figures.windows import clip_strokes
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND

@@ -10,8 +10,7 @@ import numpy as np
 from heuncli.base.joint_kinds import TYPES
 from heuncli.output.drawing.axes import format_short
 from heuncli.output.drawing.figure import PlaceLabel
-from heuncli.output.figures.posed_machine import LOAD_PEN, PosedMachine, to_pair
-from heuncli.output.figures.worst_instant import TIME_DIGITS
+from heuncli.output.figures.posed_machine import LOAD_PEN, TIME_DIGITS, PosedMachine, to_pair
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.labels import Labels
 

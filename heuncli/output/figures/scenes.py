@@ -1,7 +1,8 @@
 """Figures of the machine at instants of its run in a view: poses, supports, acting loads, paths of points.
 
 The first instant is drawn with the loads that act, by default that of the greatest joint force; later ones are thin,
-pale lines. None are drawn beyond the horizon. Axes, scale and arrows are explained below the machine.
+pale lines. None are drawn beyond the horizon. Axes, scale and arrows are explained below the machine. The paths of
+named points are thin curves.
 """
 
 from __future__ import annotations
@@ -10,20 +11,19 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.coupled_start.prepare_coupled import prepare_coupled
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.axes import format_short
-from heuncli.output.drawing.figure import Arrow, Figure, Item, KeyArrow, Panel, Scaling, SpaceKey
-from heuncli.output.figures import body_items, joint_items, traces
+from heuncli.output.drawing.figure import Arrow, Figure, Item, KeyArrow, Panel, PlaceLabel, Scaling, SpaceKey, Trace
+from heuncli.output.figures import machine_items
 from heuncli.output.figures.acting_loads import NO_LOADS, ActingLoads, collect_loads
-from heuncli.output.figures.courses import FigureSource, require_claimed
+from heuncli.output.figures.courses import FigureSource, choose_instants, require_claimed
 from heuncli.output.figures.load_arrows import draw_loads, iter_key_arrows, label_loads, round_down, scale_loads
-from heuncli.output.figures.posed_machine import PosedMachine, to_pair
+from heuncli.output.figures.posed_machine import PosedMachine, describe_instants, find_worst_instant, to_pair
 from heuncli.output.figures.scene_labels import choose_labels, label_instants, make_machine_labels, make_mark_labels
-from heuncli.output.figures.traces import PointPath
 from heuncli.output.figures.windows import Window, choose_window, clip_items
-from heuncli.output.figures.worst_instant import describe_instants, find_worst_instant
 from heuncli.output.machine_geometry.machine import Machine, make_machine
 from heuncli.output.machine_geometry.poses import Poses, compute_poses, make_start_poses
 from heuncli.output.machine_geometry.solids import ROUND_FACES
@@ -41,6 +41,9 @@ N_SMOOTH_FACES, MAX_SMOOTH_BODIES = 60, 40  # faces about an axis, and up to how
 MIN_VISIBLE_GRAVITY = 0.2  # visible part of gravity, with less it is not shown
 SCALE_SHARE = 0.25  # of the figure's width: the scale bar is not longer
 MAX_LISTED = 6  # names in a note
+CENTER = "center"  # the centre of mass, unless the spec has a point of that name
+MAX_REPORTED = 8  # paths of points that the spec reports
+SAME_PATH = 1e-6  # of a path's size: closer paths are drawn once
 
 
 def make_scene_figure(
@@ -63,7 +66,7 @@ def make_scene_figure(
     times = np.array([worst.time]) if worst is not None else np.asarray(given_times)
     poses = compute_poses(study, times)
     posed_machine = pose_machine(study.setup.scene, study.spec, poses, view, units)
-    point_paths = traces.make_paths(source, point_names) if point_names else traces.make_reported_paths(source)
+    point_paths = make_paths(source, point_names) if point_names else make_reported_paths(source)
     loads = collect_loads(study, posed_machine.machine, poses)
     figure = make_machine_figure(
         posed_machine, units, point_paths, loads, source.name, has_point_names=bool(point_names)
@@ -132,13 +135,13 @@ def make_machine_figure(
     later = [
         item for k in range(len(posed_machine.poses.times) - 1, 0, -1) for item in _draw_later_instant(posed_machine, k)
     ]
-    strands = [line.ends.reshape(-1, 2) for line in joint_items.draw_ropes(posed_machine, 0)]
+    strands = [line.ends.reshape(-1, 2) for line in machine_items.draw_ropes(posed_machine, 0)]
     machine_window = choose_window(
         posed_machine,
         [
-            *(traces.project_path(posed_machine, point_path) for point_path in point_paths),
+            *(project_path(posed_machine, point_path) for point_path in point_paths),
             *strands,
-            *joint_items.iter_mark_places(posed_machine),
+            *machine_items.iter_mark_places(posed_machine),
         ],
     )
     view, size, side = posed_machine.view, posed_machine.size, machine_window.side
@@ -152,12 +155,12 @@ def make_machine_figure(
     names = [
         *make_machine_labels(posed_machine, 0, labels, {label.letter for label in load_labels}),
         *make_mark_labels(posed_machine, 0),
-        *(traces.label_paths(posed_machine, point_paths, labels) if has_point_names else ()),
+        *(label_paths(posed_machine, point_paths, labels) if has_point_names else ()),
     ]
     place_labels, numbers = choose_labels(load_labels, names, side)
     items: list[Item] = [
         *clip_items(later, window),
-        *traces.draw_paths(posed_machine, point_paths),
+        *draw_paths(posed_machine, point_paths),
         *clip_items(first, window),
         *load_items,
         *place_labels,
@@ -177,24 +180,24 @@ def make_machine_figure(
 
 def _draw_first_instant(posed_machine: PosedMachine, drawn_names: Collection[str]) -> list[Item]:
     """Draw the first instant; drawn_names: of loads that have an arrow."""
-    items = [*body_items.draw_bodies(posed_machine, 0), *body_items.draw_mass_marks(posed_machine, 0)]
+    items = [*machine_items.draw_bodies(posed_machine, 0), *machine_items.draw_mass_marks(posed_machine, 0)]
     items += [
-        item for line in posed_machine.machine.lines for item in joint_items.draw_force_line(posed_machine, line, 0)
+        item for line in posed_machine.machine.lines for item in machine_items.draw_force_line(posed_machine, line, 0)
     ]
-    items += joint_items.draw_ropes(posed_machine, 0)
-    items += joint_items.draw_belt_strands(posed_machine, 0)
-    items += joint_items.draw_joint_actions(posed_machine, 0, drawn_names)
-    return [*items, *joint_items.draw_joints(posed_machine, 0), *joint_items.draw_marks(posed_machine, 0)]
+    items += machine_items.draw_ropes(posed_machine, 0)
+    items += machine_items.draw_belt_strands(posed_machine, 0)
+    items += machine_items.draw_joint_actions(posed_machine, 0, drawn_names)
+    return [*items, *machine_items.draw_joints(posed_machine, 0), *machine_items.draw_marks(posed_machine, 0)]
 
 
 def _draw_later_instant(posed_machine: PosedMachine, k: int) -> list[Item]:
     """Draw a later instant in thin, pale lines."""
-    items = body_items.draw_bodies(posed_machine, k)
+    items = machine_items.draw_bodies(posed_machine, k)
     items += [
-        item for line in posed_machine.machine.lines for item in joint_items.draw_force_line(posed_machine, line, k)
+        item for line in posed_machine.machine.lines for item in machine_items.draw_force_line(posed_machine, line, k)
     ]
-    items += joint_items.draw_ropes(posed_machine, k)
-    return items + joint_items.draw_joints(posed_machine, k)
+    items += machine_items.draw_ropes(posed_machine, k)
+    return items + machine_items.draw_joints(posed_machine, k)
 
 
 def _make_key(
@@ -236,3 +239,68 @@ def _list_names(kind: str, names: Sequence[str], labels: Labels) -> str:
     """List names, of many the first ones."""
     listed = ", ".join(describe_object(kind, name, labels) for name in names[:MAX_LISTED])
     return listed if len(names) <= MAX_LISTED else f"{listed} and {len(names) - MAX_LISTED} more"
+
+
+class PointPath(NamedTuple):
+    """A named point and its positions over the run, (n, 3), world axes."""
+
+    name: str
+    body: str
+    positions: Array
+
+
+def make_paths(source: FigureSource, names: Sequence[str]) -> list[PointPath]:
+    """Make the paths of points, `body.point`, over the run up to its horizon."""
+    study = source.study
+    if not names or study.has_one_instant:
+        return []
+    poses = compute_poses(study, choose_instants(study))
+    centers = {body.name: np.asarray(body.center) for body in study.setup.scene.mechanism.bodies}
+    paths = []
+    for name in names:
+        body, _, point = name.partition(".")
+        named_points = study.spec.bodies[body].points
+        place = np.array(named_points[point]) if point in named_points else centers[body]
+        paths.append(
+            PointPath(name, body, np.array([poses.locate_points(body, place, k) for k in range(len(poses.times))]))
+        )
+    return paths
+
+
+def make_reported_paths(source: FigureSource) -> list[PointPath]:
+    """Make the paths of the points that the spec reports and that move: each path once, and of many the first ones."""
+    spec = source.study.spec
+    if "points" not in (spec.report.results or ()):
+        return []
+    paths: list[PointPath] = []
+    for path in make_paths(
+        source, [f"{body}.{point}" for body, body_spec in spec.bodies.items() for point in body_spec.points]
+    ):
+        size = float(np.ptp(path.positions, axis=0).max())
+        if size > 0.0 and not any(
+            np.allclose(path.positions, other.positions, rtol=0.0, atol=SAME_PATH * size) for other in paths
+        ):
+            paths.append(path)
+    return paths[:MAX_REPORTED]
+
+
+def project_path(posed_machine: PosedMachine, path: PointPath) -> Array:
+    """Project a path to the view, (n, 2) in the unit of the figure."""
+    return np.asarray(posed_machine.size * posed_machine.view.project(path.positions))
+
+
+def draw_paths(posed_machine: PosedMachine, paths: Sequence[PointPath]) -> Iterator[Trace]:
+    """Draw the paths."""
+    for path in paths:
+        x, y = project_path(posed_machine, path).T
+        yield Trace(path.name, x, y, posed_machine.pens[path.body], is_thin=True)
+
+
+def label_paths(posed_machine: PosedMachine, paths: Sequence[PointPath], labels: Labels) -> Iterator[PlaceLabel]:
+    """Yield the labels of the points at the beginning of their paths."""
+    for path in paths:
+        point = path.name.partition(".")[2]
+        text = describe_object("points", path.name, labels)
+        if point == CENTER and point not in posed_machine.spec.bodies[path.body].points:
+            text = f"{describe_object('bodies', path.body, labels)}, centre of mass"
+        yield PlaceLabel(*to_pair(project_path(posed_machine, path)[0]), text, text, posed_machine.pens[path.body])

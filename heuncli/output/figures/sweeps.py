@@ -28,13 +28,17 @@ from heuncli.output.drawing.figure import (
 from heuncli.output.drawing.style import PANEL_HEIGHT, PENS
 from heuncli.output.figures.courses import NotDrawable
 from heuncli.output.figures.curves import choose_number_style, format_number, is_visible
-from heuncli.output.figures.sweep_axes import MAX_NAMES, draw_contours, find_cell_edges, make_axis, make_measure_axis
 from heuncli.output.figures.sweep_tables import (
+    MAX_NAMES,
     SweepNumbers,
     SweepSelection,
     SweepTable,
     SweepVariable,
+    draw_contours,
+    find_cell_edges,
+    make_axis,
     make_example,
+    make_measure_axis,
     select_sweep,
 )
 from heuncli.results.results import Array, Indices

@@ -13,8 +13,8 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.drawing.figure import Arrow, Item, Polygon, Strokes
 from heuncli.output.figures.posed_machine import PosedMachine
-from heuncli.output.machine_geometry.joint_symbols import find_scene_joint_kind
 from heuncli.output.machine_geometry.machine import JointGeometry
+from heuncli.output.machine_geometry.marks import find_scene_joint_kind
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 

@@ -1,24 +1,29 @@
-"""The geometry of a scene: shapes of its bodies in their own axes, and the positions of joints, springs, ropes,
-symbols.
+"""The geometry of a scene: shapes of its bodies in their own axes, and where joints, springs, ropes, symbols are.
 
 Everything is in body axes [m]; positions in the world follow from the body's pose. A body with shapes is drawn as these
 shapes, with arms to points outside of them. A body without shapes is drawn as the wheel that it is, or by its points
 and its centre of mass: as the link between two of them, or as the plate or solid that more of them span.
+
+The force of a coupling is drawn ON each loaded body, at a point of its line of action:
+
+    at = P + F x M / |F|^2        point of a force F whose moment about P is M, without the component of M along F
+A force whose counterpart acts at the same point on another body is drawn once, on the body that is listed first. For a
+belt the pulls of both strands on the second pulley are drawn: their sum with the pretension is the bearing load.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.machine_geometry.discs import Disc, iter_balls
+from heuncli.output.machine_geometry.discs import BeltGeometry, Disc, PitchPoint, iter_balls
 from heuncli.output.machine_geometry.elements import ElementGeometry, collect_elements
-from heuncli.output.machine_geometry.joint_symbols import JointSymbol, iter_joint_symbols
-from heuncli.output.machine_geometry.marks import Mark, iter_marks
-from heuncli.output.machine_geometry.pitch_lines import BeltGeometry, PitchPoint
+from heuncli.output.machine_geometry.marks import JointSymbol, Mark, iter_joint_symbols, iter_marks
+from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, collect_ropes
 from heuncli.output.machine_geometry.solids import (
     ROUND_FACES,
@@ -33,6 +38,7 @@ from heuncli.scene.file_format.names import GROUND
 
 MIN_LINKED_DISCS = 2  # discs: from this number on, a body without shapes is drawn as a line between them
 OUTSIDE_TOLERANCE = 1e-9  # of the distance of a point from a shape's axis; less is rounding
+RELATIVE_TOLERANCE = 1e-9  # of the largest force or coordinate: below it, sums of forces and distances count as zero
 
 
 class BodyGeometry(NamedTuple):
@@ -206,3 +212,69 @@ def _join_points(ends: list[Array]) -> Array:
         order.append(min(remaining, key=lambda k: (distances[order[-1], k], k)))
         remaining.remove(order[-1])
     return np.asarray(points[order], dtype=np.float64)
+
+
+class CouplingForce(NamedTuple):
+    """A coupling's force ON a body or the ground: points of action and components, (n, 3), world axes.
+
+    Components are nan where they are indeterminate.
+    """
+
+    name: str
+    body: str
+    points: Array
+    forces: Array
+
+
+def iter_coupling_forces(
+    machine: Machine, poses: Poses, blocks: Mapping[str, Mapping[str, Any]]
+) -> Iterator[CouplingForce]:
+    """Yield the forces of all couplings at the instants of the poses.
+
+    blocks: the results of the couplings, `couplings`
+    """
+    belts = {belt.name: belt for belt in machine.belts}
+    for name, block in blocks.items():
+        if name in belts:
+            yield from _iter_belt_forces(belts[name], poses, block)
+            continue
+        unique_forces: list[CouplingForce] = []
+        for body, values in block.get("on", {}).items():
+            point, force, moment = (np.asarray(values[key]).reshape(-1, 3) for key in ("point", "force", "moment"))
+            pull = CouplingForce(name, body, point + offset_to_line(force, moment), force)
+            if np.any(force != 0.0) and not any(are_opposite(pull, other) for other in unique_forces):
+                unique_forces.append(pull)
+        yield from unique_forces
+
+
+def offset_to_line(force: Array, moment: Array) -> Array:
+    """Compute the vector (n, 3) from the moment's reference point to the force's line of action; zero where it is
+    unknown.
+    """
+    square = np.sum(force * force, axis=1, keepdims=True)
+    return np.nan_to_num(np.cross(force, moment) / np.where(square > 0.0, square, 1.0))
+
+
+def are_opposite(first: CouplingForce, second: CouplingForce) -> bool:
+    """Return whether two forces are opposite and act at the same point at all instants; they must be nan at the same
+    ones.
+    """
+    size, reach = (float(np.abs(np.nan_to_num(x)).max()) for x in (second.forces, second.points))
+    remainder, separation = first.forces + second.forces, first.points - second.points
+    both_open = np.isnan(first.forces) & np.isnan(second.forces)
+    balanced = np.abs(np.where(both_open, 0.0, remainder)) <= RELATIVE_TOLERANCE * size
+    return bool(balanced.all() and (np.abs(separation) <= RELATIVE_TOLERANCE * reach).all())
+
+
+def _iter_belt_forces(belt: BeltGeometry, poses: Poses, block: Mapping[str, Any]) -> Iterator[CouplingForce]:
+    """Yield the pulls of both strands on the second pulley, each along its strand and away from the pulley."""
+    if "tight" not in block:
+        return
+    driven = np.asarray(block["force"]).reshape(-1) >= 0.0
+    tight, slack = (np.asarray(block[key]).reshape(-1) for key in ("tight", "slack"))
+    for k, pull in enumerate((np.where(driven, tight, slack), np.where(driven, slack, tight))):
+        point, far_end = belt.strands[k][:: 1 if k == 0 else -1]  # the first strand leaves the second pulley
+        direction = poses.trace_direction(belt.carrier, (far_end - point) / np.linalg.norm(far_end - point))
+        yield CouplingForce(
+            belt.name, belt.pulley_bodies[1], poses.trace_point(belt.carrier, point), pull[:, None] * direction
+        )

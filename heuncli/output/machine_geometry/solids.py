@@ -1,4 +1,8 @@
-"""Make surfaces of flat faces, in body axes: of shapes, round ones approximated, and of the hull of a body's points."""
+"""Make surfaces of flat faces, in body axes: of shapes, with round ones approximated, of hulls of points, of meshes.
+
+A fine mesh is simplified for drawing: all corners in one cell of a grid are merged in their centre, and the sharp edges
+show the shape. Nothing is computed with the simplified mesh.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +13,18 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape, Vec
+from heuncli.scene.meshes.closure import find_edges
+from heuncli.scene.meshes.model import IndexArray, cross_product_rows
 
 ROUND_FACES = 24  # faces about an axis
 ROD_RADIUS_RATIO = 0.015  # drawn radius of a rod, of its length
 FLAT = 1e-6  # share of the points' extent: less in a direction is none
 MAX_HULL_POINTS = 24  # each three of them are tried as a face
 MAX_FLIPPED_CELLS = 8.0  # grid cells: maximum length of lines around triangles that simplification turned over
+MAX_TRIANGLES = 6000  # drawn triangles of a mesh
+INITIAL_CELLS = 64  # grid cells along each axis in the first attempt
+# An edge is sharp if the cosine of the angle between its faces is smaller; same in output/web_page/solids.js.
+EDGE_COSINE = 0.8
 
 
 class Surface(NamedTuple):
@@ -243,10 +253,6 @@ def _order_ring(offsets: Array, numbers: np.ndarray[tuple[int], np.dtype[np.intp
 
 def _make_mesh_surface(shape: Shape) -> Surface:
     """Make the surface of a mesh, simplified if it is fine, with its sharp edges."""
-    from heuncli.output.machine_geometry.mesh_simplification import (  # few scenes have them
-        find_sharp_edges,
-        simplify_mesh,
-    )
 
     assert shape.mesh is not None
     corners, triangles = compute_mesh_corners(shape), shape.mesh.triangles
@@ -257,3 +263,44 @@ def _make_mesh_surface(shape: Shape) -> Surface:
     return Surface(
         simple_mesh.corners, faces, tuple(edges), convex=False, blur=MAX_FLIPPED_CELLS * simple_mesh.cell_size
     )
+
+
+class SimplifiedMesh(NamedTuple):
+    """The corners and triangles that are drawn.
+
+    corner_numbers: for each corner of the original mesh, the number of its drawn corner
+    cell_size: diagonal of a grid cell [m]; 0 if the mesh is not simplified
+    """
+
+    corners: Array
+    triangles: IndexArray
+    corner_numbers: IndexArray
+    cell_size: float
+
+
+def simplify_mesh(corners: Array, triangles: IndexArray, max_triangles: int = MAX_TRIANGLES) -> SimplifiedMesh:
+    """Simplify a mesh to at most `max_triangles` triangles, so that it looks alike."""
+    low, size = corners.min(axis=0), np.ptp(corners, axis=0)
+    simple_mesh = SimplifiedMesh(corners, triangles, np.arange(len(corners)), 0.0)
+    cells = INITIAL_CELLS
+    while len(simple_mesh.triangles) > max_triangles and cells > 1:
+        cell = np.minimum((corners - low) / np.where(size > 0.0, size, 1.0) * cells, cells - 1).astype(np.int64)
+        key = (cell[:, 0] * cells + cell[:, 1]) * cells + cell[:, 2]
+        number = np.unique(key, return_inverse=True)[1].reshape(-1)
+        centres = np.stack([np.bincount(number, x) for x in corners.T], axis=1) / np.bincount(number)[:, None]
+        a, b, c = number[triangles].T
+        faces = number[triangles][(a != b) & (b != c) & (c != a)]
+        simple_mesh = SimplifiedMesh(centres, faces, number, float(np.sqrt((size * size).sum())) / cells)
+        cells = cells * 3 // 4
+    return simple_mesh
+
+
+def find_sharp_edges(corners: Array, triangles: IndexArray) -> IndexArray:
+    """Find the edges (k, 2) of a closed mesh, as corner numbers, whose triangles face clearly different directions."""
+    p, q, r = corners[triangles.T]
+    normals = cross_product_rows(q - p, r - p)
+    normals = normals / np.maximum(np.sqrt((normals * normals).sum(axis=1)), np.finfo(float).tiny)[:, None]
+    edges = find_edges(triangles)
+    first, second = edges.order[edges.starts], edges.order[edges.starts + 1]
+    cosines = (normals[first // 3] * normals[second // 3]).sum(axis=1)
+    return np.asarray(edges.ends[first[cosines < EDGE_COSINE]])

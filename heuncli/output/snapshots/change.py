@@ -39,9 +39,7 @@ class Change(NamedTuple):
 
     @property
     def relative(self) -> float:
-        """The difference over the larger of the two. Infinite without numbers, so that such changes are sorted
-        first.
-        """
+        """The difference over the larger of the two; infinite without numbers, so that these changes come first."""
         if self.difference is None or isinstance(self.old, str) or isinstance(self.new, str):
             return float("inf")
         return abs(self.difference) / max(abs(self.old or 0.0), abs(self.new or 0.0))
@@ -100,7 +98,7 @@ def find_course_changes(
     *,
     by_error: bool,
 ) -> Iterator[Change]:
-    """Yield the differences of two courses.
+    """Yield the differences of two courses: instants of extremes, means of tenths, mean square, mean, first moment.
 
     tolerance: at one instant
     by_error: whether that is the sum of the stated errors

@@ -77,7 +77,7 @@ def find_changes(old: RunSnapshot, new: RunSnapshot, share: float | None = None)
 def _find_scales(run: RunSnapshot) -> dict[tuple[str, str], float]:
     """Find the largest number of each kind and unit."""
     scales: dict[tuple[str, str], float] = {}
-    impact_numbers = (blow.numbers.items() for blow in run.impulses)
+    impact_numbers = (impact.numbers.items() for impact in run.impulses)
     sums = (("joints", certain_sum.value) for certain_sum in run.certain_sums.values())
     for path, number in chain(run.numbers.items(), *impact_numbers, sums):
         key = path.split(".")[0], number.unit
@@ -182,11 +182,18 @@ def _compare_value(
     if word in ("last", N_EVEN - 1) and tolerance.share is None:  # the end is an event, whose instant has an error
         end_error = sum(run.time.get("last_error", 0.0) for run in runs)
         bound += end_error * max(old.drift or 0.0, new.drift or 0.0)
+    change = _compare(path, what, old.unit, (before, after), bound)
+    return change._replace(time=time) if change is not None else None
+
+
+def _compare(path: str, what: str, unit: str, pair: tuple[Value | None, Value | None], bound: float) -> Change | None:
+    """Compare an old and a new value, each a number, a word or missing; None if they differ by no more than a bound."""
+    before, after = pair
     if isinstance(before, str) or isinstance(after, str) or before is None or after is None:
-        change = Change(path, what, old.unit, before, after, bound, _describe_transition(before, after), time=time)
-        return change if before != after else None
-    differs = not abs(after - before) <= bound
-    return Change(path, what, old.unit, before, after, bound, time=time) if differs else None
+        reason = _describe_transition(before, after)
+        return Change(path, what, unit, before, after, bound, reason) if before != after else None
+    differs = not abs(after - before) <= bound  # also where one of them is nan
+    return Change(path, what, unit, before, after, bound) if differs else None
 
 
 def _describe_transition(old: Value | str | None, new: Value | str | None) -> str:
@@ -198,6 +205,7 @@ def _describe_transition(old: Value | str | None, new: Value | str | None) -> st
 
 
 def _name_absence(old: object, new: object) -> str:
+    """Return the word for a value that only one of two runs has; "" if both have it."""
     return EXTRA if old is None else MISSING if new is None else ""
 
 
@@ -223,16 +231,12 @@ def _compare_sums(
             yield Change(path, f"factor of {term}", "", factor, other, factor_bound)
     scaled = tolerance.scales.get(("joints", old.value.unit), 0.0)
     bound = old.value.error + new.value.error if tolerance.share is None else tolerance.share * scaled
-    changes = []
-    for word in old.value.values.keys() & new.value.values.keys():
-        before, after = old.value.values[word], new.value.values[word]
-        if isinstance(before, str) or isinstance(after, str):
-            if before != after:
-                changes.append(
-                    Change(path, str(word), old.value.unit, before, after, bound, _describe_transition(before, after))
-                )
-        elif not abs(after - before) <= bound:
-            changes.append(Change(path, str(word), old.value.unit, before, after, bound))
+    values, new_values = old.value.values, new.value.values
+    compared = [
+        _compare(path, str(word), old.value.unit, (values[word], new_values[word]), bound)
+        for word in values.keys() & new_values.keys()
+    ]
+    changes = [change for change in compared if change is not None]
     if changes:
         yield max(changes, key=lambda change: change.excess)
 
@@ -259,6 +263,7 @@ def _compare_events(name: str, old: EventSnapshot | None, new: EventSnapshot | N
 
 
 def _match_instants(t: float, error: float, becomes_true: bool, other: EventSnapshot) -> Iterator[bool]:
+    """Yield for each instant of the other event whether it may be that at t, with its error [s]."""
     for other_time, other_error, becomes in zip(other.time, other.error, other.to, strict=True):
         yield becomes == becomes_true and (
             isinstance(other_error, str) or abs(t - other_time) <= error + other_error + 4.0 * 2.0**-52 * abs(t)
@@ -279,9 +284,6 @@ def _compare_impacts(number: int, old: ImpactSnapshot, new: ImpactSnapshot, tole
         if before is None or after is None:
             yield _make_absence_change(f"{path}.{name}", before)
             continue
-        a, b, bound = before.constant, after.constant, tolerance.find_tolerance(name, before, after)
-        if isinstance(a, str) or isinstance(b, str) or a is None or b is None:
-            if a != b:
-                yield Change(f"{path}.{name}", "", before.unit, a, b, bound, _describe_transition(a, b))
-        elif not abs(b - a) <= bound:
-            yield Change(f"{path}.{name}", "", before.unit, a, b, bound)
+        bound = tolerance.find_tolerance(name, before, after)
+        change = _compare(f"{path}.{name}", "", before.unit, (before.constant, after.constant), bound)
+        yield from (change,) if change is not None else ()

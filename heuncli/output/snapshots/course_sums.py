@@ -1,5 +1,4 @@
-"""Summary numbers of the whole course of a quantity: its means, its mean square, and how exact the instants of extremes
-are.
+"""Numbers of the whole course of a quantity: its means and mean square, and the error of the instants of extremes.
 
 There are two kinds of sums. Those over fixed instants need no integration: their error is no larger than that of the
 numbers themselves, so that a change as small as the stated error is found, but a pulse between two of the instants is
@@ -31,8 +30,12 @@ SAME_NODE = 1e-12  # share of a piece: closer nodes coincide
 
 
 class CourseSums(NamedTuple):
-    """Sums of one quantity: the means of each tenth, the mean square, the integral mean, the first moment and their
-    error.
+    """Sums of one quantity.
+
+    tenths (10,): its means over the uneven instants of each tenth of the run, or words
+    mean_square: over all these instants
+    mean, moment: integrals over the run, of the quantity and of it times the place in the run, -1 to 1
+    mean_error: of both
     """
 
     tenths: list[Value]
@@ -90,9 +93,9 @@ def make_tenth_instants(tenth_ends: Array) -> Array:
 
 
 def sum_tenths(values: Array, near_jump: Mask) -> CourseSums:
-    """Return the means and the mean square of a quantity, (10, INSTANTS).
+    """Return the means and the mean square of a quantity with values (10, INSTANTS).
 
-    near_jump: instants so near to a jump that its side is not certain
+    near_jump (10, INSTANTS): instants so near to a jump that its side is not certain
     """
     known: Mask = np.asarray(np.isfinite(values).all(axis=1) & ~near_jump.any(axis=1))
     means = values.mean(axis=1)
@@ -199,10 +202,12 @@ def _make_weights(x: Array) -> Array:
 
 
 def find_instant_spread(times: Array, heights: Array, highest: float, time: float, margin: float) -> float:
-    """Return how far the instant of a highest value may lie elsewhere [s]: any value within `margin` of it may be the
-    highest.
+    """Return how far the instant of a highest value may lie elsewhere [s].
 
-    times, heights (n,): the evaluated points; between two of them a course may rise by as much as its second difference
+    Any value within `margin` of it may be the highest, and between two of the evaluated points a course may rise by as
+    much as its second difference.
+
+    times, heights (n,): the evaluated points
     """
     curvatures = np.zeros(len(heights))
     curvatures[1:-1] = np.abs(heights[2:] - 2.0 * heights[1:-1] + heights[:-2])

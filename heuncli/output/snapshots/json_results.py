@@ -1,5 +1,4 @@
-"""Make a run snapshot from a result in JSON. It has extremes of the samples only, as the file holds nothing between
-them.
+"""Make a run snapshot from a result in JSON, with extremes of its samples only: the file holds nothing between them.
 
 The file holds the names in the scene but not the kinds: whether a joint turns or slides follows from its coordinates.
 """
@@ -15,9 +14,15 @@ import numpy as np
 from heuncli.base.errors import Finding
 from heuncli.base.joint_kinds import TYPES
 from heuncli.base.tolerances import SAME_INSTANT
-from heuncli.output.snapshots.columns import ResultView, SnapshotScope, collect_all_columns
 from heuncli.output.snapshots.golden_file import N_EVEN, RunSnapshot
-from heuncli.output.snapshots.record import SnapshotBounds, SnapshotCourse, make_run_snapshot
+from heuncli.output.snapshots.record import (
+    ResultView,
+    SnapshotBounds,
+    SnapshotCourse,
+    SnapshotScope,
+    collect_all_columns,
+    make_run_snapshot,
+)
 from heuncli.output.tables.page import Page, make_page
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Block, Magnitudes, Results
@@ -86,23 +91,22 @@ def _select_instants(data: Mapping[str, Any], indices: Sequence[int]) -> dict[st
     """Return a result at some of its instants."""
     n = len(read_instants(data))
 
-    def part(keys: tuple[str, ...], value: Any) -> Any:
-        if isinstance(value, Mapping):
-            return {key: part((*keys, key), member) for key, member in value.items()}
-        row = find_quantity(keys)
-        timed = row is not None and row.is_timed and isinstance(value, list) and len(value) == n
-        return [value[i] for i in indices] if timed else value
-
-    def select_terms(values: Any) -> Any:
+    def select(values: Any) -> Any:
         return [values[i] for i in indices] if isinstance(values, list) and len(values) == n else values
 
-    selected = {key: part((key,), value) for key, value in data.items()}
+    def select_timed(keys: tuple[str, ...], value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return {key: select_timed((*keys, key), member) for key, member in value.items()}
+        row = find_quantity(keys)
+        return select(value) if row is not None and row.is_timed else value
+
+    selected = {key: select_timed((key,), value) for key, value in data.items()}
     selected["time"] = [read_instants(data)[i] for i in indices]
     if "certain_sums" in data:
         selected["certain_sums"] = [
             {
-                "terms": {path: select_terms(x) for path, x in block["terms"].items()},
-                "value": select_terms(block["value"]),
+                "terms": {path: select(factor) for path, factor in block["terms"].items()},
+                "value": select(block["value"]),
             }
             for block in data["certain_sums"]
         ]
@@ -122,13 +126,8 @@ def _to_results(data: Mapping[str, Any]) -> Results:
     results = Results(**{"title": "", "spec": {}, "version": "", **blocks, "accuracy": accuracy})
     for keys, value in _iter_leaves(data):
         row = find_quantity(keys)
-        if (
-            row is not None
-            and row.is_timed
-            and row.units
-            and isinstance(value, list)
-            and len(value) != len(results.time)
-        ):
+        is_course = row is not None and row.is_timed and row.units and isinstance(value, list)
+        if is_course and len(value) != len(results.time):
             raise ValueError(f"{'.'.join(keys)}: {len(value)} values at {len(results.time)} instants")
     return results
 

@@ -1,8 +1,12 @@
-"""Make the snapshot of a run from the course of its numbers, with their stated errors."""
+"""Make the snapshot of a run from the course of its numbers, with their stated errors: a channel for each, by its path.
+
+The numbers are those of the tables. Of a series of cuts they are the highest and lowest value of its cuts at each
+instant, with the extremes of the whole length.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -10,15 +14,10 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import WRITTEN
-from heuncli.output.snapshots.columns import (
-    SHOWN_AT_A_BLOW,
-    ResultView,
-    SnapshotScope,
-    is_shown,
-    iter_run_columns,
-)
 from heuncli.output.snapshots.course_sums import CourseSums
 from heuncli.output.snapshots.golden_file import (
+    BEYOND,
+    OPEN,
     UNKNOWN,
     EventSnapshot,
     ImpactSnapshot,
@@ -27,14 +26,110 @@ from heuncli.output.snapshots.golden_file import (
     SumSnapshot,
     Value,
 )
-from heuncli.output.tables.impulse_tables import MAX_LISTED, make_impact_results
+from heuncli.output.tables.event_tables import MAX_LISTED, make_impact_results
 from heuncli.output.tables.page import Page
+from heuncli.output.tables.table_plans import AXIS, MASS_EFFECT, PLANS, TablePlan
+from heuncli.output.tables.table_plans import IMPULSES as IMPULSE_PLANS
 from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, CutPosition, DeterminateSum, Results
-from heuncli.results.results_schema import EVENTS, IMPULSES
-from heuncli.study.quantities.channels import Channel, iter_impulse_channels
-from heuncli.study.quantities.cut_runs import collect_runs
-from heuncli.study.quantities.digits import largest_magnitude
+from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
+from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
+from heuncli.study.quantities.cut_runs import CutSeries, collect_cut_series
+from heuncli.study.quantities.digits import StatedErrors, largest_magnitude
+from heuncli.study.quantities.labels import Labels
+
+
+class ShownQuantity(NamedTuple):
+    """A quantity that tables show.
+
+    only: the one name of the kind to which it is limited, if any
+    """
+
+    kind: str
+    only: str | None
+    quantity: str
+
+
+def _collect_shown(plans: Iterable[TablePlan]) -> frozenset[ShownQuantity]:
+    plans_with_extremes = [plan for plan in plans if plan.has_extremes and not plan.is_detail]
+    return frozenset(
+        ShownQuantity(plan.kind, plan.only, quantity) for plan in plans_with_extremes for quantity in plan.quantities
+    )
+
+
+SHOWN, SHOWN_AT_IMPACT = _collect_shown(PLANS), _collect_shown(IMPULSE_PLANS)
+FOUNDATION_PARTS = frozenset({MASS_EFFECT.only, AXIS.only})  # parts of the foundation besides its total load
+
+
+class ResultView(NamedTuple):
+    """The results over a range of instants, and the accuracy of their numbers."""
+
+    results: Results
+    labels: Labels
+    certain: StatedErrors
+
+    @property
+    def unknown(self) -> frozenset[float]:
+        """The instants near singular positions, at which a nan means that the number is not known."""
+        return frozenset(self.results.accuracy.get("unknown", ()))
+
+    def to_value(self, number: float, time: float | None = None) -> Value:
+        """Return a number as it is stored, or the word in its place; time: its instant."""
+        horizon = self.results.horizon
+        if time is not None and horizon is not None and time >= horizon:
+            return BEYOND
+        if np.isfinite(number):
+            return float(number) + 0.0
+        return UNKNOWN if time in self.unknown else OPEN
+
+
+class SnapshotScope(NamedTuple):
+    """Of which reports numbers are stored, and the labels of the scene."""
+
+    reports: frozenset[str]
+    labels: Labels
+
+    def collect_cut_series(self, results: Results) -> list[CutSeries]:
+        """Collect the series of cuts, if sections are requested."""
+        return collect_cut_series(results, self.labels) if "sections" in self.reports else []
+
+
+def collect_columns(results: Results, scope: SnapshotScope) -> list[Channel]:
+    """Collect the numbers of the tables except those of series of cuts; of a vector components and magnitude."""
+    cut_series = {name for name, section in results.sections.items() if "s" in section}
+    columns: list[Channel] = []
+    for channel in iter_channels(results, scope.labels):
+        is_of_series = channel.kind == "sections" and channel.name.split(".")[0] in cut_series
+        if REPORT_OF[channel.kind] in scope.reports and not is_of_series and is_shown(channel, SHOWN):
+            columns += channel.numbers
+    return columns
+
+
+def is_shown(channel: Channel, shown_quantities: frozenset[ShownQuantity]) -> bool:
+    """Return whether a channel is among the quantities that tables show."""
+    if channel.cause or channel.is_static:
+        return False
+    only = channel.name if channel.kind == "foundation" and channel.name in FOUNDATION_PARTS else None
+    return ShownQuantity(channel.kind, only, channel.quantity) in shown_quantities
+
+
+def iter_series_columns(series: CutSeries) -> Iterator[Channel]:
+    """Yield for each quantity the lowest and highest value of the cuts of a series; open if one of them is open."""
+    for channel in series.channels:
+        for word, extreme in (("lowest", channel.values.min(axis=1)), ("highest", channel.values.max(axis=1))):
+            yield channel._replace(component=word, values=extreme, axes=())
+
+
+def collect_all_columns(results: Results, scope: SnapshotScope) -> dict[str, Channel]:
+    """Collect all columns by their paths."""
+    columns = collect_columns(results, scope)
+    columns += [column for series in scope.collect_cut_series(results) for column in iter_series_columns(series)]
+    return {column.path: column for column in columns}
+
+
+def collect_values(results: Results, scope: SnapshotScope) -> dict[str, Array]:
+    """Collect the values of all columns by their paths."""
+    return {path: column.values for path, column in collect_all_columns(results, scope).items()}
 
 
 class SnapshotCourse(NamedTuple):
@@ -84,8 +179,8 @@ class SnapshotBounds(NamedTuple):
     def to_fields(self, view: ResultView) -> dict[str, Any]:
         """Return the bounds as fields of a NumberSnapshot."""
         fields: dict[str, Any] = {}
-        both = (("least", self.low, self.low_spread), ("greatest", self.high, self.high_spread))
-        for word, bound, spread in both:
+        bounds = (("least", self.low, self.low_spread), ("greatest", self.high, self.high_spread))
+        for word, bound, spread in bounds:
             if bound is None:
                 continue
             value, time, place = bound
@@ -189,11 +284,11 @@ def _make_impact(impulse: Block, view: ResultView, scope: SnapshotScope) -> Impa
     columns = [
         column
         for channel in iter_impulse_channels(impulse, view.labels)
-        if not channel.has_cuts and is_shown(channel, SHOWN_AT_A_BLOW)
+        if not channel.has_cuts and is_shown(channel, SHOWN_AT_IMPACT)
         for column in channel.numbers
     ]
-    runs = collect_runs(impact_view.results, scope.labels, IMPULSE_UNITS)
-    columns += [column for run in runs for column in iter_run_columns(run)]
+    all_series = collect_cut_series(impact_view.results, scope.labels, IMPULSE_UNITS)
+    columns += [column for series in all_series for column in iter_series_columns(series)]
     time = float(impulse["time"])
     numbers = {
         column.path: NumberSnapshot(

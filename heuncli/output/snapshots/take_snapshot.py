@@ -15,13 +15,6 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.output.snapshots.columns import (
-    ResultView,
-    SnapshotScope,
-    collect_all_columns,
-    collect_columns,
-    collect_values,
-)
 from heuncli.output.snapshots.course_sums import (
     GAUSS,
     NO_PIECES,
@@ -37,17 +30,21 @@ from heuncli.output.snapshots.course_sums import (
 )
 from heuncli.output.snapshots.golden_file import N_EVEN, RunSnapshot
 from heuncli.output.snapshots.record import (
+    ResultView,
     SnapshotBounds,
     SnapshotCourse,
+    SnapshotScope,
+    collect_all_columns,
+    collect_columns,
+    collect_values,
     estimate_impact_error,
     find_ending_error,
     make_run_snapshot,
 )
-from heuncli.output.snapshots.tables import search_stresses
-from heuncli.output.tables.page import Page, make_page
+from heuncli.output.tables.page import Page, make_page, search_stresses
 from heuncli.results.results import Array, Extremes, Results
 from heuncli.results.results_schema import SHARES, add_shared_reports
-from heuncli.study.quantities.channels import Channel, collect_run_loads
+from heuncli.study.quantities.channels import Channel, collect_series_loads
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
@@ -83,14 +80,12 @@ def is_searched_between_samples(study: Study, reports: frozenset[str]) -> bool:
     """Return whether the extremes of a snapshot are searched between the samples, or there is nothing between them."""
     results = study.results
     scope = SnapshotScope(reports, make_labels(study.spec))
-    n_run_columns = sum(len(run.loads) for run in scope.collect_runs(results))
-    return study.has_one_instant or study.is_searched(len(collect_columns(results, scope)) + n_run_columns)
+    n_loads = sum(len(series.loads) for series in scope.collect_cut_series(results))
+    return study.has_one_instant or study.is_searched(len(collect_columns(results, scope)) + n_loads)
 
 
 def _choose_even_instants(results: Results, given_instants: Sequence[float]) -> Array:
-    """Return eleven even instants of a run, or the given ones if they belong to the same run within rounding of its
-    end.
-    """
+    """Return eleven even instants of a run, or the given ones if they end with it, within rounding and its error."""
     first, last = float(results.time[0]), float(results.time[-1])
     even_instants: Array = np.linspace(first, last, N_EVEN) if last > first else np.zeros(0)
     if len(given_instants) == len(even_instants) and np.all(
@@ -131,68 +126,72 @@ class UncertainJumps(NamedTuple):
 
 
 def _find_jumps(study: Study, view: ResultView) -> UncertainJumps:
-    """Find the jumps of a run. The error of a jump that depends on the motion is the motion's error over the speed
-    there.
-    """
+    """Find the jumps of a run. Where a jump depends on the motion, its error is the motion's error over the speed."""
     jumps = np.array(sorted(study.history.jumps))
     span = float(np.ptp(view.results.time))
     motion = view.results.accuracy.get("estimate", {}).get("motion") or 0.0
     errors = np.full(len(jumps), max(SLOW * motion, 2.0 * tolerances.EPS) * span)
-    for blow in view.results.impulses:
-        k = min(int(np.searchsorted(jumps, float(blow["time"]))), max(len(jumps) - 1, 0))
-        for index in {max(k - 1, 0), k} if len(jumps) else ():
-            errors[index] = max(errors[index], estimate_impact_error(blow, view))
+    for impulse in view.results.impulses if len(jumps) else ():
+        k = min(int(np.searchsorted(jumps, float(impulse["time"]))), len(jumps) - 1)
+        for index in {max(k - 1, 0), k}:
+            errors[index] = max(errors[index], estimate_impact_error(impulse, view))
     return UncertainJumps(jumps, errors)
 
 
 def _sum_course(
     study: Study, scope: SnapshotScope, even: Array, jumps: UncertainJumps, samples: SampledColumns | None
 ) -> tuple[dict[str, Array], dict[str, CourseSums]]:
-    """Return the columns at the even instants, and the sums over the whole course of each.
+    """Return the columns at the even instants (n,), and the sums over the whole course of each, by their paths.
 
     samples: what a search has evaluated of them
 
-    All instants are solved in one call.
+    All instants are solved in one call: the even ones, uneven ones in each tenth, and the Gauss nodes of the pieces.
     """
     horizon = study.results.horizon
     uneven = make_tenth_instants(even)
-    beyond = np.zeros(uneven.shape, dtype=bool) if horizon is None else uneven >= horizon
+    is_beyond = np.zeros(uneven.shape, dtype=bool) if horizon is None else uneven >= horizon
     pieces = split_into_pieces(study.search_times) if samples is not None and horizon is None else NO_PIECES
-    places = [even, np.where(beyond, even[0], uneven), pieces.nodes]
-    values = _solve_instants(study, scope, np.concatenate([at.ravel() for at in places]))
-    n, m = len(even), len(even) + uneven.size
-    near_jump = find_near_jumps(uneven, jumps.times, jumps.errors) | beyond
-    sums = {path: sum_tenths(own_values[n:m].reshape(uneven.shape), near_jump) for path, own_values in values.items()}
-    if horizon is not None:
-        sums = {path: own_values.cut_at_horizon(np.asarray(beyond.any(axis=1))) for path, own_values in sums.items()}
+    instants = [even, np.where(is_beyond, even[0], uneven), pieces.nodes]
+    values = _solve_instants(study, scope, np.concatenate([part.ravel() for part in instants]))
+    nodes_begin = even.size + uneven.size
+    near_jump = find_near_jumps(uneven, jumps.times, jumps.errors) | is_beyond
+    sums: dict[str, CourseSums] = {}
+    for path, column in values.items():
+        own_sums = sum_tenths(column[even.size : nodes_begin].reshape(uneven.shape), near_jump)
+        sums[path] = own_sums if horizon is None else own_sums.cut_at_horizon(np.asarray(is_beyond.any(axis=1)))
     if samples is not None and len(pieces.first):
         paths = [column.path for column in collect_columns(study.results, scope)]
-        inner = np.stack([values[path][m:].reshape(-1, GAUSS.size) for path in paths], axis=2)
-        ends = (find_ending_error(study.results) or 0.0) / float(np.ptp(study.results.time))
-        own_values = {path: sums[path] for path in paths}
-        sums |= _add_integrals(own_values, pieces, samples.find_values(pieces.times), inner, jumps, ends)
-    return {path: own_values[:n] for path, own_values in values.items()}, {
-        path: own_values.without_words for path, own_values in sums.items()
-    }
+        node_values = np.stack([values[path][nodes_begin:].reshape(-1, GAUSS.size) for path in paths], axis=2)
+        end_error = (find_ending_error(study.results) or 0.0) / float(np.ptp(study.results.time))
+        grid = samples.find_values(pieces.times)
+        sums |= _add_integrals({path: sums[path] for path in paths}, pieces, grid, node_values, jumps, end_error)
+    even_values = {path: column[: even.size] for path, column in values.items()}
+    return even_values, {path: own_sums.without_words for path, own_sums in sums.items()}
 
 
 def _add_integrals(
-    sums: Mapping[str, CourseSums], pieces: Pieces, grid: Array, inner: Array, jumps: UncertainJumps, end_error: float
+    sums: Mapping[str, CourseSums],
+    pieces: Pieces,
+    grid: Array,
+    node_values: Array,
+    jumps: UncertainJumps,
+    end_error: float,
 ) -> dict[str, CourseSums]:
     """Add to the sums of columns their integrals over the run, where they are known throughout.
 
+    grid (n_t, n_columns): the columns at the instants of the pieces
+    node_values (m, 4, n_columns): the columns at the Gauss nodes of the pieces
     end_error: error of the run's end, as a share of the run
     """
-    uncertain = jumps.find_errors(pieces.times[:-1][find_jump_sides(pieces.times)])
+    jump_errors = jumps.find_errors(pieces.times[:-1][find_jump_sides(pieces.times)])
     with np.errstate(invalid="ignore"):
-        integrals = np.stack(integrate_columns(pieces, grid, inner, uncertain))
+        integrals = np.stack(integrate_columns(pieces, grid, node_values, jump_errors))
         integrals[2] += 2.0 * end_error * np.abs(grid).max(axis=0)
-    return {
-        path: column_sums._replace(mean=float(mean), moment=float(moment), mean_error=float(error))
-        if np.isfinite([mean, moment, error]).all()
-        else column_sums
-        for (path, column_sums), mean, moment, error in zip(sums.items(), *integrals, strict=True)
-    }
+    found = dict(sums)
+    for (path, own_sums), mean, moment, error in zip(sums.items(), *integrals.tolist(), strict=True):
+        if np.isfinite([mean, moment, error]).all():
+            found[path] = own_sums._replace(mean=mean, moment=moment, mean_error=error)
+    return found
 
 
 def _solve_instants(study: Study, scope: SnapshotScope, times: Array) -> dict[str, Array]:
@@ -214,16 +213,16 @@ def _search_bounds(
 
     Also returns what was evaluated of the columns during the search, if there was one.
     """
-    columns, runs = collect_columns(page.results, scope), scope.collect_runs(page.results)
+    columns, all_series = collect_columns(page.results, scope), scope.collect_cut_series(page.results)
     samples = SampledColumns()
 
     def collect(results: Results) -> list[Channel]:
         own = collect_columns(results, scope)
         values = [column.values for column in own]
         samples.add(results.time, np.stack(values, axis=1) if own else np.zeros((len(results.time), 0)))
-        return own + (collect_run_loads(results) if runs else [])
+        return own + (collect_series_loads(results) if all_series else [])
 
-    n_channels = len(columns) + sum(len(run.loads) for run in runs)
+    n_channels = len(columns) + sum(len(series.loads) for series in all_series)
     is_searched = study.is_searched(n_channels)
     times = None if is_searched else study.results.time
     search = ChannelSearch(collect, page.certain.find_error)
@@ -235,10 +234,10 @@ def _search_bounds(
     }
     if is_searched and columns and not study.has_one_instant:
         _add_spreads(bounds, columns, page.certain, samples, jumps)
-    for run in runs:
-        found = extremes.find([load.path for load in run.loads])
-        found = found.join(search_stresses(run, page.certain, study)) if run.stresses else found
-        bounds |= _make_run_bounds(found)
+    for series in all_series:
+        found = extremes.find([load.path for load in series.loads])
+        found = found.join(search_stresses(series, page.certain, study)) if series.stresses else found
+        bounds |= _make_series_bounds(found)
     return bounds, samples if is_searched and columns else None
 
 
@@ -254,14 +253,11 @@ def _add_spreads(
     jump_error = float(jumps.errors.max(initial=0.0))
     for i, column in enumerate(columns):
         column_bounds, margin = bounds[column.path], MARGIN * certain.find_error(column)
-        spreads: list[float | None] = []
-        for side, bound in ((-1.0, column_bounds.low), (1.0, column_bounds.high)):
-            known = bound is not None and np.isfinite(bound[0])
-            spreads.append(
-                jump_error + find_instant_spread(times, side * values[:, i], side * bound[0], bound[1], margin)
-                if known and bound is not None
-                else None
-            )
+        spreads: list[float | None] = [None, None]
+        for k, (sign, bound) in enumerate(((-1.0, column_bounds.low), (1.0, column_bounds.high))):
+            if bound is not None and np.isfinite(bound[0]):
+                spread = find_instant_spread(times, sign * values[:, i], sign * bound[0], bound[1], margin)
+                spreads[k] = jump_error + spread
         bounds[column.path] = column_bounds._replace(low_spread=spreads[0], high_spread=spreads[1])
 
 
@@ -269,10 +265,8 @@ def _make_bounds(low: float, low_at: float, high: float, high_at: float) -> Snap
     return SnapshotBounds((float(low), float(low_at), None), (float(high), float(high_at), None))
 
 
-def _make_run_bounds(extremes: Extremes) -> dict[str, SnapshotBounds]:
-    """Return the extremes along a series of cuts: the minimum belongs to the column of lowest values, the maximum to
-    that of highest.
-    """
+def _make_series_bounds(extremes: Extremes) -> dict[str, SnapshotBounds]:
+    """Return the extremes along a series of cuts: the minimum of the lowest values, the maximum of the highest."""
     bounds: dict[str, SnapshotBounds] = {}
     for i, path in enumerate(extremes.paths):
         low = float(extremes.low[i]), float(extremes.low_at[i]), extremes.places[i][0]

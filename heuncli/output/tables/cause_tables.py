@@ -12,15 +12,15 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_text import INDENT
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, format_cell, is_zero_cell
-from heuncli.output.documents.text_table import INDENT
-from heuncli.output.tables.cut_runs import format_place
+from heuncli.output.tables.cut_tables import format_place
 from heuncli.output.tables.table_blocks import TableBlock
 from heuncli.results.path_words import BY_CAUSE
 from heuncli.results.results import Array, CutPosition, Extremes, Results
 from heuncli.results.results_schema import SECTION_FORCES, SECTION_MOMENTS, SHARES
 from heuncli.study.quantities.channels import Channel
-from heuncli.study.quantities.cut_runs import CutRun
+from heuncli.study.quantities.cut_runs import CutSeries
 from heuncli.study.quantities.digits import (
     OPEN,
     OPEN_NOTE,
@@ -117,11 +117,13 @@ def project_share(row: Channel, i: int, total: Channel, share: Array) -> Array:
 def find_direct_shares(
     results: Results, item: Channel, shares_of: Mapping[str, Mapping[str, Channel]]
 ) -> dict[str, Array]:
-    """Find the direct shares of the loads in a quantity; for a section force, their components along the section's
-    axes.
+    """Find the direct shares of the loads in a quantity, (n_t, n) each.
+
+    Of a section force they are the components of the direct force or moment along the section's axes n, e1, e2.
     """
-    name, axis = AXES.get(item.quantity, (item.quantity, None)) if item.kind == "sections" else (item.quantity, None)
-    direct_shares = shares_of.get(item._replace(quantity=f"direct_{name}").path, {})
+    is_resultant = item.kind == "sections" and item.quantity in AXES
+    vector, axis = AXES[item.quantity] if is_resultant else (item.quantity, None)
+    direct_shares = shares_of.get(item._replace(quantity=f"direct_{vector}").path, {})
     if axis is None:
         return {cause: share.values for cause, share in direct_shares.items()}
     section = results.sections[item.name]
@@ -137,29 +139,32 @@ def make_instants_tables(
     horizon: float | None,
     certain: StatedErrors,
 ) -> list[OutputTable]:
-    """Make the table of all numbers of a block that have shares, at every instant. Empty list if there are none."""
+    """Make the table of all numbers of a block that have shares, at every instant. Empty list if there are none.
+
+    times (n_t,): of the numbers [s]
+    horizon: the instant from which on nothing is claimed
+    """
     clock: list[Cell] = [""] if len(times) == 1 else [*_make_instants(times.tolist(), float(np.ptp(times)))]
     groups: list[tuple[str, list[ShareLine]]] = []
     for group in block.groups:
         lines: list[ShareLine] = []
         for row in group.rows:
             number = numbers.get(row.path)
-            for k, t in enumerate(times.tolist() if number is not None else []):
-                assert number is not None
-                is_beyond, is_uncertain = horizon is not None and t >= horizon, t in certain.singular_times
-                shares = {cause: float(values[k]) for cause, values in number.shares.items()}
-                lines.append(
-                    ShareLine(
-                        row.label, clock[k], number.row, shares, float(number.row.values[k]), is_beyond, is_uncertain
-                    )
-                )
-                direct = {cause: float(values[k]) for cause, values in number.direct.items()}
-                if direct:
-                    lines.append(
-                        ShareLine(f"{row.label} direct", "", number.row, direct, None, is_beyond, is_uncertain)
-                    )
+            if number is None:
+                continue
+            for k, t in enumerate(times.tolist()):
+                doubts = horizon is not None and t >= horizon, t in certain.singular_times
+                value = float(number.row.values[k])
+                lines.append(ShareLine(row.label, clock[k], number.row, _select(number.shares, k), value, *doubts))
+                if number.direct:
+                    direct = _select(number.direct, k)
+                    lines.append(ShareLine(f"{row.label} direct", "", number.row, direct, None, *doubts))
         groups.append((group.title, lines))
-    return [make_share_table(make_heading(block), groups, certain)] if any(lines for _, lines in groups) else []
+    return (
+        [make_share_table(make_shares_heading(block.heading), groups, certain)]
+        if any(lines for _, lines in groups)
+        else []
+    )
 
 
 def make_extremes_tables(
@@ -192,18 +197,25 @@ def make_extremes_tables(
                 if not (row.is_magnitude and word == "min")
             ]
         groups.append((group.title, lines))
-    return [make_share_table(make_heading(block), groups, certain)] if any(lines for _, lines in groups) else []
+    return (
+        [make_share_table(make_shares_heading(block.heading), groups, certain)]
+        if any(lines for _, lines in groups)
+        else []
+    )
 
 
 def make_share_line(
     number: NumberWithShares, instants: Array, label: str, time: float, value: float, span: float
 ) -> ShareLine:
-    """Make the row of a number at one instant."""
+    """Make the row of a number at one of the instants; span: length of the run [s], 0 to show no instant."""
     k = int(np.searchsorted(instants, time))
     clock: Cell = _make_instants([time], span)[0] if span > 0.0 else ""
-    return ShareLine(
-        label, clock, number.row, {cause: float(values[k]) for cause, values in number.shares.items()}, value
-    )
+    return ShareLine(label, clock, number.row, _select(number.shares, k), value)
+
+
+def _select(shares: Mapping[str, Array], k: int) -> dict[str, float]:
+    """Select the shares at the instant k."""
+    return {cause: float(values[k]) for cause, values in shares.items()}
 
 
 def _make_instants(times: Sequence[float], span: float) -> list[NumberCell]:
@@ -212,15 +224,13 @@ def _make_instants(times: Sequence[float], span: float) -> list[NumberCell]:
     return [NumberCell(t, cached_text=f"{text} s") for t, text in zip(times, texts, strict=True)]
 
 
-def make_heading(block: TableBlock) -> str:
-    """Return the block's heading with the remark that the loads are by cause."""
-    return block.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
+def make_shares_heading(heading: str) -> str:
+    """Add to the heading of a block or series of cuts the remark that its loads are by cause."""
+    return heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
 
 
 def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) -> OutputTable:
-    """Make the table of grouped rows with a column for each cause; rows and columns that are zero throughout are left
-    out.
-    """
+    """Make the table of grouped rows with a column for each cause. Rows and columns that are zero are left out."""
     all_lines = [line for _, lines in groups for line in lines]
     causes = dict.fromkeys(cause for line in all_lines for cause in line.shares)
     shown_causes, small_causes = choose_causes(list(causes), all_lines)
@@ -230,30 +240,25 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
     special_words, left_out = set[str](), False
     number_cells: list[list[Cell]] = []
     for title, lines in groups:
-        all_cells = make_share_cells(lines, heads[:-2], small_causes, certain)
-        shown_here = [
-            (line, cells_of_line)
-            for line, cells_of_line in zip(lines, all_cells, strict=True)
-            if not all(map(is_zero_cell, cells_of_line))
-        ]
-        left_out = left_out or len(shown_here) < len(lines)
         open_labels = find_indeterminate_labels(lines)
-        shown_here = [(line, cells_of_line) for line, cells_of_line in shown_here if line.row.label not in open_labels]
-        special_words |= {OPEN} if open_labels else set()
+        cells_of_lines = zip(lines, make_share_cells(lines, heads[:-2], small_causes, certain), strict=True)
+        nonzero = [(line, cells) for line, cells in cells_of_lines if not all(map(is_zero_cell, cells))]
+        shown_here = [(line, cells) for line, cells in nonzero if line.row.label not in open_labels]
+        left_out = left_out or len(nonzero) < len(lines)
         rows += [title] if title and (shown_here or open_labels) else []
         rows += [
-            (line.label, certain.units.find(line.row.unit)[0], line.position, *cells_of_line)
-            for line, cells_of_line in shown_here
+            (line.label, certain.units.find(line.row.unit)[0], line.position, *cells) for line, cells in shown_here
         ]
         rows += [f"{INDENT}{OPEN}: {', '.join(open_labels)}"] if open_labels else []
+        special_words |= {OPEN} if open_labels else set()
         shown_lines += [line for line, _ in shown_here]
-        number_cells += [cells_of_line for _, cells_of_line in shown_here]
+        number_cells += [cells for _, cells in shown_here]
     if not number_cells:
         return OutputTable(heading, notes=(*map(str.strip, map(str, rows)), OPEN_NOTE) if rows else ("all values 0",))
-    empty = [i for i in range(len(heads) - 2) if all(is_zero_cell(line[i]) for line in number_cells)]
+    empty = [i for i in range(len(heads) - 2) if all(is_zero_cell(cells[i]) for cells in number_cells)]
     shown = [i for i in range(len(heads)) if i not in empty]
-    lead = 3 if any(line.position for line in all_lines) else 2
-    cells = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
+    lead = 3 if any(line.position for line in all_lines) else 2  # columns before the numbers: label, unit, position
+    shown_rows = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
     titles = [distinguish(cause, TOTAL_COLUMNS) for cause in shown_causes] + heads[len(shown_causes) :]
     columns = [
         *(OutputColumn(head, "text") for head in ("", "", "at")[:lead]),
@@ -261,19 +266,19 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
     ]
     where = " except where open" if special_words else ""
     notes = [f"all values 0{where}: {', '.join(heads[i] for i in empty)}"] if empty else []
-    special_words |= {format_cell(cell) for cells_of_line in number_cells for cell in cells_of_line}
+    special_words |= {format_cell(cell) for cells in number_cells for cell in cells}
     notes += make_notes(shown_lines, {heads[i] for i in shown}, special_words)
     notes += [ZERO_NOTE] if left_out else []
-    return OutputTable(heading, tuple(columns), tuple(cells), tuple(notes))
+    return OutputTable(heading, tuple(columns), tuple(shown_rows), tuple(notes))
 
 
 def find_indeterminate_labels(lines: Sequence[ShareLine]) -> list[str]:
     """Return the labels of the numbers that are indeterminate in all their rows."""
-    labels = dict.fromkeys(line.row.label for line in lines if line.total is not None)
-    known = {
-        line.row.label for line in lines if line.total is not None and (line.is_uncertain or np.isfinite(line.total))
-    }
-    return [label for label in labels if label not in known]
+    totals = [
+        (line.row.label, line.is_uncertain or np.isfinite(line.total)) for line in lines if line.total is not None
+    ]
+    known = {label for label, is_known in totals if is_known}
+    return [label for label in dict.fromkeys(label for label, _ in totals) if label not in known]
 
 
 def choose_causes(causes: Sequence[str], lines: Sequence[ShareLine]) -> tuple[list[str], list[str]]:
@@ -309,13 +314,12 @@ def make_share_cells(
 ) -> list[list[Cell]]:
     """Make the cells of each row: one for each column, their sum, and the total."""
     numbers: list[list[float | None]] = []
+    own_columns = columns[: len(columns) - bool(small_causes)]
     for line in lines:
-        numbers_of_line: list[float | None] = [
-            line.shares.get(name) for name in columns[: len(columns) - bool(small_causes)]
-        ]
-        numbers_of_line += [sum(line.shares.get(cause, 0.0) for cause in small_causes)] * bool(small_causes)
-        total = sum(line.shares.values()) if line.total is not None else None
-        numbers.append([*numbers_of_line, total, line.total])
+        own: list[float | None] = [line.shares.get(name) for name in own_columns]
+        others = [sum(line.shares.get(cause, 0.0) for cause in small_causes)] * bool(small_causes)
+        share_sum = sum(line.shares.values()) if line.total is not None else None
+        numbers.append([*own, *others, share_sum, line.total])
     cells: list[list[Cell]] = [[] for _ in lines]
     for family, scale in find_family_scales(lines).items():
         members = [i for i, line in enumerate(lines) if find_family(line) == family]
@@ -353,48 +357,46 @@ def make_notes(lines: Sequence[ShareLine], heads: set[str], words: set[str]) -> 
 # Series of cuts
 
 
-def make_run_extremes_tables(
-    run: CutRun, results: Results, extremes: Extremes, certain: StatedErrors
+def make_series_extremes_tables(
+    series: CutSeries, results: Results, extremes: Extremes, certain: StatedErrors
 ) -> list[OutputTable]:
     """Make the table of the minimum and maximum of each section force along a series of cuts, with their shares.
 
-    results: with the run cut at the places of the minimum and maximum of every section force, in this order
+    results: with the series cut at the places of the minimum and maximum of every section force, in this order
     extremes: of the section forces
     """
     lines: list[ShareLine] = []
     span = float(np.ptp(np.concatenate([extremes.low_at, extremes.high_at])))
-    for i, load in enumerate(run.loads):
+    for i, load in enumerate(series.loads):
         ends = (("min", extremes.low, extremes.low_at), ("max", extremes.high, extremes.high_at))
         for j, (word, value, instants) in enumerate(ends):
             k = int(np.searchsorted(results.time, instants[i]))
             clock = [f"{write_times([float(instants[i])], span)[0]} s"] if span > 0.0 else []
-            where = ", ".join([f"s = {format_place(extremes.places[i][j], run)} {run.length[0]}", *clock])
-            lines.append(make_run_line(results, run.name, load, f"{load.label} {word}", (k, 2 * i + j), where)
+            where = ", ".join([f"s = {format_place(extremes.places[i][j], series)} {series.length[0]}", *clock])
+            lines.append(make_series_line(results, series.name, load, f"{load.label} {word}", (k, 2 * i + j), where)
                          ._replace(total=float(value[i])))  # fmt: skip
-    return make_run_tables(run, lines, certain)
+    return make_series_tables(series, lines, certain)
 
 
-def make_run_instants_tables(
-    run: CutRun, results: Results, horizon: float | None, certain: StatedErrors
+def make_series_instants_tables(
+    series: CutSeries, results: Results, horizon: float | None, certain: StatedErrors
 ) -> list[OutputTable]:
-    """Make the table of the minimum and maximum of each section force among the cuts at every instant, with their
-    shares.
-    """
+    """Make the table of the minimum and maximum of each section force among the cuts at every instant."""
     times = results.time.tolist()
     clock = [] if len(times) == 1 else [f", {text} s" for text in write_times(times, float(np.ptp(results.time)))]
     lines: list[ShareLine] = []
     for k, t in enumerate(times):
-        for load in run.loads:
+        for load in series.loads:
             values = np.nan_to_num(load.values[k])
             for word, cut in (("min", int(np.argmin(values))), ("max", int(np.argmax(values)))):
-                where = f"s = {format_place(CutPosition(float(run.s[cut]), None, cut), run)} {run.length[0]}"
+                where = f"s = {format_place(CutPosition(float(series.s[cut]), None, cut), series)} {series.length[0]}"
                 where += clock[k] if clock else ""
-                line = make_run_line(results, run.name, load, f"{load.label} {word}", (k, cut), where)
+                line = make_series_line(results, series.name, load, f"{load.label} {word}", (k, cut), where)
                 lines.append(line._replace(is_beyond_horizon=horizon is not None and t >= horizon))
-    return make_run_tables(run, lines, certain)
+    return make_series_tables(series, lines, certain)
 
 
-def make_run_line(
+def make_series_line(
     results: Results, name: str, load: Channel, label: str, index: tuple[int, int], where: str
 ) -> ShareLine:
     """Make the row of a section force at one instant and cut.
@@ -409,7 +411,8 @@ def make_run_line(
     return ShareLine(label, where, load, shares, float(section[load.quantity][index]))
 
 
-def make_run_tables(run: CutRun, lines: Sequence[ShareLine], certain: StatedErrors) -> list[OutputTable]:
+def make_series_tables(series: CutSeries, lines: Sequence[ShareLine], certain: StatedErrors) -> list[OutputTable]:
     """Make the table of a series of cuts. Empty list if no row has shares."""
-    heading = run.heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
-    return [make_share_table(heading, [("", lines)], certain)] if any(line.shares for line in lines) else []
+    if not any(line.shares for line in lines):
+        return []
+    return [make_share_table(make_shares_heading(series.heading), [("", lines)], certain)]

@@ -7,6 +7,7 @@ less than 1 µs for each number.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from itertools import islice
@@ -16,11 +17,11 @@ import numpy as np
 
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_json import AT_ONCE, FORMAT, iter_json
+from heuncli.output.documents.as_data import AT_ONCE, FORMAT, iter_json
 from heuncli.results.cut_rows import cut_indices
 from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, Results
-from heuncli.results.results_schema import IMPULSES, find_row
+from heuncli.results.results_schema import EVENTS, IMPULSES, find_row
 from heuncli.results.stored_arrays import StoredArray
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
 from heuncli.study.quantities.labels import Labels
@@ -106,9 +107,7 @@ def _iter_csv(results: Results, labels: Labels) -> Iterator[str]:
         ends = _format_cut_columns(row) if has_sections else [""] * len(row.channel.components)
         yield from _iter_csv_text(row, [f",{row.channel.cause}{end}" if by_cause else end for end in ends])
     if results.events:
-        from heuncli.output.tables.event_table import iter_csv_lines  # where there are conditions
-
-        yield from iter_csv_lines(results, "," * (by_cause + len(CUT_COLUMNS) * has_sections))
+        yield from _iter_event_lines(results, "," * (by_cause + len(CUT_COLUMNS) * has_sections))
 
 
 def _iter_impact_channels(number: int, block: Block, labels: Labels) -> Iterator[CsvChannel]:
@@ -203,3 +202,16 @@ def _count_numbers(block: Any) -> int:
     if isinstance(block, dict):
         return sum(_count_numbers(member) for member in block.values())
     return sum(_count_numbers(member) for member in block) if isinstance(block, (list, tuple)) else 1
+
+
+def _iter_event_lines(results: Results, end: str) -> Iterator[str]:
+    """Yield for each instant of a condition a line with its new value and a line with the error of the instant.
+
+    end: text of the remaining columns
+    """
+    for name, event in results.events.items():
+        for quantity in ("to", "error"):
+            unit = find_row(f"events.EVENT.{quantity}").select_unit()
+            for t, value in zip(event["time"].tolist(), event[quantity], strict=True):
+                number = repr(float(value)) if math.isfinite(value) else ""
+                yield f"{t!r},{EVENTS},{name},{quantity},,{unit},{number}{end}\n"

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_text import INDENT, select_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell
-from heuncli.output.documents.text_table import INDENT, select_columns
 from heuncli.output.tables.nouns import join_ranges
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, choose_styles, make_cells
 from heuncli.results.results import Array, Extremes
@@ -32,14 +32,18 @@ NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
 CONSTANT = "constant"  # in place of the instant of a greatest value
 PART = ".on."  # in the names of the loads of a coupling on each body
 N_LEADING = 2  # columns before the numbers: label, unit
-
+COLUMNS = (
+    OutputColumn("", "text"), OutputColumn("", "text"),
+    OutputColumn("first", is_optional=True), OutputColumn("last", is_optional=True),
+    OutputColumn("min", vector="extremes"), OutputColumn("at", "instant", "s", vector="extremes"),
+    OutputColumn("max", vector="extremes"), OutputColumn("at", "instant", "s", vector="extremes"),
+)  # fmt: skip
+MARK = "†"  # of an extreme at a doubtful instant
 FRICTION_KINDS = frozenset({"foundation", "joints", "stops", "couplings", "sections"})  # depend on friction
 
 
 class DoubtfulInstants(NamedTuple):
-    """Instants at which computed loads and accelerations are not those of the real machine, and the note that says
-    why.
-    """
+    """Instants at which computed loads and accelerations are not those of the real machine, and the note on why."""
 
     instants: frozenset[float] = frozenset()
     note: str = ""
@@ -56,7 +60,6 @@ class DoubtfulInstants(NamedTuple):
 
 
 NO_DOUBT = DoubtfulInstants()
-MARK = "†"
 
 
 class GroupExtremes(NamedTuple):
@@ -71,18 +74,14 @@ class GroupExtremes(NamedTuple):
 
 
 def drop_components(block: TableBlock) -> TableBlock:
-    """Drop the components of vectors, except in groups of the whole scene, if there are too many groups for a full
-    table.
-    """
+    """Drop the components of vectors if a block has too many groups for a full table; those of the whole scene stay."""
     if len(block.groups) <= MAX_FULL_GROUPS:
         return block
-    groups = [
-        group
-        if group.is_whole_scene
-        else group._replace(rows=tuple(row for row in group.rows if row.is_magnitude or not row.vector))
-        for group in block.groups
-    ]
-    return block._replace(groups=tuple(groups))
+    whole_rows = [tuple(row for row in group.rows if row.is_magnitude or not row.vector) for group in block.groups]
+    groups = zip(block.groups, whole_rows, strict=True)
+    return block._replace(
+        groups=tuple(group if group.is_whole_scene else group._replace(rows=rows) for group, rows in groups)
+    )
 
 
 def make_extremes_tables(
@@ -120,7 +119,7 @@ def _make_full_table(
     open_groups: dict[str, list[str]] = {}  # names of groups by their open components
     span = float(np.ptp(times))
     for part in parts:
-        lines, open_labels, notes_of_group = _make_rows(part, span, certain, block.kind, doubtful)
+        lines, open_labels, notes_of_group = _make_group_rows(part, span, certain, block.kind, doubtful)
         notes |= notes_of_group
         if open_labels and part.group.name and not full:
             open_groups.setdefault(", ".join(open_labels), []).append(part.group.name)
@@ -140,14 +139,6 @@ def _make_full_table(
     return table if full else _merge_constants(table)
 
 
-COLUMNS = (
-    OutputColumn("", "text"), OutputColumn("", "text"),
-    OutputColumn("first", is_optional=True), OutputColumn("last", is_optional=True),
-    OutputColumn("min", vector="extremes"), OutputColumn("at", "instant", "s", vector="extremes"),
-    OutputColumn("max", vector="extremes"), OutputColumn("at", "instant", "s", vector="extremes"),
-)  # fmt: skip
-
-
 def _merge_constants(table: OutputTable) -> OutputTable:
     """Show a constant number once, and leave out the columns that are then empty."""
     rows: list[Sequence[Cell] | str] = []
@@ -159,7 +150,7 @@ def _merge_constants(table: OutputTable) -> OutputTable:
     return select_columns(table._replace(rows=tuple(rows)), shown)
 
 
-def _make_rows(
+def _make_group_rows(
     part: GroupExtremes, span: float, certain: StatedErrors, kind: str, doubtful: DoubtfulInstants
 ) -> tuple[list[tuple[Cell, ...] | str], list[str], set[str]]:
     """Make the rows of a group, the labels of its numbers that are open throughout, and the notes they need.
@@ -171,34 +162,29 @@ def _make_rows(
     notes: set[str] = set()
     cells = _make_extreme_cells(part, certain)
     texts = [[format_cell(cell) for cell in cells_of_row] for cells_of_row in cells]
+    words = [set(texts_of_row) for texts_of_row in texts]  # {"0"} of a number that is zero throughout
     lines: list[tuple[Cell, ...] | str] = []
-    open_labels = [
-        row.label for row, texts_of_row in zip(group.rows, texts, strict=True) if set(texts_of_row) == {OPEN}
-    ]
-    nonzero_counts = Counter(
-        row.vector
-        for row, texts_of_row in zip(group.rows, texts, strict=True)
-        if set(texts_of_row) != {"0"} and not row.is_magnitude
-    )
-    for i, (row, (first, last, low, high)) in enumerate(zip(group.rows, texts, strict=True)):
+    open_labels = [row.label for row, shown in zip(group.rows, words, strict=True) if shown == {OPEN}]
+    nonzero_rows = [row for row, shown in zip(group.rows, words, strict=True) if shown != {"0"}]
+    nonzero_counts = Counter(row.vector for row in nonzero_rows if not row.is_magnitude)
+    for i, row in enumerate(group.rows):
         if row.label in open_labels:
             continue
-        if {first, last, low, high} == {"0"}:
+        if words[i] == {"0"}:
             notes.add(ZERO_NOTE)
             continue
         if row.is_magnitude and row.vector and nonzero_counts[row.vector] == 1:
             continue  # for a vector along one axis the magnitude adds nothing
         partly_open = bool(np.isnan(row.values).any())
         notes |= {PARTLY_OPEN_NOTE} if partly_open else set()
-        notes |= {UNKNOWN_NOTE} if UNKNOWN in (first, last, low, high) else set()
+        notes |= {UNKNOWN_NOTE} if UNKNOWN in words[i] else set()
+        low, high = texts[i][2:]
         low_at, high_at = ["", ""] if low == high else write_times(instants[:, i].tolist(), span)
         unit = certain.units.find(row.unit)[0] if row.unit != "1" else ""
         ends = cells[i][2:]
         if low != high:  # else it is constant
-            marked = [
-                doubtful.add_mark(text, float(at), kind, unit)
-                for text, at in zip((low, high), instants[:, i], strict=True)
-            ]
+            ends_with_instants = zip((low, high), instants[:, i].tolist(), strict=True)
+            marked = [doubtful.add_mark(text, at, kind, unit) for text, at in ends_with_instants]
             notes |= {doubtful.note} if marked != [low, high] else set()
             ends = [cell if end == text else end for cell, end, text in zip(ends, marked, (low, high), strict=True)]
         lines.append((row.label + "*" * partly_open, unit, *cells[i][:2], ends[0], low_at, ends[1], high_at))
@@ -224,9 +210,7 @@ def _make_short_table(
     block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, heading: str,
     doubtful: DoubtfulInstants,
 ) -> OutputTable:  # fmt: skip
-    """Make the table with a row for each group: of each number the value farthest from zero, and when. No vector
-    components.
-    """
+    """Make the table with a row for each group: of each number, not of components, the value of largest magnitude."""
     span = float(np.ptp(times))
     heads: dict[str, None] = {}
     cells: list[dict[str, tuple[str, str]]] = []

@@ -1,7 +1,8 @@
-"""The whole report of a run as tables, and the channels whose extremes they need.
+"""The whole report of a run as tables, the channels whose extremes they need, and the search of these.
 
-Call `make_page(results, labels, magnitudes)` first. Then search `page.make_search()` and pass the extremes to
-`make_tables_of_extremes`, or call `make_tables_at_instants`.
+`search_run` makes the page of a solved scene and searches the extremes; `make_tables_of_page` makes the tables. Step by
+step: `make_page(results, labels, magnitudes)`, search `page.make_search()`, pass the extremes to
+`make_tables_of_extremes`; or call `make_tables_at_instants`.
 """
 
 from __future__ import annotations
@@ -15,24 +16,39 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputTable
-from heuncli.output.tables import cut_runs
-from heuncli.output.tables.certain_sums import make_sums_table
-from heuncli.output.tables.extremes_tables import NO_DOUBT, DoubtfulInstants, drop_components, make_extremes_tables
+from heuncli.output.tables import cut_tables
+from heuncli.output.tables.extremes_tables import (
+    MARK,
+    NO_DOUBT,
+    NOT_SEARCHED,
+    DoubtfulInstants,
+    drop_components,
+    make_extremes_tables,
+)
+from heuncli.output.tables.indeterminate import make_sums_table
 from heuncli.output.tables.instants_tables import make_instants_tables
+from heuncli.output.tables.run_description import add_pins_note
 from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import PLANS
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Results
-from heuncli.results.results_schema import REPORT_OF, REPORTS
-from heuncli.study.quantities.channels import ChannelSelection, iter_channels
-from heuncli.study.quantities.cut_runs import CutRun, collect_runs
+from heuncli.results.results_schema import REPORT_OF, REPORTS, RESULTANTS, SHARES
+from heuncli.study.compose.warnings import has_smoothed_friction, make_partial_note
+from heuncli.study.model.selection import EntryKeys, Selection
+from heuncli.study.quantities.channels import Channel, ChannelSelection, iter_channels, make_section_channels
+from heuncli.study.quantities.cut_runs import CutSeries, choose_cuts, collect_cut_series, split_into_cuts
 from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
 from heuncli.study.quantities.labels import Labels
+from heuncli.study.queries.study import Study, find_partial_friction
 from heuncli.study.search.columns import ChannelSearch
 
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 NO_EXTREMES: Mapping[str, Extremes] = MappingProxyType({})
+AXIS: EntryKeys = ("foundation", "axis")
+RUN_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"
+AXIS_NOTE = "the central axis has no extremes: show it at given times with --at or --all"
+SECTIONS = frozenset({"sections"})
 
 
 class ShareSource(Protocol):
@@ -69,7 +85,7 @@ class Page(NamedTuple):
     full: bool = True
 
     @property
-    def has_runs(self) -> bool:
+    def has_cut_series(self) -> bool:
         """Whether there are series of cuts."""
         return any("s" in section for section in self.results.sections.values())
 
@@ -77,7 +93,7 @@ class Page(NamedTuple):
         """Make the search of the numbers of all blocks, and of the section forces along series of cuts."""
         blocks = self.make_blocks(self.results, only_searched=True)
         numbers = [row for block in blocks for group in block.groups for row in group.rows]
-        selection = ChannelSelection.from_numbers(self.labels, numbers, has_runs=self.has_runs)
+        selection = ChannelSelection.from_numbers(self.labels, numbers, has_cut_series=self.has_cut_series)
         return ChannelSearch(selection.collect, self.certain.find_error)
 
     def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[OutputTable]:
@@ -91,9 +107,9 @@ class Page(NamedTuple):
         for block in self.make_blocks(self.results, only_searched=True):
             part = search_result.find(block.paths)
             tables += make_extremes_tables(block, times, part, self.certain, last_values, self.doubtful, full=self.full)
-        for run in collect_runs(self.results, self.labels):
-            cuts = self.cut_extremes.get(run.name)
-            tables += cut_runs.make_extremes_tables(run, times, search_result, self.certain, cuts)
+        for series in collect_cut_series(self.results, self.labels):
+            cuts = self.cut_extremes.get(series.name)
+            tables += cut_tables.make_extremes_tables(series, times, search_result, self.certain, cuts)
         share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
         return [*tables, *share_tables, *self._make_last_tables()]
 
@@ -108,8 +124,8 @@ class Page(NamedTuple):
         span, tables = float(np.ptp(self.results.time)), list[OutputTable]()
         for block in blocks:
             tables += cause_tables.make_extremes_tables(block, numbers, instants, found, self.certain, span)
-        for run in collect_runs(self.results, self.labels):
-            tables += self._make_run_share_tables(run, search_result, shares)
+        for series in collect_cut_series(self.results, self.labels):
+            tables += self._make_series_share_tables(series, search_result, shares)
         return tables
 
     def _collect_shares(self, results: Results) -> Mapping[str, Any]:
@@ -117,14 +133,16 @@ class Page(NamedTuple):
 
         return cause_tables.collect_shares(iter_channels(results, self.labels), results)
 
-    def _make_run_share_tables(self, run: CutRun, search_result: Extremes, shares: ShareSource) -> list[OutputTable]:
+    def _make_series_share_tables(
+        self, series: CutSeries, search_result: Extremes, shares: ShareSource
+    ) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes along a series of cuts."""
         from heuncli.output.tables import cause_tables
 
-        found = search_result.find([load.path for load in run.loads])
+        found = search_result.find([load.path for load in series.loads])
         instants = np.unique(np.concatenate([found.low_at, found.high_at]))
-        results = shares.compute_shares_along(run.name, instants, [place for both in found.places for place in both])
-        return cause_tables.make_run_extremes_tables(run, results, found, self.certain)
+        results = shares.compute_shares_along(series.name, instants, [place for both in found.places for place in both])
+        return cause_tables.make_series_extremes_tables(series, results, found, self.certain)
 
     def make_tables_at_instants(
         self,
@@ -144,11 +162,17 @@ class Page(NamedTuple):
         tables: list[OutputTable] = []
         for block in self.make_blocks(results):
             tables += make_instants_tables(block, results.time, horizon, certain)
-        for run in collect_runs(results, self.labels):
+        for series in collect_cut_series(results, self.labels):
             if search_result is not None:
-                tables.append(cut_runs.make_extremes_table(run, results.time, search_result, self.certain))
-            run_tables = cut_runs.make_instants_tables(run, results.time, horizon, self.certain, every_cut=every_cut)
-            tables += [run_tables[0]._replace(heading=""), *run_tables[1:]] if search_result is not None else run_tables
+                tables.append(cut_tables.make_extremes_table(series, results.time, search_result, self.certain))
+            series_tables = cut_tables.make_instants_tables(
+                series, results.time, horizon, self.certain, every_cut=every_cut
+            )
+            tables += (
+                [series_tables[0]._replace(heading=""), *series_tables[1:]]
+                if search_result is not None
+                else series_tables
+            )
         if shares is not None:
             tables += self._make_instants_share_tables(results, certain, search_result, shares)
         return [*tables, *self._make_last_tables(every_cut)]
@@ -163,11 +187,11 @@ class Page(NamedTuple):
         numbers, tables = self._collect_shares(results), list[OutputTable]()
         for block in self.make_blocks(results):
             tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
-        for run in collect_runs(results, self.labels):
+        for series in collect_cut_series(results, self.labels):
             if search_result is not None:
-                tables += self._make_run_share_tables(run, search_result, shares)
+                tables += self._make_series_share_tables(series, search_result, shares)
             else:
-                tables += cause_tables.make_run_instants_tables(run, results, horizon, certain)
+                tables += cause_tables.make_series_instants_tables(series, results, horizon, certain)
         return tables
 
     def _find_last_values(self) -> dict[str, float]:
@@ -193,14 +217,14 @@ class Page(NamedTuple):
     def _make_event_tables(self, show_all: bool) -> list[OutputTable]:
         if not self.results.events:
             return []
-        from heuncli.output.tables.event_table import make_events_table  # if there are conditions
+        from heuncli.output.tables.event_tables import make_events_table  # if there are conditions
 
         return [make_events_table(self.results, all_instants=show_all)]
 
     def _make_impulse_tables(self, show_all: bool) -> list[OutputTable]:
         if not self.results.impulses:
             return []
-        from heuncli.output.tables.impulse_tables import ImpactReport, make_impulse_tables  # if there are impacts
+        from heuncli.output.tables.event_tables import ImpactReport, make_impulse_tables  # if there are impacts
 
         report = ImpactReport(
             self.results, self.labels, self.certain, self.magnitudes, self.impact_extremes, self.details
@@ -245,3 +269,110 @@ def _select_sum_instants(block: DeterminateSum, which: slice) -> DeterminateSum:
         path: factor[which] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()
     }
     return {"terms": factors, "value": block["value"][which]}
+
+
+class TablesQuery(NamedTuple):
+    """What the tables are to show.
+
+    selection: the reports and entries
+    instants (n,): None for the extremes
+    show_all: all instants, and every cut of a series of cuts
+    details: include what is shown only on request by name
+    full: repeat what is constant or indeterminate
+    """
+
+    selection: Selection
+    instants: Array | None = None
+    show_all: bool = False
+    details: bool = False
+    full: bool = True
+
+
+class SearchedPage(NamedTuple):
+    """The page of a run and the extremes of its channels; None where none are searched: at given instants, or at the
+    only one.
+    """
+
+    page: Page
+    extremes: Extremes | None
+
+
+def search_run(study: Study, labels: Labels, query: TablesQuery) -> SearchedPage:
+    """Make the page of a solved scene, and search the extremes that its tables need."""
+    page = make_page(study.results, labels, study.magnitudes, details=query.details, full=query.full)
+    if study.results.impulses:
+        page = page._replace(impact_extremes=study.find_impulse_extremes())
+    is_one_instant = len(study.results.time) == 1
+    if query.show_all or query.instants is not None or (is_one_instant and not page.has_cut_series):
+        return SearchedPage(page, None)
+    page, extremes = search_page(page, study, query.selection.reports)
+    if has_smoothed_friction(study.setup.scene.mechanism):
+        doubtful_instants = find_partial_friction(study, [*extremes.low_at.tolist(), *extremes.high_at.tolist()])
+        page = page._replace(
+            doubtful=DoubtfulInstants.with_reason(doubtful_instants, make_partial_note(doubtful_instants))
+        )
+    return SearchedPage(page, extremes)
+
+
+def make_tables(study: Study, labels: Labels, query: TablesQuery) -> list[OutputTable]:
+    """Search the extremes and make the tables before they are split to a width; never an empty list."""
+    return make_tables_of_page(study, search_run(study, labels, query), query)
+
+
+def make_tables_of_page(study: Study, searched: SearchedPage, query: TablesQuery) -> list[OutputTable]:
+    """Make the tables of a searched run; never an empty list."""
+    page, extremes = searched
+    reports = query.selection.reports
+    shares = study if SHARES in reports else None
+    if extremes is None or len(study.results.time) == 1:
+        shown = study.results if query.instants is None else study.resample(query.instants)
+        tables = page.make_tables_at_instants(shown, every_cut=query.show_all, search_result=extremes, shares=shares)
+    else:
+        tables = page.make_tables_of_extremes(extremes, shares)
+        if not extremes.is_searched:
+            tables.insert(0, OutputTable("", notes=(NOT_SEARCHED,)))
+        if page.has_cut_series and page.doubtful.instants:
+            tables.append(OutputTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + RUN_EXTREMES_SUFFIX,)))
+        if AXIS in query.selection.entries:
+            tables.append(OutputTable("", notes=(AXIS_NOTE,)))
+    tables = add_pins_note(tables, study)
+    if not tables:
+        tables = [OutputTable("", notes=(f"nothing to show for {', '.join(sorted(reports))}: the model has none",))]
+    return tables
+
+
+def search_page(page: Page, study: Study, reports: frozenset[str]) -> tuple[Page, Extremes]:
+    """Search the extremes of all channels of the page, with their places along its series of cuts.
+
+    Returns the page with the extremes at single cuts of each series, if the run has several instants, and all others.
+    """
+    found = study.search_extremes(page.make_search(), reports - {SHARES}, whole=True)
+    all_series = collect_cut_series(page.results, page.labels)
+    for series in all_series:
+        if series.stresses:
+            found = found.join(search_stresses(series, page.certain, study))
+    if len(page.results.time) > 1:
+        page = page._replace(
+            cut_extremes={series.name: search_cuts(series, page.certain, study) for series in all_series}
+        )
+    return page, found
+
+
+def search_stresses(series: CutSeries, certain: StatedErrors, study: Study) -> Extremes:
+    """Search the extremes of the stresses along a series of cuts."""
+
+    def collect(results: Results) -> tuple[Channel, ...]:
+        return make_section_channels(series.name, results.sections[series.name])[len(RESULTANTS) :]
+
+    return study.search_extremes(ChannelSearch(collect, certain.find_error), SECTIONS)
+
+
+def search_cuts(series: CutSeries, certain: StatedErrors, study: Study) -> Extremes:
+    """Search the extremes of all quantities at the cuts of a series that are shown."""
+
+    def collect(results: Results) -> list[Channel]:
+        channels = make_section_channels(series.name, results.sections[series.name])
+        return split_into_cuts(channels, shown_cuts)
+
+    shown_cuts = choose_cuts(series)
+    return study.search_extremes(ChannelSearch(collect, certain.find_error), SECTIONS, whole=True)

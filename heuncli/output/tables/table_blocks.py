@@ -79,8 +79,9 @@ class TableBlock(NamedTuple):
 
 
 def choose_styles(rows: Sequence[Channel], numbers: Array, certain: StatedErrors) -> list[Style]:
-    """Choose the number style of each row in its display unit, from the values of its family and `numbers`, SI,
-    (n, n_rows).
+    """Choose the number style of each row in its display unit, by the largest of its family.
+
+    numbers (n, n_rows): those that are shown besides the values of the rows, SI
     """
     families = [_find_family(row) for row in rows]
     scales: dict[tuple[str, ...], float] = {}
@@ -102,8 +103,9 @@ def _find_family(row: Channel) -> tuple[str, ...]:
 
 
 def make_cells(group: RowGroup, numbers: Array, certain: StatedErrors) -> list[list[NumberCell]]:
-    """Make the cells of each row from its numbers, SI, (n, n_rows) -> n_rows lists of n; the rows of a family show the
-    same decimals.
+    """Make the cells of each row from its numbers: n_rows lists of n. The rows of a family show the same decimals.
+
+    numbers (n, n_rows): SI
     """
     cells: list[list[NumberCell]] = [[] for _ in group.rows]
     styles = choose_styles(group.rows, numbers, certain)
@@ -125,31 +127,15 @@ def make_cells(group: RowGroup, numbers: Array, certain: StatedErrors) -> list[l
 def build_block(plan: TablePlan, results: Results, labels: Labels, channels: Iterable[Channel]) -> TableBlock | None:
     """Build the block of one plan from the channels of its kind; None if there is nothing to show.
 
-    Series of cuts are left to output/tables/cut_runs.py.
+    Series of cuts have tables of their own (cut_tables.py).
     """
-    runs = {name for name, section in results.sections.items() if "s" in section} if plan.kind == "sections" else set()
-    named: dict[str, dict[str, Channel]] = {}
-    for item in channels:
-        if item.cause or item.kind != plan.kind or item.quantity not in plan.quantities:
-            continue
-        if plan.only not in (None, item.name):
-            continue
-        if plan.is_foundation and item.name == MASS_EFFECT.only:
-            continue
-        if item.name.split(".")[0] not in runs:
-            name = item.name.removesuffix(".stress") if plan.kind == "sections" else item.name
-            named.setdefault(name, {})[item.quantity] = item
     groups = []
-    for name, channel_of_quantity in named.items():
-        rows = [
-            row
-            for quantity in plan.quantities
-            if quantity in channel_of_quantity
-            for row in channel_of_quantity[quantity].numbers
-        ]
-        label = _make_group_name(plan, name)
-        note, text = plan.note(label, labels), find_label(plan.kind, name, labels) if name else ""
-        groups.append(RowGroup(label, note, tuple(rows), is_whole_scene=not name, label=text))
+    for name, channel_of_quantity in _group_channels(plan, results, channels).items():
+        shown = [channel_of_quantity[quantity] for quantity in plan.quantities if quantity in channel_of_quantity]
+        rows = tuple(row for channel in shown for row in channel.numbers)
+        group_name = _make_group_name(plan, name)
+        label = find_label(plan.kind, name, labels) if name else ""
+        groups.append(RowGroup(group_name, plan.note(group_name, labels), rows, is_whole_scene=not name, label=label))
     notes: tuple[str, ...] = ()
     if plan.is_foundation:
         groups, notes = _select_foundation_groups(groups, results)
@@ -161,7 +147,23 @@ def build_block(plan: TablePlan, results: Results, labels: Labels, channels: Ite
     return TableBlock(plan.key, plan.kind, heading, plan.what, tuple(groups), notes, plan.missing) if groups else None
 
 
+def _group_channels(plan: TablePlan, results: Results, channels: Iterable[Channel]) -> dict[str, dict[str, Channel]]:
+    """Return the channels that a plan shows, by the name of their object and by their quantity."""
+    cut_series = {name for name, section in results.sections.items() if "s" in section and plan.kind == "sections"}
+    found: dict[str, dict[str, Channel]] = {}
+    for channel in channels:
+        if channel.cause or channel.kind != plan.kind or channel.quantity not in plan.quantities:
+            continue
+        is_mass_effect = plan.is_foundation and channel.name == MASS_EFFECT.only
+        if plan.only not in (None, channel.name) or is_mass_effect or channel.name.split(".")[0] in cut_series:
+            continue
+        name = channel.name.removesuffix(".stress") if plan.kind == "sections" else channel.name
+        found.setdefault(name, {})[channel.quantity] = channel
+    return found
+
+
 def _make_group_name(plan: TablePlan, name: str) -> str:
+    """Return the name of a group as the table shows it: "support pin1" of `supports.pin1`; "" for the whole scene."""
     if not plan.is_foundation:
         return "" if plan.only else name
     return name.replace("supports.", "support ", 1).replace("elements.", "element ", 1) or "total"

@@ -1,6 +1,6 @@
 /** @file The points that the machine fills over its motion: by them a view is fitted to it. */
 
-import { posesAt, stands } from "./poses.js";
+import { posesAt, locatePoint } from "./poses.js";
 import { dot, lengthOf, minus } from "./vectors.js";
 
 const MOST_FRAMES = 48;
@@ -42,9 +42,9 @@ function outermost(body, directions) {
  */
 export function coverOf(scene) {
   const poses = posesAt(scene, 0, 0);
-  const joints = scene.joints.map((joint) => stands(poses, joint.b, joint.q));
+  const joints = scene.joints.map((joint) => locatePoint(poses, joint.b, joint.q));
   const directions = spreadDirections(20);
-  const looks = scene.bodies.map((body, k) => outermost(body, directions).map((p) => stands(poses, k, p)));
+  const looks = scene.bodies.map((body, k) => outermost(body, directions).map((p) => locatePoint(poses, k, p)));
   const mean = (list, v) => list.reduce((sum, p) => sum + dot(p, v) / list.length, 0);
   const size = (list) => {
     const spans = [0, 1, 2].map((i) => Math.max(...list.map((p) => p[i])) - Math.min(...list.map((p) => p[i])));
@@ -68,8 +68,8 @@ export function cloudOf(scene, count) {
   for (let k = 0; k < frames; k += 1) {
     const frame = frames > 1 ? Math.round((k * (count - 1)) / (frames - 1)) : 0;
     const poses = posesAt(scene, frame, 0);
-    own.forEach((points, body) => points.forEach((p) => cloud.push(stands(poses, body, p))));
-    for (const { a, p, b, q } of ends) cloud.push(stands(poses, a, p), stands(poses, b, q));
+    own.forEach((points, body) => points.forEach((p) => cloud.push(locatePoint(poses, body, p))));
+    for (const { a, p, b, q } of ends) cloud.push(locatePoint(poses, a, p), locatePoint(poses, b, q));
     for (const { ends: found, count: spans } of scene.ropes) {
       cloud.push(...pointsOf(found.subarray(6 * spans * frame, 6 * spans * (frame + 1))));
     }

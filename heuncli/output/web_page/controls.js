@@ -2,7 +2,7 @@
 
 import { axesOf, coursesOf, madeOf } from "./courses.js";
 import { instant } from "./digits.js";
-import { by, fill, made } from "./elements.js";
+import { findElement, fill, makeElement } from "./elements.js";
 import { ZOOM, listenToPointers, viewKey } from "./pointing.js";
 import { SPEEDS, speedFor } from "./player.js";
 import { arrowChoices } from "./wrenches.js";
@@ -85,7 +85,7 @@ export class Chosen {
   }
 
   /** The path of the curve that is shown first: of the joint with the greatest force, else of whatever varies. */
-  telling() {
+  findLargestCourse() {
     const joints = this.courses.filter(({ path }) => /^joints\..*\.force$/.test(path)).slice(0, TRIED);
     const some = joints.length ? joints : this.courses.slice(0, TRIED);
     const most = ({ high }) => high.reduce((best, v) => (Math.abs(v) > best ? Math.abs(v) : best), 0);
@@ -121,10 +121,10 @@ function isOwn(event) {
 
 /** The view's buttons, the pointer, the keys, until the signal. @param {AbortSignal} signal */
 export function listenToView(view, player, changed, signal) {
-  const canvas = by("machine");
+  const canvas = findElement("machine");
   listenToPointers(canvas, view, changed);
   const act = (id, what) =>
-    by(id).addEventListener("click", () => {
+    findElement(id).addEventListener("click", () => {
       what();
       changed();
     });
@@ -159,65 +159,68 @@ export function listenToView(view, player, changed, signal) {
 export function listenToTime(data, player, before) {
   const { count, time, marks } = data;
   const moving = count > 1;
-  for (const id of ["moving", "over", "marks", "worst"]) by(id).hidden = !moving || (id === "marks" && !marks.length);
+  for (const id of ["moving", "over", "marks", "worst"]) {
+    findElement(id).hidden = !moving || (id === "marks" && !marks.length);
+  }
   if (!moving) return;
-  const slider = by("time");
+  const slider = findElement("time");
   slider.max = String(count - 1);
   slider.addEventListener("input", () => player.halt(Number(slider.value)));
-  by("ticks").append(...marks.map((mark) => made("option", "", { value: String(mark.frame) })));
-  by("play").addEventListener("click", () => player.toggle());
-  by("worst").addEventListener("click", () => player.halt(data.worst));
+  findElement("ticks").append(...marks.map((mark) => makeElement("option", "", { value: String(mark.frame) })));
+  findElement("play").addEventListener("click", () => player.toggle());
+  findElement("worst").addEventListener("click", () => player.halt(data.worst));
   fill(
-    by("speed"),
+    findElement("speed"),
     SPEEDS.map(([speed, label]) => [String(speed), label]),
   );
   player.speed = before?.speed ?? speedFor(time[count - 1] - time[0]);
-  by("repeat").checked = player.repeats = before?.repeats ?? true;
-  by("speed").value = String(player.speed);
-  by("speed").addEventListener("change", () => (player.speed = Number(by("speed").value)));
-  by("repeat").addEventListener("change", () => (player.repeats = by("repeat").checked));
+  findElement("repeat").checked = player.repeats = before?.repeats ?? true;
+  findElement("speed").value = String(player.speed);
+  findElement("speed").addEventListener("change", () => (player.speed = Number(findElement("speed").value)));
+  findElement("repeat").addEventListener("change", () => (player.repeats = findElement("repeat").checked));
   const span = time[count - 1] - time[0];
   const buttons = marks.slice(0, MOST_BUTTONS).map((mark) => {
-    const button = made("button", `${mark.words} ${instant(mark.time, span)} s`, { type: "button" });
+    const button = makeElement("button", `${mark.words} ${instant(mark.time, span)} s`, { type: "button" });
     button.addEventListener("click", () => player.halt(mark.frame));
     return button;
   });
-  by("marks").replaceChildren(made("span", "Events and impulses", { class: "word" }), ...buttons);
-  if (marks.length > MOST_BUTTONS) by("marks").append(made("span", `and ${marks.length - MOST_BUTTONS} more`));
+  findElement("marks").replaceChildren(makeElement("span", "Events and impulses", { class: "word" }), ...buttons);
+  const hidden = marks.length - MOST_BUTTONS;
+  if (hidden > 0) findElement("marks").append(makeElement("span", `and ${hidden} more`));
 }
 
 /** What is drawn on the machine. */
 export function listenToDrawn(chosen, player, changed) {
   const box = (id, field) => {
-    by(id).checked = chosen[field];
-    by(id).addEventListener("change", () => {
-      chosen[field] = by(id).checked;
+    findElement(id).checked = chosen[field];
+    findElement(id).addEventListener("change", () => {
+      chosen[field] = findElement(id).checked;
       changed();
     });
   };
   box("names", "names");
   box("values", "values");
   box("paths", "paths");
-  by("pathslabel").hidden = chosen.data.count < 2;
+  findElement("pathslabel").hidden = chosen.data.count < 2;
   fill(
-    by("bodies"),
+    findElement("bodies"),
     LOOKS.map(([opaque, label]) => [String(opaque), label]),
   );
-  by("bodies").value = String(chosen.look);
-  by("bodies").addEventListener("change", () => {
-    chosen.look = Number(by("bodies").value);
+  findElement("bodies").value = String(chosen.look);
+  findElement("bodies").addEventListener("change", () => {
+    chosen.look = Number(findElement("bodies").value);
     changed();
   });
-  fill(by("reactions"), [...chosen.choices.map((choice) => [choice.key, choice.label]), ["", "none"]]);
-  by("reactions").value = chosen.choice?.key ?? "";
-  by("reactions").addEventListener("change", () => {
-    chosen.choice = chosen.choices.find((choice) => choice.key === by("reactions").value) ?? null;
+  fill(findElement("reactions"), [...chosen.choices.map((choice) => [choice.key, choice.label]), ["", "none"]]);
+  findElement("reactions").value = chosen.choice?.key ?? "";
+  findElement("reactions").addEventListener("change", () => {
+    chosen.choice = chosen.choices.find((choice) => choice.key === findElement("reactions").value) ?? null;
     if (chosen.choice?.frame !== undefined) player.halt(chosen.choice.frame);
     changed();
   });
-  by("size").value = String(Math.round(Math.log(chosen.size) / Math.log(SIZES)));
-  by("size").addEventListener("input", () => {
-    chosen.size = SIZES ** Number(by("size").value);
+  findElement("size").value = String(Math.round(Math.log(chosen.size) / Math.log(SIZES)));
+  findElement("size").addEventListener("input", () => {
+    chosen.size = SIZES ** Number(findElement("size").value);
     changed();
   });
 }
@@ -225,38 +228,38 @@ export function listenToDrawn(chosen, player, changed) {
 /** Which load of which section, and at which cut. */
 export function listenToSections(chosen, changed) {
   const { sections } = chosen.data;
-  by("cutting").hidden = !sections.length;
+  findElement("cutting").hidden = !sections.length;
   fill(
-    by("section"),
+    findElement("section"),
     sections.map((section, k) => [String(k), section.name]),
   );
   const offer = () => {
     const { section } = chosen;
     const loads = section ? section.loads.map((load) => [load.label, load.label]) : [];
-    fill(by("load"), [...loads, ["", "none"]]);
-    by("load").value = chosen.load?.label ?? "";
-    by("load").disabled = !section;
-    by("cutlabel").hidden = !section?.s;
-    by("cut").max = String((section?.cuts.length ?? 1) - 1);
-    by("cut").value = String(section?.chosen ?? 0);
+    fill(findElement("load"), [...loads, ["", "none"]]);
+    findElement("load").value = chosen.load?.label ?? "";
+    findElement("load").disabled = !section;
+    findElement("cutlabel").hidden = !section?.s;
+    findElement("cut").max = String((section?.cuts.length ?? 1) - 1);
+    findElement("cut").value = String(section?.chosen ?? 0);
   };
-  by("section").addEventListener("change", () => {
+  findElement("section").addEventListener("change", () => {
     const wanted = chosen.load?.label;
-    chosen.section = sections[Number(by("section").value)];
+    chosen.section = sections[Number(findElement("section").value)];
     chosen.load = wanted
       ? (chosen.section.loads.find((load) => load.label === wanted) ?? chosen.governing() ?? null)
       : null;
     offer();
     changed();
   });
-  by("load").addEventListener("change", () => {
-    chosen.load = chosen.section?.loads.find((load) => load.label === by("load").value) ?? null;
+  findElement("load").addEventListener("change", () => {
+    chosen.load = chosen.section?.loads.find((load) => load.label === findElement("load").value) ?? null;
     changed();
   });
-  by("cut").addEventListener("input", () => {
-    chosen.section.chosen = Number(by("cut").value);
+  findElement("cut").addEventListener("input", () => {
+    chosen.section.chosen = Number(findElement("cut").value);
     changed();
   });
-  if (chosen.section) by("section").value = String(sections.indexOf(chosen.section));
+  if (chosen.section) findElement("section").value = String(sections.indexOf(chosen.section));
   offer();
 }

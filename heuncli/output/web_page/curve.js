@@ -1,7 +1,7 @@
 /** @file Curves over time or an angle: axes, events and impulses, extremes, and a cursor at the frame that is shown. */
 
 import { peakOf } from "./courses.js";
-import { roundBelow, short, written } from "./digits.js";
+import { roundBelow, formatShort, formatNumber } from "./digits.js";
 import { cleared, polyline, ring } from "./strokes.js";
 
 const MARGIN = { left: 66, right: 14, top: 24, bottom: 46 };
@@ -69,10 +69,10 @@ function ticks(low, high, most) {
 }
 
 /** A number of an axis. @param {number} tick @param {number[]} all its neighbours, whose digits it needs, too */
-function told(tick, all) {
+function formatTick(tick, all) {
   const step = all.length > 1 ? all[1] - all[0] : 1;
   const size = Math.max(...all.map(Math.abs));
-  if (size >= 1e7 || size < 1e-3) return short(tick);
+  if (size >= 1e7 || size < 1e-3) return formatShort(tick);
   return tick.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))).replace("-", "−");
 }
 
@@ -82,13 +82,13 @@ function drawAxes(pen, panel, axis, unit, colours, labels) {
   for (const tick of up) {
     const y = panel.y(tick);
     polyline(pen, [[panel.left, y], [panel.right, y]], colours.line, tick === 0 ? 1.6 : 0.7);
-    labels.set(`up ${tick}`, told(tick, up), panel.left - 6, y, colours.ink, 8, "right");
+    labels.set(`up ${tick}`, formatTick(tick, up), panel.left - 6, y, colours.ink, 8, "right");
   }
   const across = ticks(panel.first, panel.first + panel.span, Math.max(2, Math.floor((panel.right - panel.left) / 80)));
   for (const tick of across) {
     const x = panel.x(tick);
     polyline(pen, [[x, panel.bottom], [x, panel.bottom + 4]], colours.ink, 1);
-    labels.set(`across ${tick}`, told(tick, across), x, panel.bottom + 16, colours.ink, 8, "center");
+    labels.set(`across ${tick}`, formatTick(tick, across), x, panel.bottom + 16, colours.ink, 8, "center");
   }
   const { left, right, top, bottom } = panel;
   polyline(pen, [[left, top], [left, bottom], [right, bottom]], colours.ink, 1);
@@ -129,7 +129,7 @@ function drawPeak(pen, panel, course, highest, colour, colours, labels, rank) {
   const value = (highest ? course.high : course.low)[k];
   const [x, y] = [panel.x(panel.values[k]), panel.y(value)];
   ring(pen, x, y, 3, colours.panel, colour, 1.5);
-  const text = `${written(value, course.style)} ${course.unit === "1" ? "" : course.unit}`.trim();
+  const text = `${formatNumber(value, course.style)} ${course.unit === "1" ? "" : course.unit}`.trim();
   labels.add(`peak ${course.path} ${highest}`, text, x, y, colours.ink, rank, 7);
 }
 
@@ -140,7 +140,7 @@ function drawEnvelope(pen, panel, band, { style, unit, path }, colours, labels) 
   for (const [end, rank] of [[band.greatest, 8], [band.least, 7.5]]) {
     const [x, y] = [panel.x(end.x), panel.y(end.value)];
     ring(pen, x, y, 3, colours.panel, colours.ink, 1.5);
-    const value = `${written(end.value, style)} ${unit === "1" ? "" : unit}`.trim();
+    const value = `${formatNumber(end.value, style)} ${unit === "1" ? "" : unit}`.trim();
     labels.add(`envelope ${path} ${rank}`, `${value}, ${band.names[end.run]}`, x, y, colours.ink, rank, 7);
   }
 }

@@ -2,18 +2,18 @@
 
 import { peakOf } from "./courses.js";
 import { PENS } from "./curve.js";
-import { by, fill, made } from "./elements.js";
+import { findElement, fill, makeElement } from "./elements.js";
 
 /** Which curves; a click into them goes to the frame there. @param {() => import("./curve.js").Panel|null} panel */
 export function listenToCurve(chosen, player, changed, panel) {
-  const select = by("path");
+  const select = findElement("path");
   fill(select, chosen.courses.map((course) => [course.path, course.label]));
   const offer = () => {
-    fill(by("more"), [["", "…"], ...chosen.others.map((course) => [course.path, course.label])]);
-    by("more").disabled = !chosen.others.length || chosen.curves.length >= PENS.length;
+    fill(findElement("more"), [["", "…"], ...chosen.others.map((course) => [course.path, course.label])]);
+    findElement("more").disabled = !chosen.others.length || chosen.curves.length >= PENS.length;
     const chips = chosen.curves.slice(1).map((path, k) => {
       const { label } = chosen.courses.find((course) => course.path === path);
-      const chip = made("button", `${label} ×`, { type: "button", class: "chip" });
+      const chip = makeElement("button", `${label} ×`, { type: "button", class: "chip" });
       chip.style.borderLeftColor = `var(--${PENS[(k + 1) % PENS.length][0]})`;
       chip.addEventListener("click", () => {
         chosen.curves = chosen.curves.filter((other) => other !== path);
@@ -21,7 +21,7 @@ export function listenToCurve(chosen, player, changed, panel) {
       });
       return chip;
     });
-    by("added").replaceChildren(...chips);
+    findElement("added").replaceChildren(...chips);
     changed();
   };
   const begin = () => {
@@ -33,21 +33,21 @@ export function listenToCurve(chosen, player, changed, panel) {
     begin();
   };
   select.addEventListener("change", () => show(select.value));
-  by("more").addEventListener("change", () => {
-    if (by("more").value) chosen.curves.push(by("more").value);
+  findElement("more").addEventListener("change", () => {
+    if (findElement("more").value) chosen.curves.push(findElement("more").value);
     offer();
   });
-  fill(by("across"), chosen.axes.map((axis, k) => [String(k), axis.label]));
-  by("across").value = String(chosen.axes.indexOf(chosen.axis));
-  by("acrosslabel").hidden = chosen.axes.length < 2;
-  by("across").addEventListener("change", () => {
-    chosen.axis = chosen.axes[Number(by("across").value)];
+  fill(findElement("across"), chosen.axes.map((axis, k) => [String(k), axis.label]));
+  findElement("across").value = String(chosen.axes.indexOf(chosen.axis));
+  findElement("acrosslabel").hidden = chosen.axes.length < 2;
+  findElement("across").addEventListener("change", () => {
+    chosen.axis = chosen.axes[Number(findElement("across").value)];
     changed();
   });
   const go = (highest) => () => player.halt(Math.max(0, peakOf(chosen.shownCourses[0], highest)));
-  by("lowest").addEventListener("click", go(false));
-  by("highest").addEventListener("click", go(true));
-  const canvas = by("curve");
+  findElement("lowest").addEventListener("click", go(false));
+  findElement("highest").addEventListener("click", go(true));
+  const canvas = findElement("curve");
   const follow = (event) => {
     if (event.buttons && panel()) player.halt(panel().frame(event.offsetX));
   };
@@ -56,18 +56,18 @@ export function listenToCurve(chosen, player, changed, panel) {
     follow(event);
   });
   canvas.addEventListener("pointermove", follow);
-  if (!chosen.curves.length) chosen.setCourse(chosen.telling());
+  if (!chosen.curves.length) chosen.setCourse(chosen.findLargestCourse());
   begin();
-  if (!chosen.courses.length) by("over").hidden = true;
+  if (!chosen.courses.length) findElement("over").hidden = true;
   return show;
 }
 
 /** Whether the envelope of all load cases is drawn. @param {boolean} some whether there are several */
 export function listenToBand(chosen, changed, some) {
-  by("bandlabel").hidden = !some;
-  by("band").checked = chosen.band;
-  by("band").addEventListener("change", () => {
-    chosen.band = by("band").checked;
+  findElement("bandlabel").hidden = !some;
+  findElement("band").checked = chosen.band;
+  findElement("band").addEventListener("change", () => {
+    chosen.band = findElement("band").checked;
     changed();
   });
 }

@@ -11,7 +11,7 @@ const DIGITS = 6;
  * A number in the unit in which it is shown.
  * @param {number} value @param {Style} style @returns {string}
  */
-export function written(value, [decimals, exponent, rounding, known]) {
+export function formatNumber(value, [decimals, exponent, rounding, known]) {
   if (Number.isNaN(value)) return "open";
   if (!Number.isFinite(value)) return "unbounded";
   const size = Math.abs(value);
@@ -29,12 +29,12 @@ function signed(text) {
 }
 
 /** A number with as many digits as the page holds. @param {number} value @returns {string} */
-export function whole(value) {
+export function formatAllDigits(value) {
   return signed(String(Number(value.toPrecision(DIGITS))));
 }
 
 /** A number of an axis or a scale, short. @param {number} value @returns {string} */
-export function short(value) {
+export function formatShort(value) {
   if (value === 0) return "0";
   const size = Math.abs(value);
   return signed(size >= 1e6 || size < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(4))));

@@ -1,7 +1,7 @@
 /** @file Elements of the page. All words go in as text: nothing that a spec says is ever read as a mark. */
 
 /** The element of an id. @param {string} id @returns {HTMLElement} */
-export function by(id) {
+export function findElement(id) {
   return document.getElementById(id);
 }
 
@@ -9,7 +9,7 @@ export function by(id) {
  * A new element.
  * @param {string} tag @param {string} text @param {Record<string, string>} [given] attributes
  */
-export function made(tag, text = "", given = {}) {
+export function makeElement(tag, text = "", given = {}) {
   const element = document.createElement(tag);
   if (text) element.textContent = text;
   for (const [name, value] of Object.entries(given)) element.setAttribute(name, value);
@@ -18,5 +18,5 @@ export function made(tag, text = "", given = {}) {
 
 /** Options of a select: value, words. @param {HTMLSelectElement} select @param {[string, string][]} options */
 export function fill(select, options) {
-  select.replaceChildren(...options.map(([value, label]) => made("option", label, { value })));
+  select.replaceChildren(...options.map(([value, label]) => makeElement("option", label, { value })));
 }

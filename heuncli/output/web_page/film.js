@@ -6,7 +6,7 @@ import { Chosen } from "./controls.js";
 import { axesOf } from "./courses.js";
 import { prepared, readData } from "./data.js";
 import { instant } from "./digits.js";
-import { by } from "./elements.js";
+import { findElement } from "./elements.js";
 import { gifOf } from "./gif.js";
 import { LabelList } from "./labels.js";
 import { Player, speedFor } from "./player.js";
@@ -48,7 +48,7 @@ function maker(data, width, height) {
   const labels = new LabelList();
   const view = new View(data.scene);
   const chosen = new Chosen(data, () => {});
-  const drawn = by("machine");
+  const drawn = findElement("machine");
   drawn.style.width = `${width}px`;
   drawn.style.height = `${height - HEAD}px`;
   const whole = document.createElement("canvas");
@@ -99,7 +99,7 @@ function draw(data) {
   return [base64(gifOf(pictures, wide, high, 1 / rate))];
 }
 
-readData(by("data").textContent).then(([data]) => {
-  by("film").textContent = draw(prepared(data)).join(" ");
+readData(findElement("data").textContent).then(([data]) => {
+  findElement("film").textContent = draw(prepared(data)).join(" ");
   document.documentElement.dataset.done = "yes";
 });

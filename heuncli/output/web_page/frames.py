@@ -18,7 +18,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.integrated_scene import find_one_sided_limits
 from heuncli.results.results import Array, Indices, Results
 from heuncli.results.results_schema import REPORT_OF, RESULTANTS
-from heuncli.study.quantities.channels import Channel, collect_run_loads, iter_channels
+from heuncli.study.quantities.channels import Channel, collect_series_loads, iter_channels
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.queries.study import Study
@@ -74,7 +74,7 @@ def _collect_loads(results: Results, labels: Labels) -> list[Channel]:
     vectors = [channel for channel in channels if channel.quantity in ("force", "moment")]
     loads = [channel for channel in vectors if channel.kind == "joints" or channel.path in FOUNDATION_LOADS]
     loads += [channel for channel in channels if channel.kind == "sections" and channel.quantity in RESULTANTS]
-    return loads + collect_run_loads(results)
+    return loads + collect_series_loads(results)
 
 
 def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES) -> PageFrames:
@@ -112,9 +112,7 @@ def choose_frames(study: Study, peaks: Array, max_frames: int = MAX_PAGE_FRAMES)
 
 
 def resample_at_frames(study: Study, times: Array) -> Results:
-    """Resample the results at the frames. At instants of the run itself the values are those of the run, bit for
-    bit.
-    """
+    """Resample the results at the frames; at instants of the run itself the values are the run's own, bit for bit."""
     original = study.results
     if np.array_equal(times, original.time):
         return original
@@ -129,8 +127,7 @@ def resample_at_frames(study: Study, times: Array) -> Results:
 
 
 def _copy_instants(block: Any, source: Any, positions: Indices, source_rows: Indices) -> Any:
-    """Return a block of results in which the rows at `positions` are copied from those at `source_rows` of another
-    block.
+    """Return a block of results whose rows at `positions` are copied from `source_rows` of another block.
 
     The blocks have different numbers of instants, so an array runs over the instants if and only if the lengths differ.
     """
@@ -160,9 +157,7 @@ def _fill_between(study: Study, sample_times: Array, limit: int) -> Array:
 
 
 def _round_counts(target_counts: Array, max_total: int) -> Indices:
-    """Round the target counts (n,) up to whole numbers, at least 1; reduce them if their sum would exceed
-    `max_total`.
-    """
+    """Round the target counts (n,) up to whole numbers, at least 1; less if their sum would exceed `max_total`."""
     extra = np.maximum(np.ceil(target_counts) - 1.0, 0.0)
     spare = max_total - len(target_counts)
     if extra.sum() > spare:
@@ -175,7 +170,7 @@ def _choose_extra_instants(study: Study, peaks: Array, sample_times: Array, max_
 
     Each kind is included completely or not at all. Also returns the number of peaks that were left out.
     """
-    impact_times = [float(blow["time"]) for blow in study.results.impulses]
+    impact_times = [float(impulse["time"]) for impulse in study.results.impulses]
     jumps = study.history.jumps if len(study.history.jumps) <= MAX_JUMPS else []
     extra_times: Array = np.zeros(0)
     missed = 0

@@ -1,6 +1,4 @@
-"""The geometry that a page draws: bodies with their poses at all frames, joints, springs, ropes, symbols; the
-extent.
-"""
+"""The geometry that a page draws: bodies with their poses at all frames, joints, springs, ropes, symbols, extent."""
 
 from __future__ import annotations
 
@@ -14,8 +12,14 @@ from heuncli.base import tolerances
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.output.drawing.symbols import SYMBOLS
-from heuncli.output.machine_geometry.coupling_forces import CouplingForce, iter_coupling_forces
-from heuncli.output.machine_geometry.machine import BodyGeometry, LineGeometry, Machine, make_machine
+from heuncli.output.machine_geometry.machine import (
+    BodyGeometry,
+    CouplingForce,
+    LineGeometry,
+    Machine,
+    iter_coupling_forces,
+    make_machine,
+)
 from heuncli.output.machine_geometry.marks import Mark
 from heuncli.output.machine_geometry.poses import Poses
 from heuncli.output.machine_geometry.ropes import RopeGeometry, compute_span_ends
@@ -83,22 +87,17 @@ def make_page_scene(
         "bodies": bodies,
         "topologies": topologies.to_lists(),
         "joints": [
-            {"name": j.name, "caption": describe_object("joints", j.name, labels), "kind": j.kind}
-            | _pack_ends(j, body_numbers)
-            | {"axis": _to_floats(j.axis), "rope": j.name in ropes}
-            for j in machine.joints
+            {"name": joint.name, "caption": describe_object("joints", joint.name, labels), "kind": joint.kind}
+            | _pack_ends(joint, body_numbers)
+            | {"axis": _to_floats(joint.axis), "rope": joint.name in ropes}
+            for joint in machine.joints
         ],
         "lines": [
-            {"name": x.name, "kind": _find_line_symbol(x, spec)} | _pack_ends(x, body_numbers) for x in machine.lines
+            {"name": line.name, "kind": _find_line_symbol(line, spec)} | _pack_ends(line, body_numbers)
+            for line in machine.lines
         ],
         "paths": [pack_points(path) for path in machine.paths],
-        "belts": [
-            {
-                "body": body_numbers[belt.carrier],
-                "strands": pack_points(belt.strands),
-            }
-            for belt in machine.belts
-        ],
+        "belts": [{"body": body_numbers[belt.carrier], "strands": pack_points(belt.strands)} for belt in machine.belts],
         "ropes": [_make_rope(rope, poses, body_numbers) for rope in machine.ropes],
         "marks": [_make_mark(mark, poses) for mark in machine.marks],
         "acting": [
@@ -189,22 +188,19 @@ def is_constant(vectors: Array) -> bool:
 
 
 def _make_coupling_force(pull: CouplingForce, belts: Collection[str], labels: Labels) -> dict[str, Any]:
-    """Make the entry of a coupling force ON a body: its point of action at all frames, and the path of the row of its
-    values.
+    """Make the entry of a coupling force ON a body: its point of action at all frames, and the row of its values.
 
     The pulls of a belt's strands are included as vectors, because no row holds the direction of each.
     """
-    belt = pull.name in belts
-    reference = {
-        "row": f"couplings.{pull.name}.{'tight' if belt else f'on.{pull.body}.force'}",
-        "at": pack_points(pull.points),
-    }
+    is_belt = pull.name in belts
+    quantity = "tight" if is_belt else f"on.{pull.body}.force"
     coupling, body = describe_object("couplings", pull.name, labels), describe_object("bodies", pull.body, labels)
     return {
         "name": pull.name,
         "caption": f"{coupling} on {body}",
-        **reference,
-        "forces": pack_points(pull.forces) if belt else None,
+        "row": f"couplings.{pull.name}.{quantity}",
+        "at": pack_points(pull.points),
+        "forces": pack_points(pull.forces) if is_belt else None,
     }
 
 
@@ -227,8 +223,9 @@ def collect_corners(body: BodyGeometry) -> Array:
 
 
 def _compute_extent(machine: Machine, poses: Poses) -> dict[str, Any]:
-    """Compute center and half edges of a box that holds the machine at all frames, and the radius of a ball that does
-    [m]. Points of the ground that are farther away than the machine is large do not count.
+    """Compute center and half edges of a box that holds the machine at all frames, and the radius of a ball [m].
+
+    Points of the ground that are farther away than the machine is large do not count.
     """
     instants = np.linspace(0, len(poses.times) - 1, min(len(poses.times), MAX_EXTENT_FRAMES)).round().astype(int)
     bodies = [
@@ -255,9 +252,7 @@ def _enclose(cloud: Array) -> tuple[Array, Array, float]:
 
 
 def _find_common_pin_axis(machine: Machine, poses: Poses) -> list[float] | None:
-    """Find the direction to which all pin axes are parallel, world axes, or None. The machine moves in the plane across
-    it.
-    """
+    """Find the direction to which all pin axes are parallel, world axes, or None; the motion is in the plane across."""
     axes = []
     for joint in machine.joints:
         if joint.kind == "pin":

@@ -1,7 +1,7 @@
 /** @file The load of a section on the moving body: across the bar along a series of cuts, an arrow at a single cut. */
 
-import { roundBelow, short, written } from "./digits.js";
-import { points, stands } from "./poses.js";
+import { roundBelow, formatShort, formatNumber } from "./digits.js";
+import { points, locatePoint } from "./poses.js";
 import { arrow, polyline, ring } from "./strokes.js";
 import { plus, times } from "./vectors.js";
 
@@ -63,7 +63,7 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres, la
   for (const [number, piece] of piecesOf(section.cuts, along(section, load, frame)).entries()) {
     const positive = piece.reduce((sum, [, value]) => sum + value, 0) >= 0;
     const colour = positive ? colours.positive : colours.negative;
-    const feet = piece.map(([at]) => view.project(stands(poses, section.body, at)).slice(0, 2));
+    const feet = piece.map(([at]) => view.project(locatePoint(poses, section.body, at)).slice(0, 2));
     const tops = piece.map(([, value], k) => [feet[k][0] + value * off[0], feet[k][1] + value * off[1]]);
     pen.beginPath();
     [...feet, ...[...tops].reverse()].forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
@@ -84,7 +84,7 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres, la
   }
   polyline(
     pen,
-    section.cuts.map((at) => view.project(stands(poses, section.body, at))),
+    section.cuts.map((at) => view.project(locatePoint(poses, section.body, at))),
     colours.ink,
     1,
   );
@@ -93,18 +93,18 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres, la
 
 /** A load with its number and unit. */
 function textOf(load, value) {
-  return `${load.label} ${written(value * load.size, load.style)} ${load.unit === "1" ? "" : load.unit}`.trim();
+  return `${load.label} ${formatNumber(value * load.size, load.style)} ${load.unit === "1" ? "" : load.unit}`.trim();
 }
 
 /** The largest of a frame, with its number. */
-function tellLargest(pen, view, poses, section, load, frame, colours, off, labels) {
+function labelLargest(pen, view, poses, section, load, frame, colours, off, labels) {
   const values = along(section, load, frame);
   let best = -1;
   for (let k = 0; k < values.length; k += 1) {
     if (Math.abs(values[k]) > (best < 0 ? 0 : Math.abs(values[best]))) best = k;
   }
   if (best < 0) return;
-  const [x, y] = view.project(stands(poses, section.body, section.cuts[best]));
+  const [x, y] = view.project(locatePoint(poses, section.body, section.cuts[best]));
   const [tx, ty] = [x + values[best] * off[0], y + values[best] * off[1]];
   const colour = values[best] < 0 ? colours.negative : colours.positive;
   ring(pen, tx, ty, 3, colour, colours.panel, 1);
@@ -116,14 +116,14 @@ function tellLargest(pen, view, poses, section, load, frame, colours, off, label
  * @param {{section: object, load: object, cut: number, size: number, values: boolean, frame: number}} chosen
  */
 export function drawLoad(pen, view, poses, chosen, colours, labels) {
-  const { section, cut, size, values: tell, frame } = chosen;
+  const { section, cut, size, values: hasLabels, frame } = chosen;
   const load = chosen.force;
   const metres = largest(load) > 0 ? (HIGHEST * view.radius * size) / largest(load) : 0;
-  const at = stands(poses, section.body, section.cuts[cut] ?? section.cuts[0]);
+  const at = locatePoint(poses, section.body, section.cuts[cut] ?? section.cuts[0]);
   const [x, y] = view.project(at);
   if (section.s) {
     const off = drawDiagram(pen, view, poses, section, load, frame, colours, metres, labels);
-    if (tell) tellLargest(pen, view, poses, section, load, frame, colours, off, labels);
+    if (hasLabels) labelLargest(pen, view, poses, section, load, frame, colours, off, labels);
     ring(pen, x, y, 4.5, "transparent", colours.accent, 2);
     return;
   }
@@ -135,7 +135,7 @@ export function drawLoad(pen, view, poses, chosen, colours, labels) {
   const colour = value < 0 ? colours.negative : colours.positive;
   const heads = load.unit.includes("·") ? 2 : 1;
   arrow(pen, [x, y], [x + dx, y + dy], near * view.scale, colour, colours.panel, heads, value < 0 ? [6, 3] : []);
-  if (tell) labels.add(`load ${load.path}`, textOf(load, value), x + dx, y + dy, colour, 4);
+  if (hasLabels) labels.add(`load ${load.path}`, textOf(load, value), x + dx, y + dy, colour, 4);
 }
 
 /** How high how much of a load is, in the corner. @param {number} line which from below */
@@ -148,6 +148,6 @@ export function drawLoadScale(pen, view, { force: load, size }, colours, line, l
   polyline(pen, [[begin, y], [x, y]], colours.positive, 2.2);
   for (const end of [begin, x]) polyline(pen, [[end, y - 4], [end, y + 4]], colours.positive, 1.5);
   const unit = load.unit === "1" ? "" : ` ${load.unit}`;
-  const text = `${load.label} ${short(amount)}${unit} =`;
+  const text = `${load.label} ${formatShort(amount)}${unit} =`;
   labels.set("scale of the section", text, begin - 8, y, colours.positive, 10, "right");
 }

@@ -6,8 +6,8 @@ import { Chosen, listenToDrawn, listenToSections, listenToTime, listenToView } f
 import { drawCurve } from "./curve.js";
 import { listenToBand, listenToCurve } from "./curve_controls.js";
 import { prepared, readData } from "./data.js";
-import { instant, short, written } from "./digits.js";
-import { by, made } from "./elements.js";
+import { instant, formatShort, formatNumber } from "./digits.js";
+import { findElement, makeElement } from "./elements.js";
 import { envelopeOf } from "./envelope.js";
 import { LabelList } from "./labels.js";
 import { Player } from "./player.js";
@@ -21,19 +21,21 @@ const AT_ONCE = 400; // cells of the table that are written at every image while
 const PAUSE = 0.25; // ms for each cell beyond these until they are written again
 
 /** What is to be known of the run, below; above only that there is something. */
-function tellRun(data, signal) {
-  const notes = `${data.alerts} ${data.alerts === 1 ? "note" : "notes"} on this run`;
-  document.title = by("title").textContent = data.title;
-  by("alert").hidden = !data.alerts;
-  by("alert").textContent = notes;
-  by("alert").addEventListener("click", () => (by("about").open = true), { signal });
-  by("told").replaceChildren(...data.told.map((sentence) => made("li", sentence)));
+function showRunNotes(data, signal) {
+  const count = `${data.alerts} ${data.alerts === 1 ? "note" : "notes"} on this run`;
+  document.title = findElement("title").textContent = data.title;
+  findElement("alert").hidden = !data.alerts;
+  findElement("alert").textContent = count;
+  findElement("alert").addEventListener("click", () => (findElement("about").open = true), { signal });
+  findElement("notes").replaceChildren(...data.notes.map((sentence) => makeElement("li", sentence)));
   const lines = [...data.about, ["heun", data.version], ["file", data.file]];
-  for (const [label, text] of lines) if (text) by("lines").append(made("dt", label), made("dd", text));
+  for (const [label, text] of lines.filter((line) => line[1])) {
+    findElement("lines").append(makeElement("dt", label), makeElement("dd", text));
+  }
 }
 
 /** The signs of what is drawn, in words. */
-function signsOf(chosen, data) {
+function describeSigns(chosen, data) {
   const parts = [];
   const { choice, section, load } = chosen;
   if (choice?.key.startsWith("foundation")) parts.push("Arrows: load of the machine on the ground.");
@@ -43,33 +45,33 @@ function signsOf(chosen, data) {
     const [unit, size] = data.length;
     parts.push(`Section ${section.name}: force of the far side on the near side of the cut; N > 0 is tension.`);
     const s = section.s?.[section.chosen ?? 0];
-    by("place").textContent = s === undefined ? "" : `s = ${short(s * size)} ${unit}`;
+    findElement("place").textContent = s === undefined ? "" : `s = ${formatShort(s * size)} ${unit}`;
   }
   return parts.join(" ");
 }
 
 /** The instant in words. */
-function tellInstant(data, player, crank) {
+function showInstant(data, player, crank) {
   const { time, count } = data;
   const span = time[count - 1] - time[0];
   const text = `t = ${instant(time[player.frame], span)} s`;
   const turn = crank ? `  ·  ${crank.label} ${crank.values[player.frame].toFixed(1).replace("-", "−")}°` : "";
-  const output = by("instant");
+  const output = findElement("instant");
   output.textContent = count > 1 ? `${text}${turn}` : `${text}  (one instant)`;
   output.title = `frame ${player.frame + 1} of ${count}`;
   output.dataset.value = String(time[player.frame]);
-  by("time").value = String(player.frame);
-  by("time").setAttribute("aria-valuetext", text);
-  by("play").textContent = player.playing ? "Pause" : "Play";
-  by("play").setAttribute("aria-pressed", String(player.playing));
+  findElement("time").value = String(player.frame);
+  findElement("time").setAttribute("aria-valuetext", text);
+  findElement("play").textContent = player.playing ? "Pause" : "Play";
+  findElement("play").setAttribute("aria-pressed", String(player.playing));
 }
 
 /** What the curve shows at this frame, for those who do not see it. */
-function tellCurve(course, frame, over) {
-  const low = written(course.low[frame], course.style);
-  const high = written(course.high[frame], course.style);
+function showCurve(course, frame, over) {
+  const low = formatNumber(course.low[frame], course.style);
+  const high = formatNumber(course.high[frame], course.style);
   const value = course.low === course.high ? low : `${low} to ${high}`;
-  by("curve").setAttribute("aria-label", `${course.label} over ${over}; now ${value} ${course.unit}`);
+  findElement("curve").setAttribute("aria-label", `${course.label} over ${over}; now ${value} ${course.unit}`);
 }
 
 /** Call `follow` with the colours whenever the page turns dark or light, until the signal. */
@@ -78,7 +80,7 @@ function listenToColours(follow, signal) {
 }
 
 /** The envelope of the curve over all cases, made anew where another curve or axis is chosen; null: not drawn. */
-function bandMaker(runs) {
+function makeBandFinder(runs) {
   const names = runs.map(nameOf);
   let [key, band] = ["", null];
   return ({ band: wanted, axis }, [course]) => {
@@ -93,19 +95,19 @@ function bandMaker(runs) {
 }
 
 /** Which case governs the curve, as buttons that go there. @param {(run: number, frame: number) => void} go */
-function tellGoverning(band, course, go) {
+function showGoverning(band, course, go) {
   const key = band ? `${course.path} ${band.greatest.run} ${band.least.run}` : "";
-  const bar = by("governing");
+  const bar = findElement("governing");
   if (bar.dataset.key === key) return;
   bar.dataset.key = key;
   bar.hidden = !band;
   const buttons = Object.entries(band ? { greatest: band.greatest, least: band.least } : {}).map(([word, end]) => {
-    const value = `${written(end.value, course.style)} ${course.unit === "1" ? "" : course.unit}`.trim();
-    const button = made("button", `${word} ${value}: ${band.names[end.run]}`, { type: "button" });
+    const value = `${formatNumber(end.value, course.style)} ${course.unit === "1" ? "" : course.unit}`.trim();
+    const button = makeElement("button", `${word} ${value}: ${band.names[end.run]}`, { type: "button" });
     button.addEventListener("click", () => go(end.run, end.frame));
     return button;
   });
-  bar.replaceChildren(made("span", "Of all load cases", { class: "word" }), ...buttons);
+  bar.replaceChildren(makeElement("span", "Of all load cases", { class: "word" }), ...buttons);
 }
 
 /** A load case on the page, until it is left. */
@@ -131,10 +133,10 @@ class ShownCase {
     this.view = new View(data.scene);
     if (before.view) this.view.take(before.view);
     this.chosen = new Chosen(data, this.changed, before.chosen);
-    this.table = new NumberTable(by("numbers"), data);
+    this.table = new NumberTable(findElement("numbers"), data);
     this.crank = this.chosen.axes[1] ?? null;
-    this.bandOf = bandMaker(runs);
-    this.summary = new SummaryTable(by("summary"), data, this.crank, (frame, path) => {
+    this.bandOf = makeBandFinder(runs);
+    this.summary = new SummaryTable(findElement("summary"), data, this.crank, (frame, path) => {
       if (this.chosen.courses.some((course) => course.path === path)) this.show(path);
       this.player.halt(frame);
     });
@@ -148,8 +150,8 @@ class ShownCase {
   listen(before, hasCases) {
     const { data, player, chosen, changed } = this;
     const { signal } = this.ended;
-    tellRun(data, signal);
-    by("caption").textContent = data.count > 1 ? "Values at this frame" : "Values at this instant";
+    showRunNotes(data, signal);
+    findElement("caption").textContent = data.count > 1 ? "Values at this frame" : "Values at this instant";
     listenToView(this.view, player, changed, signal);
     listenToTime(data, player, before.player);
     listenToDrawn(chosen, player, changed);
@@ -162,7 +164,7 @@ class ShownCase {
       changed();
     }, signal);
     this.size = new ResizeObserver(changed);
-    this.size.observe(by("machine"));
+    this.size.observe(findElement("machine"));
   }
 
   draw() {
@@ -170,17 +172,18 @@ class ShownCase {
     if (this.ended.signal.aborted) return;
     const { data, player, chosen, table } = this;
     const { frame, share } = player;
-    drawMachine(by("machine"), data, this.view, { frame, share, ...chosen.shown }, this.colours, this.labels.machine);
+    const shown = { frame, share, ...chosen.shown };
+    drawMachine(findElement("machine"), data, this.view, shown, this.colours, this.labels.machine);
     this.drawCurves(frame);
     const now = performance.now();
     if (!player.playing || now - this.last > PAUSE * (table.cells.length - AT_ONCE)) {
       this.last = now;
       table.show(frame);
-      by("signs").textContent = signsOf(chosen, data);
-      by("machine").setAttribute("aria-label", `${data.title}, at ${instant(data.time[frame], 0)} s`);
+      findElement("signs").textContent = describeSigns(chosen, data);
+      findElement("machine").setAttribute("aria-label", `${data.title}, at ${instant(data.time[frame], 0)} s`);
     }
     this.summary.show(frame);
-    tellInstant(data, player, this.crank);
+    showInstant(data, player, this.crank);
     document.documentElement.dataset.frame = String(frame);
   }
 
@@ -189,9 +192,10 @@ class ShownCase {
     if (this.data.count < 2 || !courses.length) return;
     const { axis } = this.chosen;
     const band = this.bandOf(this.chosen, courses);
-    this.panel = drawCurve(by("curve"), this.data, courses, axis, band, frame, this.colours, this.labels.curve);
-    tellCurve(courses[0], frame, axis.label);
-    tellGoverning(band, courses[0], this.change);
+    const canvas = findElement("curve");
+    this.panel = drawCurve(canvas, this.data, courses, axis, band, frame, this.colours, this.labels.curve);
+    showCurve(courses[0], frame, axis.label);
+    showGoverning(band, courses[0], this.change);
   }
 
   /** End it. @returns {object} what the next case takes over */
@@ -213,7 +217,7 @@ function showCases(runs) {
   const change = (run, frame) => {
     const before = shown?.leave() ?? {};
     if (shown) document.querySelector("main").replaceWith(blank.cloneNode(true));
-    by("case").value = String(run);
+    findElement("case").value = String(run);
     shown = new ShownCase(runs, run, Object.assign(before, { frame }), change);
   };
   const first = Math.min(numberOf("case", 0), runs.length - 1);
@@ -221,5 +225,5 @@ function showCases(runs) {
   change(first, numberOf("frame", runs[first].worst));
 }
 
-if (typeof DecompressionStream === "undefined") by("old").hidden = false;
-else readData(by("data").textContent).then(showCases);
+if (typeof DecompressionStream === "undefined") findElement("old").hidden = false;
+else readData(findElement("data").textContent).then(showCases);

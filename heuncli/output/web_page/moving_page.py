@@ -1,9 +1,20 @@
-"""Render a solved scene as one animated page: the geometry, the numbers, and notes about them."""
+"""Render a solved scene as one animated page: the geometry, the numbers, and notes about them, in one file.
+
+The page is assembled from the files in this folder: template, style, scripts, and the data, encoded so that no name in
+a spec can end the data block. The scripts are browser modules. Here they are bundled into one script: each becomes a
+function that returns what it exports, after those that it imports from. The page's security policy permits only this
+style and this script, by their digests.
+"""
 
 from __future__ import annotations
 
+import base64
+import hashlib
+import html
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import PurePath
+from functools import cache
+from pathlib import Path, PurePath
 from typing import Any, Literal
 
 import numpy as np
@@ -13,14 +24,18 @@ from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
 from heuncli.output.machine_geometry.poses import extract_poses
 from heuncli.output.machine_geometry.views import find_motion_plane
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.tables.run_description import make_heading
 from heuncli.output.tables.table_plans import SECTIONS
-from heuncli.output.web_page.drawn_loads import make_acting_loads, make_sections
 from heuncli.output.web_page.frames import MAX_PAGE_FRAMES, PageFrames, choose_frames, find_peaks, resample_at_frames
 from heuncli.output.web_page.geometry import make_page_machine, make_page_scene
-from heuncli.output.web_page.number_rows import make_blocks, make_impact_page_tables, split_heading
-from heuncli.output.web_page.packing import pack_exact
-from heuncli.output.web_page.page_assembly import FILM_SCRIPT, assemble_page
+from heuncli.output.web_page.packing import encode_data, pack_exact
+from heuncli.output.web_page.page_numbers import (
+    make_acting_loads,
+    make_blocks,
+    make_impact_page_tables,
+    make_sections,
+    split_heading,
+)
 from heuncli.results.results import Array, Results
 from heuncli.study.quantities.digits import StatedErrors, find_stated_errors
 from heuncli.study.quantities.labels import Labels, make_labels
@@ -32,6 +47,15 @@ PEAKS_NOTE = "Too many loads to search for maxima between output times: loads ma
 DIGEST_DIGITS = 12
 MAX_IMPACTS = 12  # whose tables are included
 HEADING_NOTES = ("stiff", "split", "status", "warning")  # lines of the heading that are shown as notes
+FOLDER = Path(__file__).parent
+STYLE = "style.css"
+TEMPLATES = {"main": "machine.html", "film": "film.html"}  # main script -> its page
+MAIN_SCRIPT, FILM_SCRIPT = TEMPLATES
+IMPORT = re.compile(r'^import (\{[^}]*\}) from "\./(\w+)\.js";$', re.MULTILINE)
+EXPORT = re.compile(r"^export ((?:function|class|const) (\w+))", re.MULTILINE)
+PLACEHOLDER = re.compile(r"\{\{(\w+)\}\}")
+COMMENT = re.compile(r"^ */\*\*.*?\*/\n", re.MULTILINE | re.DOTALL)  # those of the scripts stay in their files
+INDENT = re.compile(r"^ +", re.MULTILINE)
 
 
 class Film(NamedTuple):
@@ -90,7 +114,7 @@ def make_page_data(
         "case": escape(case),
         "alerts": sum(1 for _ in _iter_notes(original, horizon)),
         "worst": _find_worst_frame(results),
-        "told": [*frames.notes, *[PEAKS_NOTE] * (not peaks.is_searched), *_iter_notes(original, horizon)],
+        "notes": [*frames.notes, *[PEAKS_NOTE] * (not peaks.is_searched), *_iter_notes(original, horizon)],
         "horizon": horizon,
         "count": len(frames.times),
         "time": pack_exact(frames.times),
@@ -173,3 +197,63 @@ def _iter_time_marks(results: Results, frames: PageFrames) -> Iterator[dict[str,
     for time, words in sorted(found)[:MAX_TIME_MARKS]:
         if first <= time <= last:
             yield {"frame": _find_frame(frames, time), "time": time, "words": escape(str(words))}
+
+
+def assemble_page(title: str, data: dict[str, Any], main_script: str = MAIN_SCRIPT) -> str:
+    """Assemble the page of a main script as text. Raises ValueError if the data hold nan or infinity."""
+    parts = {
+        "title": html.escape(escape(title)),
+        "style": read_page_file(STYLE),
+        "script": bundle_scripts(main_script),
+        "data": encode_data(data),
+        "policy": make_security_policy(main_script),
+    }
+    return PLACEHOLDER.sub(lambda place: parts[place[1]], read_page_file(TEMPLATES[main_script]))
+
+
+@cache
+def make_security_policy(main_script: str = MAIN_SCRIPT) -> str:
+    """Make the page's content security policy: only its own style and script are permitted, by their digests."""
+    return (
+        f"default-src 'none'; script-src '{_compute_digest(bundle_scripts(main_script))}'; style-src "
+        f"'{_compute_digest(read_page_file(STYLE))}'; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _compute_digest(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+
+
+@cache
+def bundle_scripts(main_script: str = MAIN_SCRIPT) -> str:
+    """Bundle a main script and all that it needs into one, inside a function, so that none of their names is global."""
+    return '(() => {\n"use strict";\n' + "".join(map(_wrap_module, sort_scripts(main_script))) + "})();\n"
+
+
+def _wrap_module(name: str) -> str:
+    """Wrap one script in a function that returns what the script exports."""
+    text = read_page_file(f"{name}.js")
+    exported = ", ".join(found[2] for found in EXPORT.finditer(text))
+    body = INDENT.sub("", COMMENT.sub("", EXPORT.sub(r"\1", IMPORT.sub(r"const \1 = \2_js;", text))))
+    return f"const {name}_js = (() => {{\n{body}return {{ {exported} }};\n}})();\n"
+
+
+def sort_scripts(main_script: str = MAIN_SCRIPT) -> list[str]:
+    """Sort the names of a main script and all that it needs so that each follows those that it imports from."""
+    found: dict[str, None] = {}
+
+    def add(name: str) -> None:
+        for needed in IMPORT.finditer(read_page_file(f"{name}.js")):
+            if needed[2] not in found:
+                add(needed[2])
+        found[name] = None
+
+    add(main_script)
+    return list(found)
+
+
+@cache
+def read_page_file(name: str) -> str:
+    """Read one of the files in this folder, as text."""
+    return (FOLDER / name).read_text(encoding="utf-8")

@@ -42,7 +42,7 @@ export function posesAt(scene, frame, share) {
  * @param {Pose[]} poses @param {number} body its number; -1: the ground @param {number[]} point body axes [m]
  * @returns {number[]}
  */
-export function stands(poses, body, point) {
+export function locatePoint(poses, body, point) {
   return body < 0 ? point : plus(poses[body].place, turned(poses[body].R, point));
 }
 
@@ -60,7 +60,7 @@ function waysOf({ scene, count }) {
   const ways = joints.map(() => []);
   for (let frame = 0; frame < count; frame += 1) {
     const poses = posesAt(scene, frame, 0);
-    joints.forEach((joint, k) => ways[k].push(stands(poses, joint.b, joint.q)));
+    joints.forEach((joint, k) => ways[k].push(locatePoint(poses, joint.b, joint.q)));
   }
   const goes = (way) => way.some((place) => place.some((c, i) => Math.abs(c - way[0][i]) > 1e-4 * scene.radius));
   scene.ways = ways.filter(goes);

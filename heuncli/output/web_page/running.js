@@ -1,6 +1,6 @@
 /** @file Belts and ropes, as full lines; symbols: stops, latches, the ground, what acts in joints. */
 
-import { points, stands } from "./poses.js";
+import { points, locatePoint } from "./poses.js";
 import { polyline, shape } from "./strokes.js";
 import { cross, dot, minus, plus, times, unit } from "./vectors.js";
 
@@ -30,7 +30,7 @@ function paintStrand(painter, view, line, colours) {
 /** A belt: its strands in the axes of what carries its pulleys. */
 export function paintBelt(painter, view, poses, { body, strands }, colours) {
   for (let i = 0; i < strands.length; i += 6) {
-    paintStrand(painter, view, [i, i + 3].map((k) => stands(poses, body, strands.subarray(k, k + 3))), colours);
+    paintStrand(painter, view, [i, i + 3].map((k) => locatePoint(poses, body, strands.subarray(k, k + 3))), colours);
   }
 }
 
@@ -60,7 +60,7 @@ export function paintRope(painter, view, poses, rope, shown, colours) {
     paintStrand(painter, view, [ends[2 * k], ends[2 * k + 1]], colours);
     const lies = arcs.get(k);
     if (!lies) continue;
-    const center = stands(poses, lies.body, lies.center);
+    const center = locatePoint(poses, lies.body, lies.center);
     const axis = points(poses, lies.along, lies.axis);
     paintStrand(painter, view, arc(center, axis, ends[2 * k + 1], ends[2 * k + 2]), colours);
   }
@@ -94,7 +94,7 @@ export function drawActing(pen, view, poses, scene, own, colours) {
   const [a, b, near] = view.direct(unit(points(poses, joint.a, joint.axis)));
   const size = Math.hypot(a, b);
   const along = own.slides && size > SIDE * view.scale ? [a / size, b / size] : [1, 0];
-  const at = view.project(stands(poses, joint.b, joint.q));
+  const at = view.project(locatePoint(poses, joint.b, joint.q));
   drawSymbol(pen, scene.symbols[own.symbols[near < 0 ? 1 : 0]], at, along, colours);
 }
 

@@ -1,7 +1,7 @@
 /** @file Bodies: faces of their shapes with light from above left, their edges; bars where a body has no shapes. */
 
 import { SHADES, kindsOf, tints } from "./colours.js";
-import { stands } from "./poses.js";
+import { locatePoint } from "./poses.js";
 
 const EDGE = 0.8; // cosine of the angle between two faces below which the side between them is an edge
 
@@ -173,7 +173,7 @@ export function paintBodies(painter, scene, poses, view, colours) {
     const own = tints(kindsOf(scene)[k], colours.dark);
     for (const surface of body.surfaces) {
       if (surface.ball) {
-        const [x, y, near] = view.project(stands(poses, k, surface.ball.center));
+        const [x, y, near] = view.project(locatePoint(poses, k, surface.ball.center));
         painter.ball(near, x, y, surface.ball.radius * view.scale, own.shades, own.edge);
       } else {
         paintFaces(painter, surface, poses[k], view, own);

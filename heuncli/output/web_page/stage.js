@@ -2,7 +2,7 @@
 
 import { drawLoad, drawLoadScale } from "./loads.js";
 import { Painter } from "./painter.js";
-import { drawPaths, posesAt, stands } from "./poses.js";
+import { drawPaths, posesAt, locatePoint } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { drawActing, drawMark, nameMark, paintBelt, paintRope } from "./running.js";
 import { cleared } from "./strokes.js";
@@ -26,14 +26,14 @@ function middleOf(body) {
   return body.middle;
 }
 
-/** Names of bodies and joints. @param {boolean} told whether the arrows tell those of the joints */
-function drawNames(labels, scene, poses, view, colours, told) {
+/** Names of bodies and joints. @param {boolean} areNamed whether the arrows name the joints */
+function drawNames(labels, scene, poses, view, colours, areNamed) {
   scene.bodies.forEach((body, k) => {
-    const [x, y] = view.project(stands(poses, k, middleOf(body)));
+    const [x, y] = view.project(locatePoint(poses, k, middleOf(body)));
     labels.add(`body ${body.name}`, body.caption, x, y, colours.ink, 1.2);
   });
-  for (const joint of told ? [] : scene.joints) {
-    const [x, y] = view.project(stands(poses, joint.b, joint.q));
+  for (const joint of areNamed ? [] : scene.joints) {
+    const [x, y] = view.project(locatePoint(poses, joint.b, joint.q));
     labels.add(`joint ${joint.name}`, joint.caption, x, y, colours.faint, 1, 10);
   }
 }

@@ -1,7 +1,7 @@
 /** @file The summary: the greatest loads of the run, when they occur, and what they are at the frame that is shown. */
 
-import { instant, whole, written } from "./digits.js";
-import { made } from "./elements.js";
+import { instant, formatAllDigits, formatNumber } from "./digits.js";
+import { makeElement } from "./elements.js";
 import { arrowChoices, largestOf, vectorAt } from "./wrenches.js";
 import { lengthOf } from "./vectors.js";
 
@@ -11,7 +11,7 @@ const FORCES = new Set(["N", "Q", "Q1", "Q2"]);
 const LEAST = 1e-3; // of the greatest of its kind: what is smaller is left to the tables
 
 /** The frame at which a number is greatest, and how great it is. */
-function greatest(count, at) {
+function findGreatest(count, at) {
   let [best, most] = [0, 0];
   for (let k = 0; k < count; k += 1) {
     const size = Math.abs(at(k));
@@ -20,16 +20,16 @@ function greatest(count, at) {
   return { frame: best, value: at(best), size: most };
 }
 
-/** What is told of vectors: their size. */
-function ofVector({ row, name, vector }, count) {
+/** The entry of a vector: its size over the frames. */
+function makeVectorEntry({ row, name, vector }, count) {
   const at = (frame) => (vector ? row.parts[0].values[frame] : lengthOf(vectorAt(row, frame)));
   const own = row.path.startsWith("joints.") || row.path.startsWith("foundation.");
   const caption = own && !vector ? row.caption : row.path.endsWith("moment") && !vector ? `${name}, moment` : name;
-  return { caption, path: row.path, row, at, ...greatest(count, at) };
+  return { caption, path: row.path, row, at, ...findGreatest(count, at) };
 }
 
 /** The greatest loads of a section: over all of its cuts. */
-function ofSection(section, count) {
+function makeSectionEntries(section, count) {
   const n = section.cuts.length;
   const found = section.loads.map((load) => {
     const at = (frame) => {
@@ -39,7 +39,7 @@ function ofSection(section, count) {
       }
       return most;
     };
-    return { caption: load.caption, path: load.path, row: load, at, ...greatest(count, at) };
+    return { caption: load.caption, path: load.path, row: load, at, ...findGreatest(count, at) };
   });
   found.sort((a, b) => b.size - a.size);
   const bending = found.filter(({ row }) => MOMENTS.has(row.label));
@@ -48,7 +48,7 @@ function ofSection(section, count) {
 }
 
 /** Loads whose names differ by digits alone in one row, with the greatest of them. */
-function grouped(list) {
+function groupAlike(list) {
   const groups = new Map();
   for (const load of list) {
     const key = load.caption.replace(/\d+/g, "#");
@@ -63,18 +63,19 @@ function grouped(list) {
 }
 
 /** The rows of the summary, the greatest of each kind first. */
-function rowsOf(data) {
+function makeRows(data) {
   const { count } = data;
   const choices = new Map(arrowChoices(data).map((choice) => [choice.key, choice.rows]));
-  const of = (key) => {
-    const rows = (choices.get(key) ?? []).filter(({ row }) => largestOf(row) > 0).map((each) => ofVector(each, count));
+  const collect = (key) => {
+    const vectors = (choices.get(key) ?? []).filter(({ row }) => largestOf(row) > 0);
+    const rows = vectors.map((each) => makeVectorEntry(each, count));
     const forces = rows.filter(({ path }) => !path.endsWith("moment")).sort((a, b) => b.size - a.size);
     const moments = rows.filter(({ path }) => path.endsWith("moment")).sort((a, b) => b.size - a.size);
     return [forces, moments].flatMap((list) => list.filter(({ size }) => size > LEAST * list[0].size));
   };
-  const ground = of("foundation");
-  const loads = grouped([...of("joints.force"), ...of("couplings"), ...of("forces")]);
-  const sections = data.sections.flatMap((section) => ofSection(section, count));
+  const ground = collect("foundation");
+  const loads = groupAlike([...collect("joints.force"), ...collect("couplings"), ...collect("forces")]);
+  const sections = data.sections.flatMap((section) => makeSectionEntries(section, count));
   const rest = MOST - Math.min(4, sections.length) - ground.length;
   const shown = loads.slice(0, Math.max(4, rest));
   return [...shown, ...ground, ...sections].slice(0, MOST);
@@ -82,32 +83,32 @@ function rowsOf(data) {
 
 /** The table. */
 export class SummaryTable {
-  /** @param {HTMLTableElement} table @param {object} data @param {object|null} crank the angle that tells instants */
+  /** @param {HTMLTableElement} table @param {object} data @param {object|null} crank the angle that names instants */
   constructor(table, data, crank, go) {
     this.cells = [];
     const moving = data.count > 1;
-    const head = made("tr");
+    const head = makeElement("tr");
     const titles = moving ? ["Load", "greatest", "unit", "at", "now"] : ["Load", "value", "unit"];
-    head.append(...titles.map((name) => made("th", name, { scope: "col", class: name })));
-    const top = made("thead");
+    head.append(...titles.map((name) => makeElement("th", name, { scope: "col", class: name })));
+    const top = makeElement("thead");
     top.append(head);
-    const body = made("tbody");
+    const body = makeElement("tbody");
     const span = data.time[data.count - 1] - data.time[0];
-    for (const { caption, path, row, at, frame, value } of rowsOf(data)) {
-      const line = made("tr");
-      line.append(made("th", caption, { scope: "row" }));
-      const all = `${whole(value * row.size)} ${row.unit}`;
-      line.append(made("td", written(value * row.size, row.style), { title: all }));
-      line.append(made("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
+    for (const { caption, path, row, at, frame, value } of makeRows(data)) {
+      const line = makeElement("tr");
+      line.append(makeElement("th", caption, { scope: "row" }));
+      const all = `${formatAllDigits(value * row.size)} ${row.unit}`;
+      line.append(makeElement("td", formatNumber(value * row.size, row.style), { title: all }));
+      line.append(makeElement("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
       if (moving) {
         const turn = crank ? `${Math.round(crank.values[frame])}°` : "";
         const when = `${instant(data.time[frame], span, 3)} s`;
-        const button = made("button", turn || when, { type: "button", title: when });
+        const button = makeElement("button", turn || when, { type: "button", title: when });
         button.setAttribute("aria-label", `Go to the greatest ${caption}, ${when}`);
         button.addEventListener("click", () => go(frame, path));
-        const place = made("td");
+        const place = makeElement("td");
         place.append(button);
-        const now = made("td");
+        const now = makeElement("td");
         this.cells.push({ now, at, row });
         line.append(place, now);
       }
@@ -119,7 +120,7 @@ export class SummaryTable {
   /** Write the numbers of a frame. @param {number} frame */
   show(frame) {
     for (const cell of this.cells) {
-      const text = written(cell.at(frame) * cell.row.size, cell.row.style);
+      const text = formatNumber(cell.at(frame) * cell.row.size, cell.row.style);
       if (cell.text !== text) cell.now.textContent = cell.text = text;
     }
   }

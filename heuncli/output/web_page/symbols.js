@@ -1,6 +1,6 @@
 /** @file The field's symbols: joints, the ground, springs, ropes; the axes of the world and gravity in the corner. */
 
-import { points, stands } from "./poses.js";
+import { points, locatePoint } from "./poses.js";
 import { arrow, polyline, ring, shape } from "./strokes.js";
 import { cross, lengthOf, unit } from "./vectors.js";
 
@@ -34,7 +34,7 @@ function hatched(pen, at, n, half, colours) {
 }
 
 /** Legs from a joint to the ground that holds it. */
-function standing(pen, view, at, colours) {
+function drawStand(pen, view, at, colours) {
   const down = view.up.map((component) => -component);
   const n = onScreen(view, down) ?? [0, 1];
   const place = placer(at, n);
@@ -154,7 +154,7 @@ function nearOf(view, scene, a, b, places) {
 
 /** A joint, given to the painter. */
 export function paintJoint(painter, view, poses, scene, joint, colours, small) {
-  const ends = [view.project(stands(poses, joint.a, joint.p)), view.project(stands(poses, joint.b, joint.q))];
+  const ends = [view.project(locatePoint(poses, joint.a, joint.p)), view.project(locatePoint(poses, joint.b, joint.q))];
   const places = joint.kind in AT_POINT || joint.kind in SLIDING ? ends.slice(1) : ends;
   const near = nearOf(view, scene, joint.a, joint.b, places);
   painter.add(near, (pen) => drawJoint(pen, view, poses, joint, colours, small));
@@ -162,14 +162,14 @@ export function paintJoint(painter, view, poses, scene, joint, colours, small) {
 
 /** A load between two points, given to the painter. */
 export function paintLine(painter, view, poses, scene, line, colours) {
-  const ends = [view.project(stands(poses, line.a, line.p)), view.project(stands(poses, line.b, line.q))];
+  const ends = [view.project(locatePoint(poses, line.a, line.p)), view.project(locatePoint(poses, line.b, line.q))];
   painter.add(nearOf(view, scene, line.a, line.b, ends), (pen) => drawLine(pen, view, poses, line, colours));
 }
 
 /** A joint. @param {boolean} small whether there are so many that symbols would hide the machine */
 function drawJoint(pen, view, poses, joint, colours, small) {
-  const from = view.project(stands(poses, joint.a, joint.p)).slice(0, 2);
-  const at = view.project(stands(poses, joint.b, joint.q)).slice(0, 2);
+  const from = view.project(locatePoint(poses, joint.a, joint.p)).slice(0, 2);
+  const at = view.project(locatePoint(poses, joint.b, joint.q)).slice(0, 2);
   const axis = points(poses, joint.a, joint.axis);
   const grounded = joint.a < 0 || joint.b < 0;
   if (small && !grounded) {
@@ -177,7 +177,7 @@ function drawJoint(pen, view, poses, joint, colours, small) {
     return;
   }
   if (joint.kind in AT_POINT) {
-    if (grounded) standing(pen, view, at, colours);
+    if (grounded) drawStand(pen, view, at, colours);
     AT_POINT[joint.kind](pen, at, onScreen(view, axis), colours);
   } else if (joint.kind in SLIDING) {
     SLIDING[joint.kind](pen, view, at, axis, grounded, colours);
@@ -191,7 +191,7 @@ function drawJoint(pen, view, poses, joint, colours, small) {
 /** A bushing: two sleeves about its `to` point, and between them what gives way. */
 function drawBushing(pen, view, line, a, b, colours) {
   polyline(pen, [a, b], colours.ink, 1);
-  if (line.a < 0 || line.b < 0) standing(pen, view, line.a < 0 ? a : b, colours);
+  if (line.a < 0 || line.b < 0) drawStand(pen, view, line.a < 0 ? a : b, colours);
   ring(pen, b[0], b[1], 9, colours.paper, colours.ink, 1.8);
   for (let k = 0; k < 6; k += 1) {
     const [x, y] = [Math.cos((k * Math.PI) / 3), Math.sin((k * Math.PI) / 3)];
@@ -241,8 +241,8 @@ const LINES = {
 
 /** A load between two points by its symbol, a bushing as two sleeves. */
 function drawLine(pen, view, poses, line, colours) {
-  const a = view.project(stands(poses, line.a, line.p));
-  const b = view.project(stands(poses, line.b, line.q));
+  const a = view.project(locatePoint(poses, line.a, line.p));
+  const b = view.project(locatePoint(poses, line.b, line.q));
   if (line.kind === "bushing") {
     drawBushing(pen, view, line, a.slice(0, 2), b.slice(0, 2), colours);
     return;
@@ -264,9 +264,9 @@ export function paintPath(painter, view, path, colours) {
 /** The axes of the world, and gravity beside them. */
 export function drawCorner(pen, view, gravity, colours, labels) {
   const [x, y] = [44, view.height - 44];
-  const told = (direction) => view.direct(direction).map((component) => (CORNER * component) / view.scale);
+  const toPixels = (direction) => view.direct(direction).map((component) => (CORNER * component) / view.scale);
   ["x", "y", "z"].forEach((name, k) => {
-    const [dx, dy] = told([0, 1, 2].map((i) => Number(i === k)));
+    const [dx, dy] = toPixels([0, 1, 2].map((i) => Number(i === k)));
     polyline(
       pen,
       [
@@ -282,7 +282,7 @@ export function drawCorner(pen, view, gravity, colours, labels) {
     labels.set(`axis ${name}`, name, nx, ny, colours.ink, 10, "center");
   });
   if (lengthOf(gravity) > 0) {
-    const [dx, dy, near] = told(unit(gravity));
+    const [dx, dy, near] = toPixels(unit(gravity));
     const from = [x + 62, y - 16];
     arrow(pen, from, [from[0] + dx, from[1] + dy], near * view.scale, colours.faint, colours.panel);
     labels.set("g", "g", from[0] + 10, from[1] + 6, colours.faint, 10);

@@ -1,7 +1,7 @@
 /** @file The numbers of the frame that is shown: a cell for each, with its path and all its digits in SI. */
 
-import { short, whole, written } from "./digits.js";
-import { made } from "./elements.js";
+import { formatShort, formatAllDigits, formatNumber } from "./digits.js";
+import { makeElement } from "./elements.js";
 import { along } from "./loads.js";
 import { lengthOf } from "./vectors.js";
 
@@ -11,31 +11,31 @@ const COLUMNS = ["", "x", "y", "z", "value", ""];
 class Cell {
   /** @param {string} path @param {(frame: number) => number} value SI @param {string} missing what stands for nan */
   constructor(path, value, size, style, missing = "open") {
-    this.element = made("td", "", { "data-path": path });
-    this.element.addEventListener("pointerenter", () => this.tell());
+    this.element = makeElement("td", "", { "data-path": path });
+    this.element.addEventListener("pointerenter", () => this.showDigits());
     Object.assign(this, { value, size, style, missing });
   }
 
   /** @param {number} frame */
   show(frame) {
     const value = this.value(frame);
-    const text = Number.isNaN(value) ? this.missing : written(value * this.size, this.style);
+    const text = Number.isNaN(value) ? this.missing : formatNumber(value * this.size, this.style);
     if (this.text !== text) this.element.textContent = this.text = text;
     this.element.dataset.value = Number.isFinite(value) ? String(value) : "";
   }
 
   /** All digits that the page holds, where somebody points at the number. */
-  tell() {
+  showDigits() {
     const value = Number(this.element.dataset.value) * this.size;
-    this.element.title = this.element.dataset.value ? whole(value) : "";
+    this.element.title = this.element.dataset.value ? formatAllDigits(value) : "";
   }
 }
 
 /** Rows of one head. */
-function headed(body, text, kind, note = "") {
-  const row = made("tr", "", { class: kind });
-  const head = made("th", text, { colspan: "6", scope: "rowgroup" });
-  if (note) head.append(" ", made("span", note));
+function addHeading(body, text, kind, note = "") {
+  const row = makeElement("tr", "", { class: kind });
+  const head = makeElement("th", text, { colspan: "6", scope: "rowgroup" });
+  if (note) head.append(" ", makeElement("span", note));
   row.append(head);
   body.append(row);
 }
@@ -50,11 +50,11 @@ export class NumberTable {
     this.cells = [];
     this.cut = 0;
     this.parts = new Map();
-    const head = made("thead");
-    const titles = made("tr");
+    const head = makeElement("thead");
+    const titles = makeElement("tr");
     for (const [k, name] of COLUMNS.entries()) {
-      const title = made("th", name, { scope: "col" });
-      if (!name) title.append(made("span", k ? "unit" : "what", { class: "hidden" }));
+      const title = makeElement("th", name, { scope: "col" });
+      if (!name) title.append(makeElement("span", k ? "unit" : "what", { class: "hidden" }));
       titles.append(title);
     }
     head.append(titles);
@@ -76,15 +76,15 @@ export class NumberTable {
 
   /** A block of rows under its heading, which tells axes and signs. */
   addBlock(block) {
-    const body = made("tbody", "", { "data-kind": block.kind });
-    headed(body, block.heading, "heading", block.note);
+    const body = makeElement("tbody", "", { "data-kind": block.kind });
+    addHeading(body, block.heading, "heading", block.note);
     for (const group of block.groups) {
-      if (group.name || group.note) headed(body, group.name, "group", group.note);
+      if (group.name || group.note) addHeading(body, group.name, "group", group.note);
       for (const row of group.rows) body.append(this.rowOf(row, block.missing));
     }
-    for (const text of block.told) {
-      const line = made("tr", "", { class: "told" });
-      line.append(made("td", text, { colspan: "6" }));
+    for (const text of block.notes) {
+      const line = makeElement("tr", "", { class: "notes" });
+      line.append(makeElement("td", text, { colspan: "6" }));
       body.append(line);
     }
     this.table.append(body);
@@ -92,8 +92,8 @@ export class NumberTable {
 
   /** A quantity: its components and its size, or its one number. */
   rowOf(row, missing) {
-    const line = made("tr", "", { class: "row" });
-    line.append(made("th", row.label, { scope: "row" }));
+    const line = makeElement("tr", "", { class: "row" });
+    line.append(makeElement("th", row.label, { scope: "row" }));
     const pick = (part) => (frame) => part.values[row.fixed ? 0 : frame];
     const add = (path, value) => {
       const cell = new Cell(path, value, row.size, row.style, missing);
@@ -101,22 +101,22 @@ export class NumberTable {
       line.append(cell.element);
     };
     if (row.parts.length === 1) {
-      line.append(made("td"), made("td"), made("td"));
+      line.append(makeElement("td"), makeElement("td"), makeElement("td"));
       add(row.path, pick(row.parts[0]));
     } else {
       for (const part of row.parts) add(`${row.path}.${part.name}`, pick(part));
       if (row.sized) add(row.path, (frame) => lengthOf(row.parts.map((part) => pick(part)(frame))));
-      else line.append(made("td"));
+      else line.append(makeElement("td"));
     }
-    line.append(made("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
+    line.append(makeElement("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
     return line;
   }
 
   /** The loads of a section; of a series of cuts those of the chosen cut, with the smallest and largest along it. */
   addSection(section, number) {
-    const body = made("tbody", "", { "data-kind": "sections" });
-    if (number === 0) headed(body, this.data.cutting.heading, "heading", this.data.cutting.note);
-    headed(body, section.name, "group", section.note);
+    const body = makeElement("tbody", "", { "data-kind": "sections" });
+    if (number === 0) addHeading(body, this.data.cutting.heading, "heading", this.data.cutting.note);
+    addHeading(body, section.name, "group", section.note);
     section.spoken = body.lastChild.firstChild.lastChild;
     section.chosen = 0;
     for (const load of section.loads) body.append(this.loadRow(section, load));
@@ -124,16 +124,16 @@ export class NumberTable {
   }
 
   loadRow(section, load) {
-    const line = made("tr", "", { class: "row" });
-    line.append(made("th", load.label, { scope: "row" }));
-    const range = made("td", "", { colspan: "3" });
+    const line = makeElement("tr", "", { class: "row" });
+    line.append(makeElement("th", load.label, { scope: "row" }));
+    const range = makeElement("td", "", { colspan: "3" });
     const cell = new Cell(load.path, (frame) => along(section, load, frame)[section.chosen], load.size, load.style);
     this.cells.push(cell);
     if (section.s) {
       const unit = this.data.length;
       this.cells.push({ show: (frame) => this.showRange(range, section, load, frame, cell, unit) });
     }
-    line.append(range, cell.element, made("td", load.unit === "1" ? "" : load.unit, { class: "unit" }));
+    line.append(range, cell.element, makeElement("td", load.unit === "1" ? "" : load.unit, { class: "unit" }));
     return line;
   }
 
@@ -147,8 +147,11 @@ export class NumberTable {
       if (low < 0 || values[k] < values[low]) low = k;
       if (high < 0 || values[k] > values[high]) high = k;
     }
-    const tell = (k) => `${written(values[k] * load.size, load.style)} at ${short(section.s[k] * size)} ${unit}`;
-    const text = low < 0 ? "" : `${tell(low)} … ${tell(high)}`;
+    const format = (k) => {
+      const value = formatNumber(values[k] * load.size, load.style);
+      return `${value} at ${formatShort(section.s[k] * size)} ${unit}`;
+    };
+    const text = low < 0 ? "" : `${format(low)} … ${format(high)}`;
     if (range.textContent !== text) range.textContent = text;
   }
 
@@ -158,7 +161,7 @@ export class NumberTable {
       if (section.s) {
         const [unit, size] = this.data.length;
         const side = section.side[section.chosen] ? `, ${section.side[section.chosen]} the load there` : "";
-        const place = `s = ${short(section.s[section.chosen] * size)} ${unit}`;
+        const place = `s = ${formatShort(section.s[section.chosen] * size)} ${unit}`;
         section.spoken.textContent = `${section.note}; value: at ${place}${side}`;
       }
     }

@@ -1,6 +1,6 @@
 /** @file The tables beside the machine: the summary first, then those of joints, of sections, and all of them. */
 
-import { by } from "./elements.js";
+import { findElement } from "./elements.js";
 
 const TABS = ["summary", "joints", "sections", "all"];
 
@@ -13,15 +13,15 @@ export function listenToTabs(table, changed, first = TABS[0]) {
   let current = first;
   const choose = (chosen) => {
     current = chosen;
-    for (const name of TABS) by(`tab-${name}`).setAttribute("aria-pressed", String(name === chosen));
-    by("summary").hidden = chosen !== "summary";
-    by("numbers").hidden = by("caption").hidden = chosen === "summary";
+    for (const name of TABS) findElement(`tab-${name}`).setAttribute("aria-pressed", String(name === chosen));
+    findElement("summary").hidden = chosen !== "summary";
+    findElement("numbers").hidden = findElement("caption").hidden = chosen === "summary";
     if (chosen !== "summary") table.choose(chosen);
     changed();
   };
-  for (const name of TABS) by(`tab-${name}`).addEventListener("click", () => choose(name));
-  for (const name of ["joints", "sections"]) by(`tab-${name}`).hidden = !table.has(name);
-  choose(by(`tab-${first}`).hidden ? TABS[0] : first);
+  for (const name of TABS) findElement(`tab-${name}`).addEventListener("click", () => choose(name));
+  for (const name of ["joints", "sections"]) findElement(`tab-${name}`).hidden = !table.has(name);
+  choose(findElement(`tab-${first}`).hidden ? TABS[0] : first);
   return () => current;
 }
 
@@ -32,8 +32,8 @@ export function nameOf(data) {
 
 /** Let the load case be chosen. @param {object[]} runs @param {number} run @param {(run: number) => void} change */
 export function listenToCases(runs, run, change) {
-  const select = by("case");
-  by("caselabel").hidden = runs.length < 2 && !runs[0].case;
+  const select = findElement("case");
+  findElement("caselabel").hidden = runs.length < 2 && !runs[0].case;
   select.replaceChildren(...runs.map((data, k) => new Option(nameOf(data), String(k))));
   select.value = String(run);
   select.disabled = runs.length < 2;

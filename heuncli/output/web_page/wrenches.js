@@ -1,7 +1,7 @@
 /** @file Forces and moments as arrows, to one scale each: of joints, springs, ropes, drives, the ground, impulses. */
 
-import { roundBelow, short, written } from "./digits.js";
-import { points, stands } from "./poses.js";
+import { roundBelow, formatShort, formatNumber } from "./digits.js";
+import { points, locatePoint } from "./poses.js";
 import { arrow, polyline } from "./strokes.js";
 import { lengthOf, times, unit } from "./vectors.js";
 
@@ -53,7 +53,7 @@ function ofDrive(joint, row) {
   const along = (poses) => unit(points(poses, joint.a, joint.axis));
   return {
     row: { ...row, path: `${row.path}.${row.unit.includes("·") ? "moment" : "force"}` },
-    at: (poses) => stands(poses, joint.b, joint.q),
+    at: (poses) => locatePoint(poses, joint.b, joint.q),
     vector: (poses, frame) => times(along(poses), row.parts[0].values[frame]),
     name: `${joint.caption} drive`,
   };
@@ -67,7 +67,7 @@ function ofDrive(joint, row) {
 export function arrowChoices(data) {
   const { rows, scene } = data;
   const of = (path, name, at) => (rows.has(path) ? [{ row: rows.get(path), at, name }] : []);
-  const joint = (j) => (poses) => stands(poses, j.b, j.q);
+  const joint = (j) => (poses) => locatePoint(poses, j.b, j.q);
   const wrench = (begin, what) =>
     scene.joints.flatMap((j) => of(`${begin}joints.${j.name}.${what}`, j.caption, joint(j)));
   const pulls = scene.pulls.filter((pull) => rows.has(pull.row)).map((pull) => ofCoupling(pull, rows.get(pull.row)));
@@ -87,9 +87,9 @@ export function arrowChoices(data) {
   const forces = wrench("", "force");
   const pushing = [...forces, ...pulls, ...applied].filter(({ row }) => !turning(row));
   const most = Math.max(0, ...pushing.map(({ row }) => largestOf(row)));
-  const telling = applied.filter(({ row }) => !turning(row) || largestOf(row) >= LEVER * scene.radius * most);
+  const shown = applied.filter(({ row }) => !turning(row) || largestOf(row) >= LEVER * scene.radius * most);
   return [
-    { key: "all", label: "all loads", rows: [...forces, ...pulls, ...telling], joints: true },
+    { key: "all", label: "all loads", rows: [...forces, ...pulls, ...shown], joints: true },
     { key: "joints.force", label: "joint forces", rows: forces, joints: true },
     { key: "joints.moment", label: "joint moments", rows: wrench("", "moment"), joints: true },
     { key: "couplings", label: "gears, belts, ropes", rows: pulls },
@@ -147,7 +147,7 @@ export function drawArrows(pen, view, poses, { choice, frame, size, values }, co
     const colour = colourOf(row, colours);
     const tip = [x + dx, y + dy];
     arrow(pen, [x, y], tip, near * view.scale, colour, colours.panel, turning(row) ? 2 : 1, turning(row) ? [6, 3] : []);
-    const text = written(lengthOf(vector) * row.size, row.style);
+    const text = formatNumber(lengthOf(vector) * row.size, row.style);
     const share = lengthOf(vector) * long / (LONGEST * view.radius * size);
     if (!values || text === "0" || share < LEAST) continue;
     const label = `${choice.rows.length > 1 ? `${name} ` : ""}${text} ${row.unit}`;
@@ -167,7 +167,7 @@ export function drawScale(pen, view, choice, colours, size, labels) {
     const [begin, colour] = [x - amount * pixels, colourOf(row, colours)];
     arrow(pen, [begin, y], [x, y], 0, colour, colours.panel, kind ? 2 : 1);
     polyline(pen, [[begin, y - 4], [begin, y + 4]], colour, 1.5);
-    labels.set(`scale ${kind}`, `${short(amount)} ${row.unit} =`, begin - 8, y, colour, 10, "right");
+    labels.set(`scale ${kind}`, `${formatShort(amount)} ${row.unit} =`, begin - 8, y, colour, 10, "right");
     line += 1;
   }
   return line;

@@ -205,20 +205,20 @@ class ChannelSelection(NamedTuple):
     """Chosen numbers of the results, in the order in which results hold them.
 
     components: of the chosen quantities by their paths, the components of the chosen numbers
-    has_runs: whether section forces along series of cuts are chosen as well; they stand last
+    has_cut_series: whether section forces along series of cuts are chosen as well; they stand last
     """
 
     labels: Labels
     components: Mapping[str, Collection[str]]
-    has_runs: bool = False
+    has_cut_series: bool = False
 
     @classmethod
-    def from_numbers(cls, labels: Labels, numbers: Iterable[Channel], *, has_runs: bool) -> ChannelSelection:
+    def from_numbers(cls, labels: Labels, numbers: Iterable[Channel], *, has_cut_series: bool) -> ChannelSelection:
         """Choose some numbers, and the section forces along series of cuts if there are any."""
         components: dict[str, set[str]] = {}
         for number in numbers:
             components.setdefault(number._replace(component="").path, set()).add(number.component)
-        return cls(labels, components, has_runs)
+        return cls(labels, components, has_cut_series)
 
     def collect(self, results: Results) -> list[Channel]:
         """Collect the chosen numbers from results at any instants."""
@@ -229,10 +229,10 @@ class ChannelSelection(NamedTuple):
                 found += [number for number in channel.numbers if number.component in chosen]
         if "energy.sum" in self.components and (energy_sum := make_energy_sum(results)) is not None:
             found.append(energy_sum)
-        return found + (collect_run_loads(results) if self.has_runs else [])
+        return found + (collect_series_loads(results) if self.has_cut_series else [])
 
 
-def collect_run_loads(results: Results) -> list[Channel]:
+def collect_series_loads(results: Results) -> list[Channel]:
     """Collect the section forces along all series of cuts."""
     runs = [item for item in results.sections.items() if "s" in item[1]]
     return [channel for name, section in runs for channel in make_section_channels(name, section)[: len(RESULTANTS)]]

@@ -19,7 +19,7 @@ from heuncli.study.quantities.table_units import DisplayUnit
 MAX_CUTS = 25  # in a diagram: evenly spaced cuts, with all jumps and extremes
 
 
-class CutRun(NamedTuple):
+class CutSeries(NamedTuple):
     """One series of cuts.
 
     s: positions along the body [m]
@@ -50,12 +50,12 @@ class CutRun(NamedTuple):
         return int(np.argmin(np.abs(self.s - place.s))) if place.cut is None else place.cut
 
 
-def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] = NO_UNITS) -> list[CutRun]:
+def collect_cut_series(results: Results, labels: Labels, units: Mapping[str, str] = NO_UNITS) -> list[CutSeries]:
     """Collect the series of cuts among the sections.
 
     units: replacements of units, for impulses instead of forces
     """
-    runs = []
+    found = []
     for name, section in results.sections.items():
         if "s" not in section:
             continue
@@ -68,12 +68,12 @@ def collect_runs(results: Results, labels: Labels, units: Mapping[str, str] = NO
         side = tuple(section.get("side") or [None] * len(section["s"]))
         s = np.asarray(section["s"], dtype=np.float64)
         channels = make_section_channels(name, section, units)
-        runs.append(CutRun(name, heading, s, side, channels, labels.units.find("m")))
-    return runs
+        found.append(CutSeries(name, heading, s, side, channels, labels.units.find("m")))
+    return found
 
 
 def split_into_cuts(channels: Iterable[Channel], cuts: Indices) -> list[Channel]:
-    """Return the channels at some single cuts of a run, quantity by quantity."""
+    """Return the channels at some single cuts of a series, quantity by quantity."""
     return [
         channel._replace(component=str(cut), values=channel.values[:, cut], axes=())
         for channel in channels
@@ -81,23 +81,23 @@ def split_into_cuts(channels: Iterable[Channel], cuts: Indices) -> list[Channel]
     ]
 
 
-def choose_cuts(run: CutRun) -> Indices:
+def choose_cuts(series: CutSeries) -> Indices:
     """Choose the cuts that a diagram shows, about MAX_CUTS: evenly spaced ones, both ends, all jumps and extremes."""
-    n = len(run.s)
+    n = len(series.s)
     if n <= MAX_CUTS:
         return np.arange(n)
     chosen = set(np.linspace(0, n - 1, MAX_CUTS // 2 + 1).round().astype(int).tolist())
-    chosen |= {i for i, side in enumerate(run.side) if side is not None}
-    for channel in run.channels:
+    chosen |= {i for i, side in enumerate(series.side) if side is not None}
+    for channel in series.channels:
         values = np.nan_to_num(channel.values)
         chosen |= {int(np.argmax(values.max(axis=0))), int(np.argmin(values.min(axis=0)))}
     return np.array(sorted(chosen))
 
 
-def select_extremes(run: CutRun, extremes: Extremes) -> Extremes:
-    """Select the extremes of the section forces along a run, and of its stresses if these were searched."""
+def select_extremes(series: CutSeries, extremes: Extremes) -> Extremes:
+    """Select the extremes of the section forces along a series, and of its stresses if these were searched."""
     known = set(extremes.paths)
-    return extremes.find([channel.path for channel in run.channels if channel.path in known])
+    return extremes.find([channel.path for channel in series.channels if channel.path in known])
 
 
 def find_sample_extremes(times: Array, values: Array) -> Extremes:
@@ -110,7 +110,7 @@ def find_sample_extremes(times: Array, values: Array) -> Extremes:
     )
 
 
-def merge_extremes(run: CutRun, shown_cuts: Indices, head: Extremes, cuts: Extremes) -> tuple[Extremes, Extremes]:
+def merge_extremes(series: CutSeries, shown_cuts: Indices, head: Extremes, cuts: Extremes) -> tuple[Extremes, Extremes]:
     """Merge the extremes of the whole length and of its cuts, so that each is the better result of two searches."""
     ends, ends_at = np.stack([head.low, head.high]), np.stack([head.low_at, head.high_at])
     bounds, instants = np.stack([cuts.low, cuts.high]), np.stack([cuts.low_at, cuts.high_at])
@@ -122,7 +122,7 @@ def merge_extremes(run: CutRun, shown_cuts: Indices, head: Extremes, cuts: Extre
             cut = int(shown_cuts[best])
             if sign * bounds[side, columns][best] > sign * ends[side, i]:
                 ends[side, i], ends_at[side, i] = bounds[side, columns][best], instants[side, columns][best]
-                best_places[i][side] = CutPosition(float(run.s[cut]), run.side[cut], cut)
+                best_places[i][side] = CutPosition(float(series.s[cut]), series.side[cut], cut)
             elif best_places[i][side].cut in shown_cuts:
                 bounds[side, columns][shown_cuts == best_places[i][side].cut] = ends[side, i]
     places = tuple((low, high) for low, high in best_places)

@@ -9,12 +9,10 @@ import numpy as np
 
 from heuncli.base.tolerances import EPS
 from heuncli.output.figures.acting_loads import collect_loads
-from heuncli.output.figures.courses import NotDrawable, is_varying
-from heuncli.output.figures.planes import choose_plane, make_axis_plane
+from heuncli.output.figures.courses import NotDrawable, TurningRun, VectorSource, find_turning_run, is_varying
 from heuncli.output.figures.polar import make_notes
 from heuncli.output.figures.scenes import compute_poses, pose_machine
-from heuncli.output.figures.tips import LargestVector, TipCurve
-from heuncli.output.figures.turning import TurningRun, VectorSource, find_turning_run
+from heuncli.output.figures.tips import LargestVector, TipCurve, choose_plane, make_axis_plane
 from heuncli.output.web_page.frames import choose_frames
 from heuncli.results.results import Array
 from heuncli.study.quantities.table_units import Units

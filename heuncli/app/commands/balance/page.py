@@ -22,8 +22,7 @@ from heuncli.analyses.balancing.sampling import select_largest
 from heuncli.app.commands.balance.remedies_page import make_remedy_tables
 from heuncli.base.records import replace
 from heuncli.base.tolerances import WRITTEN
-from heuncli.output.documents.as_csv import make_columns
-from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.as_data import FORMAT, make_columns
 from heuncli.output.documents.document import (
     Cell,
     NumberCell,

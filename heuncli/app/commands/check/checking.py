@@ -32,8 +32,8 @@ from heuncli.output.snapshots.golden_file import (
     read_golden_file,
 )
 from heuncli.output.snapshots.outcomes import EXPECTED, Outcome, make_outcome
-from heuncli.output.snapshots.selection import find_default_reports
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
+from heuncli.output.tables.report_selection import find_default_reports
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Expect, Spec
 from heuncli.scene.file_format.reading import read_bytes

@@ -10,9 +10,8 @@ from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.document import OutputDocument, OutputTable, Sentence, Verbatim, make_text_columns
-from heuncli.output.snapshots.outcomes import GOLDEN, Outcome
+from heuncli.output.snapshots.outcomes import GOLDEN, Annotation, Outcome, iter_lines
 from heuncli.output.tables.nouns import format_count
-from heuncli.output.tables.workflow_lines import Annotation, iter_lines
 
 FAILED = 1
 

@@ -36,7 +36,7 @@ from heuncli.app.commands.find.page import FindPage, make_document
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.table_units import Units

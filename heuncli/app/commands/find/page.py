@@ -20,7 +20,7 @@ from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.analyses.variants.samples import Sample
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
-from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputDocument, OutputTable, append_unit
 from heuncli.output.tables.nouns import format_count
 from heuncli.study.quantities.digits import format_error, format_with_error

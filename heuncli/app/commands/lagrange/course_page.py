@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.analyses.lagrange.results import LENGTH, InertiaCurve, get_units
 from heuncli.app.commands.lagrange.page import make_cell
-from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.study.quantities.labels import distinguish
 from heuncli.study.quantities.table_units import Units

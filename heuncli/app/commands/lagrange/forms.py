@@ -10,7 +10,7 @@ import numpy as np
 from heuncli.analyses.lagrange.equations import to_lists
 from heuncli.analyses.lagrange.results import MIXED_INERTIA_UNIT, LagrangeResults, StateSpace, get_units
 from heuncli.base.joint_kinds import is_length
-from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell
 from heuncli.version import VERSION
 

@@ -21,15 +21,13 @@ from heuncli.base.errors import Problem, SpecError
 from heuncli.base.spelling import find_similar
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.drawing.figure import Figure
-from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.courses import FigureSource, list_angle_paths
 from heuncli.output.figures.curves import MeasuredPoints
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.output.figures.histories import make_history
-from heuncli.output.figures.planes import AXIS_LETTERS, list_rotation_paths
 from heuncli.output.figures.polar import make_polar_figure
-from heuncli.output.figures.tips import list_firing_paths
-from heuncli.output.figures.turning import list_angle_paths
-from heuncli.output.snapshots import measure
+from heuncli.output.figures.tips import AXIS_LETTERS, list_firing_paths, list_rotation_paths
+from heuncli.output.tables import measure
 from heuncli.results.path_words import split_path
 from heuncli.results.results_schema import EVENTS, IMPULSES, SPACE
 from heuncli.scene.file_format.models import Spec

@@ -25,9 +25,8 @@ from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.courses import FigureSource, make_title
 from heuncli.output.figures.mode_shapes import make_mode_shapes
 from heuncli.output.figures.orders import BalancedScene, make_orders_figure
-from heuncli.output.figures.scenes import make_scene_figure
-from heuncli.output.figures.traces import CENTER
-from heuncli.output.figures.worst_instant import find_worst_instant
+from heuncli.output.figures.posed_machine import find_worst_instant
+from heuncli.output.figures.scenes import CENTER, make_scene_figure
 from heuncli.output.machine_geometry.machine import make_machine
 from heuncli.output.machine_geometry.views import (
     AZIMUTH,
@@ -37,7 +36,7 @@ from heuncli.output.machine_geometry.views import (
     make_view_at_angles,
     parse_view,
 )
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.results.results import Array
 from heuncli.study.queries.measure import MeasureRequest
 

@@ -18,7 +18,7 @@ from heuncli.base.errors import Problem
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.figures.courses import FigureSource
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.results.path_words import split_path
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load, load_with_cases

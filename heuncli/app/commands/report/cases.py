@@ -24,8 +24,8 @@ from heuncli.output.client_report.report_data import (
 )
 from heuncli.output.snapshots.outcomes import Outcome, make_outcome
 from heuncli.output.snapshots.take_snapshot import is_searched_between_samples, take_run_snapshot
-from heuncli.output.summary.summary_document import Summary
 from heuncli.output.tables.page import make_page
+from heuncli.output.tables.summary_document import Summary
 from heuncli.scene.file_format.file_contents import read_logo
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Logo, ReportSettings, Spec

@@ -37,7 +37,7 @@ def main(request: ReportRequest) -> int:
     require_other_file(request.output, [request.spec])
     from heuncli.output.client_report.contents import make_report, make_sheet
     from heuncli.output.documents.as_html import render_html
-    from heuncli.output.documents.decimal_comma import write_decimal_comma
+    from heuncli.output.documents.document import write_decimal_comma
 
     report = make_report(data)
     if request.decimal_comma:

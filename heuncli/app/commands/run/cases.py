@@ -12,13 +12,12 @@ from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
 from heuncli.app.cli.target import TABLES, note_si_format
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, render_parts, solve_and_render
-from heuncli.output.documents.as_json import dump_json
+from heuncli.output.documents.as_data import dump_json
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
 from heuncli.output.snapshots.take_snapshot import take_run_snapshot
-from heuncli.output.summary.run_document import RunParts
-from heuncli.output.summary.summary_document import Summary, merge_cases
+from heuncli.output.tables.summary_document import RunParts, Summary, merge_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.quantities.table_units import Units
 

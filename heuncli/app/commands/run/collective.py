@@ -12,11 +12,17 @@ from heuncli.app.cli.solving import collect_results
 from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.as_data import FORMAT
 from heuncli.output.documents.document import OutputDocument
-from heuncli.output.snapshots.collectives import count_collectives, make_option_problem
-from heuncli.output.snapshots.measure import require_known_paths
-from heuncli.output.tables.collective_tables import CLOSED, make_records, make_tables, to_json_block
+from heuncli.output.tables.collective_tables import (
+    CLOSED,
+    count_collectives,
+    make_option_problem,
+    make_records,
+    make_tables,
+    to_json_block,
+)
+from heuncli.output.tables.measure import require_known_paths
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec

@@ -18,8 +18,8 @@ from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, 
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
-from heuncli.output.snapshots.selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.output.tables.page import EXPORT_DEFAULT
+from heuncli.output.tables.report_selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.study.model.options import MemoryBudget
@@ -81,7 +81,7 @@ def _parse_measures(request: RunRequest) -> list[MeasureRequest]:
     """Parse the requested measures. Raises UsageError."""
     if not request.measure:
         return []
-    from heuncli.output.snapshots import measure  # with paths and JSON 2 ms that tables do not need
+    from heuncli.output.tables import measure  # with paths and JSON 2 ms that tables do not need
 
     return measure.parse_measures(request.measure)
 
@@ -126,7 +126,7 @@ def _require_paths(
     not fit.
     """
     if measures:
-        from heuncli.output.snapshots import measure
+        from heuncli.output.tables import measure
 
         measure.require_known_paths(measures, spec)
         measure.require_fitting_units(measures, spec, parse_units(request.units), request.units)

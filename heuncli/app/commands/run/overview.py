@@ -15,10 +15,16 @@ from heuncli.app.commands.run.scene import RunTask, finish, make_query
 from heuncli.base.errors import Problem
 from heuncli.base.records import replace
 from heuncli.output.documents.document import OutputDocument, Sentence
-from heuncli.output.snapshots.tables import search_run
-from heuncli.output.summary.run_document import summarise
-from heuncli.output.summary.summary_document import Summary, make_blocks, make_records, make_summary_table, merge_cases
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.tables.page import search_run
+from heuncli.output.tables.run_description import make_heading
+from heuncli.output.tables.summary_document import (
+    Summary,
+    make_blocks,
+    make_records,
+    make_summary_table,
+    merge_cases,
+    summarise,
+)
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.study.model.setup import attach_locations
@@ -96,8 +102,7 @@ def _make_summary(
 def _make_hardpoints(
     task: RunTask, title: str, scenes: Mapping[str, Spec], studies: Mapping[str, Study]
 ) -> OutputDocument:
-    from heuncli.output.summary.hardpoint_document import make_hardpoint_document
-    from heuncli.output.summary.hardpoints import make_hardpoints
+    from heuncli.output.tables.hardpoints import make_hardpoint_document, make_hardpoints
 
     axes = task.request.axes or "world"
     runs, labels = [], None

@@ -16,10 +16,9 @@ from heuncli.app.commands.run.request import RunRequest
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.base.text_safety import escape
-from heuncli.output.snapshots.tables import TablesQuery
-from heuncli.output.summary.run_document import RunParts, make_run_parts
-from heuncli.output.summary.summary_document import Summary
-from heuncli.output.tables.heading import make_heading
+from heuncli.output.tables.page import TablesQuery
+from heuncli.output.tables.run_description import make_heading
+from heuncli.output.tables.summary_document import RunParts, Summary, make_run_parts
 from heuncli.results.results import Results
 from heuncli.results.stored_arrays import StoredArray, iter_chunks
 from heuncli.scene.file_format.models import Spec
@@ -107,7 +106,7 @@ def render_parts(task: RunTask, parts: RunParts) -> list[str]:
 
 def _render_measures(task: RunTask, study: Study) -> str:
     """Render the measured numbers, in the units of --units where these apply."""
-    from heuncli.output.snapshots import measure
+    from heuncli.output.tables import measure
 
     shown = measure.choose_units(task.measures, study, task.units, task.request.units)
     return measure.format_measures(task.measures, study, task.form, [size for _, size in shown])
@@ -115,7 +114,7 @@ def _render_measures(task: RunTask, study: Study) -> str:
 
 def note_measure_units(task: RunTask, study: Study) -> None:
     """Print the units of the measured numbers to standard error, or that JSON stays in SI."""
-    from heuncli.output.snapshots import measure
+    from heuncli.output.tables import measure
 
     if task.form == "json" or task.request.quiet:
         note_si_format(task.request.units, task.form, task.request.quiet)
@@ -129,7 +128,7 @@ def finish(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
     """Print warnings and times; returns the exit code."""
     later = list(study.later_warnings)
     if task.measures:
-        from heuncli.output.snapshots import measure
+        from heuncli.output.tables import measure
 
         later += measure.find_warnings(task.measures, study)
     warnings = print_warnings(spec, study.results, task.request.quiet, place, later)

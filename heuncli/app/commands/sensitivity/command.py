@@ -24,7 +24,7 @@ from heuncli.app.cli.variant_workers import choose_job_count, print_variant_warn
 from heuncli.app.commands.sensitivity.page import MeasureFindings, SensitivityPage, make_document
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options
 from heuncli.study.queries.measure_uncertainty import find_unit

@@ -9,7 +9,7 @@ from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSu
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
 from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_csv import make_columns
+from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import (
     Cell,
     NumberCell,

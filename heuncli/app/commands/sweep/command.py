@@ -34,7 +34,7 @@ from heuncli.app.commands.sweep.running import SweepTask, run_sweep, show_stored
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import MemoryBudget
 from heuncli.study.queries.measure_uncertainty import find_unit

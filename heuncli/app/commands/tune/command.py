@@ -26,7 +26,7 @@ from heuncli.app.commands.tune.page import make_document
 from heuncli.app.commands.tune.result_block import TunedScene, format_command, make_history
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.base.files import STDOUT
-from heuncli.output.documents.as_csv import iter_csv
+from heuncli.output.documents.as_data import iter_csv
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options

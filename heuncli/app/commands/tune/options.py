@@ -18,7 +18,7 @@ from heuncli.app.cli.solving import split_spec_and_assignments
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import parse_unit
-from heuncli.output.snapshots import measure
+from heuncli.output.tables import measure
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.queries.measure import MeasureRequest
 from heuncli.study.queries.measure_uncertainty import find_unit

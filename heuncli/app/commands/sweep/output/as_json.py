@@ -21,7 +21,7 @@ from heuncli.analyses.variants.measures import NO_VALUE
 from heuncli.analyses.variants.sample_statistics import CONFIDENCE, SobolIndices
 from heuncli.app.commands.sweep.output.statistics import ColumnBuffer, MeasureStatistics, iter_statistics
 from heuncli.base.text_safety import escape
-from heuncli.output.documents.as_json import FORMAT
+from heuncli.output.documents.as_data import FORMAT
 
 
 def iter_json(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:

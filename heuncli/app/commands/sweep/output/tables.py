@@ -10,9 +10,9 @@ from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, make_paramet
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.commands.sweep.output.top_k import MeasureExtremes, ShownRows
+from heuncli.output.documents.as_text import draw_histogram, draw_sparkline
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, format_cell, trim_cells
 from heuncli.output.tables.nouns import format_count
-from heuncli.output.tables.sparkline import draw_histogram, draw_sparkline
 from heuncli.results.results import Array
 from heuncli.scene.file_format.quantity import NumberWithUnit, ParameterValue
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, Style, choose_style, largest_magnitude, trim_zeros

@@ -13,7 +13,7 @@ from heuncli.app.cli.output import emit
 from heuncli.base import files
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_csv import format_line
+from heuncli.output.documents.as_data import format_line
 from heuncli.output.documents.document import OutputDocument, OutputTable
 from heuncli.study.quantities.table_units import Units
 
@@ -86,7 +86,7 @@ def make_tables(
     from heuncli.app.commands.sweep.output.statistics_tables import make_statistics_tables
     from heuncli.app.commands.sweep.output.tables import make_row_table, make_summary_table
     from heuncli.app.commands.sweep.output.top_k import select_rows
-    from heuncli.output.tables.sparkline import choose_characters
+    from heuncli.output.documents.as_text import choose_characters
 
     selection = select_rows(head, rows, all_of_them)
     statistics = list(iter_statistics(head, selection.columns))

@@ -1,4 +1,4 @@
-"""The summary of a run, or of all its load cases, as a table of a dozen lines, as data and as CSV."""
+"""The summary of a run, or of all its load cases, as a short table, as data and as CSV; the document of a run."""
 
 from __future__ import annotations
 
@@ -7,17 +7,23 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.output.documents.as_json import FORMAT
-from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, TextCell
-from heuncli.output.summary.indeterminate import IndeterminateGroup, format_indeterminate
-from heuncli.output.summary.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow
-from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NOTE
+from heuncli.output.documents.as_data import FORMAT
+from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable, TextCell
+from heuncli.output.tables.extremes_tables import CONSTANT, MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
+from heuncli.output.tables.indeterminate import IndeterminateGroup, find_indeterminate_groups, format_indeterminate
 from heuncli.output.tables.nouns import join_ranges
+from heuncli.output.tables.page import SearchedPage, TablesQuery, make_tables_of_page, search_run
+from heuncli.output.tables.run_description import make_heading
+from heuncli.output.tables.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow, make_run_summary
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.cut_runs import collect_cut_series
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.queries.study import Study
 from heuncli.version import VERSION
 
 HEADING = 'SUMMARY  greatest loads; for a joint, the reaction of "from" on "to"'
@@ -263,3 +269,62 @@ def make_records(summary: Summary) -> OutputTable:
             (row.path, row.label, row.unit, row.value, row.error, *direction, row.time, row.angle, row.case, place)
         )
     return OutputTable("", tuple(OutputColumn(name) for name in CSV_NAMES), tuple(rows))
+
+
+class RunParts(NamedTuple):
+    """The parts of the document of a run.
+
+    summary: None where instants are given or parts of the results are chosen
+    """
+
+    title: str
+    facts: Sequence[tuple[str, str]]
+    summary: Summary | None
+    tables: Sequence[OutputTable]
+
+    def make_document(self, *, full: bool = False) -> OutputDocument:
+        """Make the document; full: with every row of the summary."""
+        return OutputDocument(self.title, self.facts, self.collect_tables(full=full))
+
+    def collect_tables(self, *, full: bool = False) -> list[OutputTable]:
+        """Return the table of the summary, if there is one, and the others."""
+        if self.summary is None or self.summary.is_empty:
+            return [*self.tables]
+        return [make_summary_table(self.summary, full=full), *self.tables]
+
+
+def make_run_parts(
+    study: Study, labels: Labels, query: TablesQuery, case: str = "", *, has_summary: bool = True,
+    show_reductions: bool = False,
+) -> RunParts:  # fmt: skip
+    """Make the parts of the document of a run.
+
+    case: name of its load case, if there are several
+    has_summary: whether to summarise it, unless instants are given
+    """
+    searched = search_run(study, labels, query)
+    is_summarised = has_summary and query.instants is None and not query.show_all
+    summary = summarise(study, searched, case) if is_summarised else None
+    facts = make_heading(study.results, show_reductions, brief=not query.full)
+    return RunParts(study.results.title, facts, summary, make_tables_of_page(study, searched, query))
+
+
+def summarise(study: Study, searched: SearchedPage, case: str = "") -> Summary:
+    """Summarise a searched run.
+
+    case: name of its load case, if there are several
+    """
+    page, model = searched.page, study.results.model
+    channels = page.make_search().collect(page.results)
+    found = make_run_summary(study, searched, channels, case)
+    body = model.get("axes")
+    axes = f'axes of the "{body}" body' if body else "world axes"
+    notes = [] if found.is_searched else [NOT_SEARCHED]
+    notes += [found.doubtful_note] if found.doubtful_note else []
+    span = float(np.ptp(study.results.time))
+    groups = []
+    if any(np.isnan(channel.values).any() for channel in channels):
+        blocks = page.make_blocks(page.results, only_searched=True)
+        groups = find_indeterminate_groups(blocks, collect_cut_series(page.results, page.labels))
+    redundant = int(model.get("redundant", 0))
+    return Summary(found.rows, groups, page.labels, axes, redundant, span, found.crank, notes)

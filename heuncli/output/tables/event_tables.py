@@ -1,7 +1,12 @@
-"""Tables of impacts, in newton seconds: what met when, and for each impact the jumps of velocity and the impulses."""
+"""Tables of events and of impacts.
+
+Events are instants at which conditions change. Tables of impacts are in newton seconds: what met when, and for each
+impact the jumps of velocity and the impulses.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -10,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.documents.as_text import select_columns
 from heuncli.output.documents.document import (
     Cell,
     NumberCell,
@@ -19,8 +25,8 @@ from heuncli.output.documents.document import (
     is_zero_cell,
     make_number_cells,
 )
-from heuncli.output.tables import cut_runs
-from heuncli.output.tables.certain_sums import make_sums_table
+from heuncli.output.tables import cut_tables
+from heuncli.output.tables.indeterminate import make_sums_table
 from heuncli.output.tables.instants_tables import make_group_cells, make_instants_tables
 from heuncli.output.tables.table_blocks import RowGroup, TableBlock, build_block
 from heuncli.output.tables.table_plans import IMPULSES
@@ -28,7 +34,7 @@ from heuncli.results.path_words import IMPULSE_BLOCKS, IMPULSE_UNITS, find_quant
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results.results_schema import SHARES, XYZ
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
-from heuncli.study.quantities.cut_runs import CutRun, collect_runs
+from heuncli.study.quantities.cut_runs import CutSeries, collect_cut_series
 from heuncli.study.quantities.digits import (
     OPEN,
     UNKNOWN,
@@ -36,22 +42,70 @@ from heuncli.study.quantities.digits import (
     ZERO_NOTE,
     StatedErrors,
     add_axis_errors,
+    choose_style,
     largest_magnitude,
+    trim_zeros,
     write_times,
 )
 from heuncli.study.quantities.labels import Labels
 
+EVENTS_HEADING = "EVENTS  times at which conditions change, and their new values"
+EVENT_COLUMNS = (
+    OutputColumn("event", "text"),
+    OutputColumn("condition", "text"),
+    OutputColumn("t [s]"),
+    OutputColumn("becomes", "text"),
+)
+MARGINAL_NOTE = "marginal: the margin is as small as the error, so a slightly different run may not show it"
+MAX_INSTANTS = 20  # instants of an event in a table, unless all are requested
 MAX_SHOWN, MAX_LISTED = 3, 20  # impacts with tables, impacts in the list, unless all are requested
 UNIT = "N·s"
-HEADING = "all impulses of the run: largest impulse and angular impulse on a joint, stop or the ground; kinetic energy"
+IMPULSES_HEADING = (
+    "IMPULSES  all impulses of the run: largest impulse and angular impulse on a joint, stop or the ground; "
+    "kinetic energy"
+)
+N_LEADING = 3  # columns before the numbers of an impact: name, label and unit
+NUMBER_HEADS = (*XYZ, "value")  # the value of a vector is its magnitude
+IMPACT_COLUMNS = (
+    *[OutputColumn("", "text")] * N_LEADING,
+    *(OutputColumn(head, vector="numbers") for head in NUMBER_HEADS),
+    OutputColumn("", "text", is_optional=True),  # notes
+)
 ENERGIES = ("energy_before", "energy_after", "energy_jump")
+
+
+def make_events_table(results: Results, *, all_instants: bool = False) -> OutputTable:
+    """Make the table of events; all_instants: show every instant of each event."""
+    rows: list[tuple[str, ...]] = []
+    is_marginal = False
+    for name, event in results.events.items():
+        event_lines = list(iter_event_lines(event))
+        is_marginal = is_marginal or any(not math.isfinite(error) for error in event["error"])
+        shown = event_lines if all_instants else event_lines[:MAX_INSTANTS]
+        begins = "true" if event["begins"] else "false"
+        shown = shown or [("", f"{begins} at all times")]
+        rows += [(name, event["condition"], *shown[0]), *(("", "", *line) for line in shown[1:])]
+        if len(event_lines) > len(shown):
+            rows.append(("", f"{len(event_lines) - len(shown)} more with --all", "", ""))
+    return OutputTable(EVENTS_HEADING, EVENT_COLUMNS, tuple(rows), (MARGINAL_NOTE,) if is_marginal else ())
+
+
+def iter_event_lines(event: Block) -> Iterator[tuple[str, str]]:
+    """Yield each instant with the digits that its error leaves, and what the condition becomes there."""
+    for t, error, is_true in zip(event["time"].tolist(), event["error"].tolist(), event["to"], strict=True):
+        becomes = "true" if is_true else "false"
+        if not math.isfinite(error):
+            yield f"{t:.3g}", f"{becomes}, marginal"
+            continue
+        number_style = choose_style(t, error)
+        yield trim_zeros([number_style.write(t)])[0] if number_style.is_known else UNKNOWN, becomes
 
 
 class ImpactReport(NamedTuple):
     """The impacts of a run, and the accuracy of their numbers.
 
     magnitudes: what the numbers are summed from
-    run_extremes: for each impact, the extremes along its series of cuts
+    series_extremes: for each impact, the extremes along its series of cuts
     details: whether to include tables that are shown only on request
     """
 
@@ -59,7 +113,7 @@ class ImpactReport(NamedTuple):
     labels: Labels
     certain: StatedErrors
     magnitudes: Magnitudes
-    run_extremes: Sequence[Mapping[str, Extremes]] = ()
+    series_extremes: Sequence[Mapping[str, Extremes]] = ()
     details: bool = True
 
 
@@ -79,9 +133,7 @@ def make_impulse_tables(report: ImpactReport, *, show_all: bool = False) -> list
 
 
 def find_largest_impulses(impulse: Block, labels: Labels) -> tuple[float, float]:
-    """Return the largest impulse of a joint, stop, the ground or all bodies [N s], and the largest moment impulse [N m
-    s].
-    """
+    """Return the largest impulse of a joint, stop, the ground or all bodies [N s], and the largest moment's [N m s]."""
     joints, ground = impulse.get("joints", {}), impulse.get("foundation", {})
     forces = [part["force"] for part in (*joints.values(), ground, ground.get("mass_effect", {})) if "force" in part]
     moments = [joint["moment"] for joint in joints.values() if "moment" in joint]
@@ -139,17 +191,18 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
     note = f"details below: {numbers} (the largest); all: --all or --format csv"
     hidden_note = f"{len(impulses) - len(listed)} further, the last at t = {clock[-1]} s"
     notes = (hidden_note,) * (len(listed) < len(impulses)) + (note,) * (len(shown_numbers) < len(impulses))
-    return OutputTable(f"IMPULSES  {HEADING}", columns, tuple(rows), notes)
+    return OutputTable(IMPULSES_HEADING, columns, tuple(rows), notes)
 
 
 def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False) -> list[OutputTable]:
-    """Make the tables of one impact: all loaded objects, central axis, series of cuts, shares by cause, determinate
-    sums.
+    """Make the tables of an impact: loaded objects, central axis, series of cuts, shares by cause, determinate sums.
+
+    number: of the impact in the run, from 0
     """
     impulse = report.results.impulses[number]
     view, labels = make_impact_results(report.results, impulse), report.labels
     title = f"IMPULSE at t = {float(impulse['time']):.6g} s ({', '.join(impulse['names'])})"
-    lead = f"{title}  "
+    prefix = f"{title}  "  # of the headings of its tables
     horizon = report.results.horizon
     certain = add_axis_errors(report.certain, view, report.magnitudes, UNIT)
     channels = list(iter_impulse_channels(impulse, labels))
@@ -159,24 +212,25 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
         block = build_block(plan, view, labels, channels) if report.details or not plan.is_detail else None
         if block is None:
             continue
-        named = block._replace(heading=lead + block.heading)
+        named = block._replace(heading=prefix + block.heading)
         blocks += [block] * plan.has_extremes
         tables += make_instants_tables(named, view.time, horizon, certain) if not plan.has_extremes else []
         share_tables += make_share_tables(named, view, channels, certain, horizon) if by_cause else []
     tables[:0] = [make_impact_table(title, blocks, view.time, horizon, certain)] if blocks else []
-    run_extremes = report.run_extremes[number] if report.run_extremes else {}
-    for run in collect_runs(view, labels, IMPULSE_UNITS):
-        run_tables = cut_runs.make_instants_tables(run, view.time, horizon, certain, every_cut=show_all)
-        if run.name in run_extremes:
-            table = cut_runs.make_extremes_table(run, view.time, run_extremes[run.name], certain)
-            run_tables = [table, run_tables[0]._replace(heading=""), *run_tables[1:]]
-        tables += [run_tables[0]._replace(heading=lead + run_tables[0].heading), *run_tables[1:]]
+    series_extremes = report.series_extremes[number] if report.series_extremes else {}
+    for series in collect_cut_series(view, labels, IMPULSE_UNITS):
+        series_tables = cut_tables.make_instants_tables(series, view.time, horizon, certain, every_cut=show_all)
+        if series.name in series_extremes:
+            table = cut_tables.make_extremes_table(series, view.time, series_extremes[series.name], certain)
+            series_tables = [table, series_tables[0]._replace(heading=""), *series_tables[1:]]
+        tables += [series_tables[0]._replace(heading=prefix + series_tables[0].heading), *series_tables[1:]]
         share_tables += [
-            own._replace(heading=lead + own.heading) for own in make_run_share_tables(run, view, certain, horizon)
+            own._replace(heading=prefix + own.heading)
+            for own in make_series_share_tables(series, view, certain, horizon)
         ]
     tables += share_tables
     sums = make_sums_table(view, certain, unit=UNIT)
-    return [*tables, sums._replace(heading=lead + sums.heading)] if sums else tables
+    return [*tables, sums._replace(heading=prefix + sums.heading)] if sums else tables
 
 
 def make_share_tables(
@@ -189,23 +243,19 @@ def make_share_tables(
     return cause_tables.make_instants_tables(block, numbers, view.time, horizon, certain)
 
 
-def make_run_share_tables(
-    run: CutRun, view: Results, certain: StatedErrors, horizon: float | None
+def make_series_share_tables(
+    series: CutSeries, view: Results, certain: StatedErrors, horizon: float | None
 ) -> list[OutputTable]:
-    """Make the tables of what each cause contributes to the impulses along a series of cuts; none if shares are not
-    requested.
-    """
-    if SHARES not in view.sections[run.name]:
+    """Make the tables of what each cause contributes to the impulses along a series of cuts, if that is requested."""
+    if SHARES not in view.sections[series.name]:
         return []
     from heuncli.output.tables import cause_tables
 
-    return cause_tables.make_run_instants_tables(run, view, horizon, certain)
+    return cause_tables.make_series_instants_tables(series, view, horizon, certain)
 
 
 def make_impact_results(results: Results, impulse: Block) -> Results:
-    """Return the results of a run with the blocks of one impact in place of its own, as at the instant of the
-    impact.
-    """
+    """Return the results of a run with the blocks of one impact in place of its own, at the instant of the impact."""
     parts: dict[str, Any] = {
         key: add_time_axis((key,), impulse.get(key, {})) for key in IMPULSE_BLOCKS if key != "certain_sums"
     }
@@ -225,10 +275,6 @@ def add_time_axis(keys: tuple[str, ...], value: Any) -> Any:
     return np.asarray(value, dtype=np.float64)[None] if row is not None and row.is_timed else value
 
 
-LEADING_COLUMNS = 3  # name, label and unit
-NUMBER_HEADS = (*XYZ, "value")  # the value of a vector is its magnitude
-
-
 def make_impact_table(
     heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, certain: StatedErrors
 ) -> OutputTable:
@@ -237,11 +283,11 @@ def make_impact_table(
     times: the instant of the impact, (1,)
     """
     rows: list[tuple[Cell, ...] | str] = []
-    notes, complete = list[str](), True
+    notes, is_complete = list[str](), True
     for block in blocks:
         row_cells = [line for group in block.groups for line in _iter_rows(block, group, times, horizon, certain)]
-        nonzero = [line for line in row_cells if not all(map(is_zero_cell, line[LEADING_COLUMNS:-1]))]
-        complete &= len(nonzero) == len(row_cells)
+        nonzero = [line for line in row_cells if not all(map(is_zero_cell, line[N_LEADING:-1]))]
+        is_complete &= len(nonzero) == len(row_cells)
         if nonzero:
             rows += [block.heading, *_blank_repeated_names(nonzero)]
             notes += block.notes
@@ -249,19 +295,10 @@ def make_impact_table(
         notes += [note for word, note in (block.missing, (UNKNOWN, UNKNOWN_NOTE)) if word in words]
     if not rows:
         return OutputTable(heading, notes=("all values 0",))
-    table = _drop_empty_columns(OutputTable(heading, _make_columns(), tuple(rows)))
+    table = _drop_empty_columns(OutputTable(heading, IMPACT_COLUMNS, tuple(rows)))
     numbers = {column.title for column in table.columns} & set(NUMBER_HEADS)
-    notes += [ZERO_NOTE] if not complete or len(numbers) < len(NUMBER_HEADS) else []
+    notes += [ZERO_NOTE] if not is_complete or len(numbers) < len(NUMBER_HEADS) else []
     return table._replace(notes=tuple(dict.fromkeys(notes)))
-
-
-def _make_columns() -> tuple[OutputColumn, ...]:
-    leading = [OutputColumn("", "text")] * LEADING_COLUMNS
-    return (
-        *leading,
-        *(OutputColumn(head, vector="numbers") for head in NUMBER_HEADS),
-        OutputColumn("", "text", is_optional=True),
-    )
 
 
 def _iter_rows(
@@ -292,15 +329,14 @@ def _repeats_magnitude(row: Channel, texts: Mapping[str, str], magnitudes: Mappi
 
 def _blank_repeated_names(lines: Sequence[tuple[Cell, ...]]) -> Iterator[tuple[Cell, ...]]:
     """Show the name and note of consecutive rows of one object only in the first of them."""
-    before = None
+    last_name = None
     for line in lines:
-        yield line if line[0] != before or not before else ("", *line[1:-1], "")
-        before = line[0]
+        yield line if line[0] != last_name or not last_name else ("", *line[1:-1], "")
+        last_name = line[0]
 
 
 def _drop_empty_columns(table: OutputTable) -> OutputTable:
     """Drop the columns that are empty or zero in every row."""
     cells = [row for row in table.rows if not isinstance(row, str)]
     shown_columns = [i for i in range(len(table.columns)) if not all(is_zero_cell(row[i]) for row in cells)]
-    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
-    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, table.notes)
+    return select_columns(table, shown_columns)

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from heuncli.output.documents.as_text import select_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell, make_number_cells
 from heuncli.results.results import Array, CutPosition, Extremes, Indices
 from heuncli.results.results_schema import STRESSES
 from heuncli.study.quantities.cut_runs import (
-    CutRun,
+    CutSeries,
     choose_cuts,
     find_sample_extremes,
     merge_extremes,
@@ -39,35 +40,39 @@ BOUNDS = dict.fromkeys(STRESSES, ("max",)) | {"normal_min": ("min",)}  # those o
 
 
 def make_extremes_tables(
-    run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors, cuts: Extremes | None = None
+    series: CutSeries, times: Array, extremes: Extremes, certain: StatedErrors, cuts: Extremes | None = None
 ) -> list[OutputTable]:
-    """Make two tables: extremes of each quantity over the whole length and time, with their places; extremes at each
-    cut.
+    """Make two tables: extremes of each quantity over the whole length and time, and extremes at each cut.
 
-    extremes: of the channels along the run
+    extremes: of the channels along the series
     cuts: of all quantities at the cuts that are shown; without them, the extremes among the samples
     """
-    shown_cuts = choose_cuts(run)
+    shown_cuts = choose_cuts(series)
     if cuts is None:
-        columns = [channel.values for channel in split_into_cuts(run.channels, shown_cuts)]
+        columns = [channel.values for channel in split_into_cuts(series.channels, shown_cuts)]
         cuts = find_sample_extremes(times, np.stack(columns, axis=1))
-    head, cuts = merge_extremes(run, shown_cuts, select_extremes(run, extremes), cuts)
-    where = "also between the output times" if cuts.is_searched else f"at {len(run.channels[0].values)} output times"
-    notes = [f"envelope: minimum and maximum at each cut over the run, {where}{_format_hidden_cuts(run, shown_cuts)}"]
-    shape = len(run.channels), len(shown_cuts)
+    head, cuts = merge_extremes(series, shown_cuts, select_extremes(series, extremes), cuts)
+    where = "also between the output times" if cuts.is_searched else f"at {len(series.channels[0].values)} output times"
+    hidden = _format_hidden_cuts(series, shown_cuts)
+    notes = [f"envelope: minimum and maximum at each cut over the run, {where}{hidden}"]
+    shape = len(series.channels), len(shown_cuts)
     bounds = {"min": cuts.low.reshape(shape), "max": cuts.high.reshape(shape)}
-    styles = _choose_styles(run, certain, head)
-    envelope = _make_envelope(run, bounds, shown_cuts, styles, notes, certain)
-    return [make_extremes_table(run, times, head, certain), envelope]
+    styles = _choose_styles(series, certain, head)
+    envelope = _make_envelope(series, bounds, shown_cuts, styles, notes, certain)
+    return [make_extremes_table(series, times, head, certain), envelope]
 
 
 def _make_envelope(
-    run: CutRun, bounds: Mapping[str, Array], shown_cuts: Indices, styles: Mapping[str, Style], notes: Sequence[str],
+    series: CutSeries,
+    bounds: Mapping[str, Array],
+    shown_cuts: Indices,
+    styles: Mapping[str, Style],
+    notes: Sequence[str],
     certain: StatedErrors,
-) -> OutputTable:  # fmt: skip
+) -> OutputTable:
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
     columns, cells, left_out = list[OutputColumn](), list[Sequence[Cell]](), False
-    for i, channel in enumerate(run.channels):
+    for i, channel in enumerate(series.channels):
         unit, size = certain.units.find(channel.unit)
         words: Sequence[str] = BOUNDS.get(channel.quantity, BOTH_BOUNDS)
         error = size * certain.find_error(channel)
@@ -81,22 +86,22 @@ def _make_envelope(
         columns += [OutputColumn(f"{channel.label} {word}".rstrip(), unit=unit, vector=channel.label) for word in words]
     if not columns:
         return OutputTable("", notes=(*notes, "all values 0"))
-    return _make_cuts_table(run, shown_cuts, columns, cells, [*notes, *[ZERO_NOTE] * left_out])
+    return _make_cuts_table(series, shown_cuts, columns, cells, [*notes, *[ZERO_NOTE] * left_out])
 
 
 def _make_cuts_table(
-    run: CutRun,
+    series: CutSeries,
     shown_cuts: Indices,
     columns: Sequence[OutputColumn],
     cells: Sequence[Sequence[Cell]],
     notes: Sequence[str],
 ) -> OutputTable:
     """Make a table with a row for each cut that begins with its position and side; cells: by columns."""
-    unit, size = run.length
-    positions = make_number_cells((size * run.s).tolist(), choose_style(size * largest_magnitude(run.s), 0.0))
-    sides = any(side is not None for side in run.side)
+    unit, size = series.length
+    positions = make_number_cells((size * series.s).tolist(), choose_style(size * largest_magnitude(series.s), 0.0))
+    sides = any(side is not None for side in series.side)
     rows = tuple(
-        (positions[cut], *([run.side[cut] or ""] if sides else []), *(column[j] for column in cells))
+        (positions[cut], *([series.side[cut] or ""] if sides else []), *(column[j] for column in cells))
         for j, cut in enumerate(shown_cuts)
     )
     heads = [OutputColumn("s", unit=unit), *([OutputColumn("side", "text")] if sides else [])]
@@ -105,15 +110,13 @@ def _make_cuts_table(
     return OutputTable("", (*heads, *columns), rows, (*notes, *word_notes))
 
 
-def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: StatedErrors) -> OutputTable:
-    """Make the table of the lowest and highest value of each quantity over the whole length and time, with place and
-    instant.
-    """
-    extremes = select_extremes(run, extremes)
-    styles = _choose_styles(run, certain, extremes)
+def make_extremes_table(series: CutSeries, times: Array, extremes: Extremes, certain: StatedErrors) -> OutputTable:
+    """Make the table of the lowest and highest value of each quantity over length and time, with place and instant."""
+    extremes = select_extremes(series, extremes)
+    styles = _choose_styles(series, certain, extremes)
     span = float(np.ptp(times))
     rows: list[tuple[Cell, ...]] = []
-    channels = run.channels[: len(extremes.low)]
+    channels = series.channels[: len(extremes.low)]
     for i, channel in enumerate(channels):
         unit, size = certain.units.find(channel.unit)
         ends = [size * float(extremes.low[i]), size * float(extremes.high[i])]
@@ -126,58 +129,60 @@ def make_extremes_table(run: CutRun, times: Array, extremes: Extremes, certain: 
             continue
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
-            "" if _is_constant(size * channel.values[:, run.find_nearest_cut(place)], styles[channel.unit]) else t
+            "" if _is_constant(size * channel.values[:, series.find_nearest_cut(place)], styles[channel.unit]) else t
             for place, t in zip(extremes.places[i], clock, strict=True)
         )
-        where = [format_place(place, run) for place in extremes.places[i]]
+        where = [format_place(place, series) for place in extremes.places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     ends_columns = [
         column
         for word in ("min", "max")
-        for column in (OutputColumn(word), OutputColumn("at s", unit=run.length[0]), OutputColumn("t", "instant", "s"))
+        for column in (
+            OutputColumn(word),
+            OutputColumn("at s", unit=series.length[0]),
+            OutputColumn("t", "instant", "s"),
+        )
     ]
     columns = (OutputColumn("", "text"), OutputColumn("", "text"), *ends_columns)
     if len(times) == 1:
         columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
-        return OutputTable(run.heading, notes=("all values 0",))
+        return OutputTable(series.heading, notes=("all values 0",))
     is_open = any(format_cell(cell) == OPEN for row in rows for cell in row)
     notes = (EXTREMES_NOTE, *[OPEN_NOTE] * is_open)
-    return OutputTable(run.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(channels))))
+    return OutputTable(series.heading, columns, tuple(rows), (*notes, *[ZERO_NOTE] * (len(rows) < len(channels))))
 
 
 def make_instants_tables(
-    run: CutRun, times: Array, horizon: float | None, certain: StatedErrors, *, every_cut: bool = False
+    series: CutSeries, times: Array, horizon: float | None, certain: StatedErrors, *, every_cut: bool = False
 ) -> list[OutputTable]:
-    """Make the table with the diagram at each instant."""
-    styles = _choose_styles(run, certain)
-    shown_cuts = np.arange(len(run.s)) if every_cut else choose_cuts(run)
+    """Make the table with the diagram at each instant: the numbers of every shown cut.
+
+    horizon: the instant [s] from which on nothing is claimed
+    every_cut: show all cuts, not only about MAX_CUTS
+    """
+    styles = _choose_styles(series, certain)
+    shown_cuts = np.arange(len(series.s)) if every_cut else choose_cuts(series)
+    hidden_note = [_format_hidden_cuts(series, shown_cuts).lstrip("; ")]
     if len(times) == 1:
-        diagram = _make_diagram(
-            run, 0, shown_cuts, styles, [_format_hidden_cuts(run, shown_cuts).lstrip("; ")], certain
-        )
-        return [_drop_zero_columns(run, diagram._replace(heading=run.heading))]
+        diagram = _make_diagram(series, 0, shown_cuts, styles, hidden_note, certain)
+        return [_drop_zero_columns(series, diagram._replace(heading=series.heading))]
     clock = write_times(times.tolist(), float(np.ptp(times)))
     rows: list[Sequence[Cell] | str] = []
     table = OutputTable("")
     notes: tuple[str, ...] = ()
     for i, t in enumerate(times):
-        table = _make_diagram(
-            run,
-            i,
-            shown_cuts,
-            styles,
-            [_format_hidden_cuts(run, shown_cuts).lstrip("; ")],
-            certain,
-            is_beyond=horizon is not None and t >= horizon,
-        )
+        is_beyond = horizon is not None and t >= horizon
+        table = _make_diagram(series, i, shown_cuts, styles, hidden_note, certain, is_beyond=is_beyond)
         rows += [f"t = {clock[i]} s", *table.rows]
         notes = (*notes, *table.notes)
-    return [_drop_zero_columns(run, OutputTable(run.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))]
+    return [
+        _drop_zero_columns(series, OutputTable(series.heading, table.columns, tuple(rows), tuple(dict.fromkeys(notes))))
+    ]
 
 
 def _make_diagram(
-    run: CutRun,
+    series: CutSeries,
     instant: int,
     shown_cuts: Indices,
     styles: dict[str, Style],
@@ -188,61 +193,53 @@ def _make_diagram(
 ) -> OutputTable:
     """Make the diagram at an instant, by its index, a row for each cut; is_beyond: whether it is beyond the horizon."""
     cells, columns = list[Sequence[Cell]](), list[OutputColumn]()
-    for i, channel in enumerate(run.channels):
+    for i, channel in enumerate(series.channels):
         row, (unit, size) = channel.values[instant, shown_cuts], certain.units.find(channel.unit)
-        columns.append(OutputColumn(channel.label, unit=unit, vector="loads" if i < len(run.loads) else ""))
+        columns.append(OutputColumn(channel.label, unit=unit, vector="loads" if i < len(series.loads) else ""))
         numbers = make_number_cells((size * row).tolist(), styles[channel.unit], size * certain.find_error(channel))
-        cells.append(
-            [
-                format_unclaimed(value, channel.unit, certain, cell.text)
-                for value, cell in zip(row.tolist(), numbers, strict=True)
-            ]
-            if is_beyond
-            else numbers
-        )
-    return _make_cuts_table(run, shown_cuts, columns, cells, [note for note in notes if note])
+        if is_beyond:
+            values = zip(row.tolist(), numbers, strict=True)
+            cells.append([format_unclaimed(value, channel.unit, certain, cell.text) for value, cell in values])
+        else:
+            cells.append(numbers)
+    return _make_cuts_table(series, shown_cuts, columns, cells, [note for note in notes if note])
 
 
-def _drop_zero_columns(run: CutRun, table: OutputTable) -> OutputTable:
+def _drop_zero_columns(series: CutSeries, table: OutputTable) -> OutputTable:
     """Drop the quantities that are zero throughout, unless all of them are."""
     cells = [row for row in table.rows if not isinstance(row, str)]
-    lead = len(table.columns) - len(run.channels)
-    shown_columns = [
-        i for i in range(len(table.columns)) if i < lead or {format_cell(row[i]) for row in cells} != {"0"}
-    ]
-    if len(shown_columns) in (lead, len(table.columns)):
+    lead, n = len(table.columns) - len(series.channels), len(table.columns)
+    shown_columns = [i for i in range(n) if i < lead or {format_cell(row[i]) for row in cells} != {"0"}]
+    if len(shown_columns) in (lead, n):
         return table
-    rows = tuple(row if isinstance(row, str) else tuple(row[i] for i in shown_columns) for row in table.rows)
-    return OutputTable(table.heading, tuple(table.columns[i] for i in shown_columns), rows, (*table.notes, ZERO_NOTE))
+    return select_columns(table, shown_columns)._replace(notes=(*table.notes, ZERO_NOTE))
 
 
-def _choose_styles(run: CutRun, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:
-    """Choose the number style of each unit from all numbers of that unit that are shown of the run."""
+def _choose_styles(series: CutSeries, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:
+    """Choose the number style of each unit from all numbers of that unit that are shown of the series."""
     bounds = np.zeros((2, 0)) if extremes is None else np.stack([extremes.low, extremes.high])
     scales: dict[str, float] = {}
-    for i, channel in enumerate(run.channels):
+    for i, channel in enumerate(series.channels):
         largest = max(largest_magnitude(channel.values), largest_magnitude(bounds[:, i : i + 1]))
         scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest)
     return {unit: certain.choose_style("sections", unit, scale) for unit, scale in scales.items()}
 
 
 def _is_constant(values: Array, number_style: Style) -> bool:
-    """Return whether the values at one cut are equal at all instants to the digits shown; then an extreme has no
-    instant.
-    """
+    """Return whether the values (n_t,) at one cut are equal to the digits shown; then an extreme has no instant."""
     return number_style.write(float(np.min(values))) == number_style.write(float(np.max(values)))
 
 
-def format_place(place: CutPosition, run: CutRun) -> str:
+def format_place(place: CutPosition, series: CutSeries) -> str:
     """Format a place: its distance, and between the ends the side of the load that acts there."""
-    side = [place.side] if place.side and 0.0 < place.s < run.s[-1] else []
-    size = run.length[1]
-    return " ".join([*write_numbers([size * place.s], choose_style(size * largest_magnitude(run.s), 0.0)), *side])
+    side = [place.side] if place.side and 0.0 < place.s < series.s[-1] else []
+    size = series.length[1]
+    return " ".join([*write_numbers([size * place.s], choose_style(size * largest_magnitude(series.s), 0.0)), *side])
 
 
-def _format_hidden_cuts(run: CutRun, shown_cuts: Indices) -> str:
-    if len(shown_cuts) == len(run.s):
+def _format_hidden_cuts(series: CutSeries, shown_cuts: Indices) -> str:
+    """Format how many of the cuts are shown, after a semicolon; "" if all are."""
+    if len(shown_cuts) == len(series.s):
         return ""
-    return (
-        f"; {len(shown_cuts)} of {len(run.s)} cuts shown, including jumps and extremes; all cuts: --all or --format csv"
-    )
+    counts = f"{len(shown_cuts)} of {len(series.s)}"
+    return f"; {counts} cuts shown, including jumps and extremes; all cuts: --all or --format csv"

@@ -14,10 +14,9 @@ import numpy as np
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import Action
-from heuncli.output.snapshots.tables import SearchedPage
+from heuncli.output.tables.event_tables import make_impact_results
 from heuncli.output.tables.extremes_tables import DoubtfulInstants
-from heuncli.output.tables.impulse_tables import make_impact_results
-from heuncli.output.tables.page import Page
+from heuncli.output.tables.page import Page, SearchedPage
 from heuncli.output.tables.table_blocks import build_block
 from heuncli.output.tables.table_plans import IMPULSES as IMPULSE_PLANS
 from heuncli.results.path_words import IMPULSE_UNITS
@@ -26,7 +25,7 @@ from heuncli.results.results_schema import IMPULSES, SECTION_FORCES, SECTION_MOM
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
-from heuncli.study.quantities.cut_runs import collect_runs
+from heuncli.study.quantities.cut_runs import collect_cut_series
 from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import sort_distinct
 
@@ -134,8 +133,8 @@ def make_run_summary(
     """
     page = searched.page
     channels = {channel.path: channel for channel in searched_channels}
-    for run in collect_runs(page.results, page.labels):
-        channels |= {channel.path: channel for channel in run.stresses}
+    for series in collect_cut_series(page.results, page.labels):
+        channels |= {channel.path: channel for channel in series.stresses}
     values = GreatestValues(searched, channels, {path: k for k, path in enumerate(searched.extremes.paths)}
                      if searched.extremes is not None else {})  # fmt: skip
     rows = [row for kind in KINDS for name in _list_names(kind, page.results)
@@ -165,10 +164,10 @@ def _make_impulse_rows(page: Page) -> list[SummaryRow]:
             row.path: row for block in blocks if block is not None for group in block.groups for row in group.rows
         }
         extremes: Extremes | None = None
-        run_extremes = page.impact_extremes[number] if page.impact_extremes else {}
-        for run in collect_runs(view, page.labels, IMPULSE_UNITS):
-            numbers |= {channel.path: channel for channel in run.loads if run.name in run_extremes}
-        for each in run_extremes.values():
+        series_extremes = page.impact_extremes[number] if page.impact_extremes else {}
+        for series in collect_cut_series(view, page.labels, IMPULSE_UNITS):
+            numbers |= {channel.path: channel for channel in series.loads if series.name in series_extremes}
+        for each in series_extremes.values():
             extremes = each if extremes is None else extremes.join(each)
         places = {path: k for k, path in enumerate(extremes.paths)} if extremes is not None else {}
         values = GreatestValues(SearchedPage(own, extremes), numbers, places)

@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from heuncli.base.errors import Finding, Problem, SpecError, UsageError
-from heuncli.output.documents.as_json import dump_json
+from heuncli.output.documents.as_data import dump_json
 from heuncli.results.path_words import find_position_word, find_quantity, split_path
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values

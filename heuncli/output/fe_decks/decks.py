@@ -1,10 +1,17 @@
-"""What decks have in common: names and nodes that are safe for other programs, and the comments at the top."""
+"""The formats of load cases, a row each, and what decks share: safe names and nodes, numbers, the comments at the top.
+
+A new format is a module of this folder and a row here. For a format, say ansys, its module has
+`write_ansys(cases, names)`, which yields the text in pieces; and `list_ansys_notes(cases, names)` if there is
+something that the user has to know.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from importlib import import_module
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +24,22 @@ from heuncli.results.results import Array
 
 SET_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}\Z")
 MAX_TEXT_LENGTH, MAX_NAME_LENGTH = 200, 60  # characters of a text in a comment, and of a step name
+MAX_NUMBER_LENGTH = 20  # characters of a number that Abaqus and CalculiX read: beyond that, the exponent would be lost
+WIDTH = 72  # characters of a comment line with its mark; Nastran's cards have 80 columns
+INDENT = " " * 10
+SUPPORT_NOTE = (
+    "Support the mesh statically determinately: six constraints (three, two and one at three points). The reactions "
+    "there must be negligible against the loads: this checks mass, units and signs together."
+)
+OUT_OF_PLANE_NOTE = (
+    "Planar model with points or masses outside the plane z = 0: loads along z or about x and y are not given; the "
+    "mesh supports must carry them."
+)
+DISTRIBUTED_NOTE = (
+    "A distributed load is given as forces at the ends of ten segments of its line, statically equivalent in each: "
+    "section loads are exact at these points. The load per length there is in the comments of its case; it can be "
+    "applied to the mesh instead."
+)
 
 
 class DeckNames(NamedTuple):
@@ -32,20 +55,56 @@ class DeckNames(NamedTuple):
     mesh: SolidMesh | None = None
 
 
+class Deck(NamedTuple):
+    """A format of load cases.
+
+    name: as `--format` takes it
+    module: of this folder, which writes it
+    is_static: whether it takes forces only; another one takes impulses, too
+    """
+
+    name: str
+    module: str
+    is_static: bool = True
+
+    def iter_text(self, cases: LoadCases, names: DeckNames) -> Iterable[str]:
+        """Yield the text, in pieces."""
+        pieces: Iterable[str] = getattr(self._import_module(), f"write_{self.name}")(cases, names)
+        return pieces
+
+    def list_notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
+        """Return sentences on steps that the user must do by hand after import."""
+        function: Callable[[LoadCases, DeckNames], list[str]] | None
+        function = getattr(self._import_module(), f"list_{self.name}_notes", None)
+        return function(cases, names) if function is not None else []
+
+    def _import_module(self) -> Any:
+        return import_module(f"heuncli.output.fe_decks.{self.module}")
+
+
+ROWS = (
+    Deck("csv", "plain_data", is_static=False),
+    Deck("json", "plain_data", is_static=False),
+    Deck("ansys", "ansys"),
+    Deck("nastran", "nastran"),
+    Deck("calculix", "abaqus"),
+    Deck("abaqus", "abaqus"),
+)
+DECKS = {row.name: row for row in ROWS}
+
+
 def explain_invalid_set(name: str) -> str:
     """Return why a word cannot name a set in all programs; empty if it can."""
     return "" if SET_NAME.match(name) else "expected a letter, then letters, digits and _, at most 32"
 
 
-def plain_text(text: str) -> str:
-    """Make foreign text safe for a comment: one line of ASCII without $ and !, which begin and end commands in some
-    programs.
-    """
+def make_plain_text(text: str) -> str:
+    """Make foreign text safe for a comment: one line of ASCII without $ and !, which some programs read as commands."""
     safe_text = escape(text).encode("ascii", "backslashreplace").decode().replace("$", "\\x24").replace("!", "\\x21")
     return safe_text if len(safe_text) <= MAX_TEXT_LENGTH else safe_text[:MAX_TEXT_LENGTH] + " ..."
 
 
-def step_name(number: int, case: LoadCase) -> str:
+def make_step_name(number: int, case: LoadCase) -> str:
     """Make the name of a case's step: letters, digits and _, with its number first, so that names are unique."""
     return f"C{number}_{re.sub('[^A-Za-z0-9]+', '_', case.name).strip('_')}"[:MAX_NAME_LENGTH]
 
@@ -68,7 +127,7 @@ class NodeLoad(NamedTuple):
 
 
 class DeckNodes:
-    """The points that carry loads in some case, numbered in order of appearance."""
+    """The points that carry loads in some case, numbered in order of appearance, each point (3,) once."""
 
     def __init__(self, cases: LoadCases, names: DeckNames) -> None:
         self._by_place: dict[tuple[float, ...], DeckNode] = {}
@@ -96,67 +155,45 @@ class DeckNodes:
         ]  # fmt: skip
 
 
-WIDTH = 72  # characters of a comment line with its mark; Nastran's cards have 80 columns
-INDENT = " " * 10
-SUPPORT_NOTE = (
-    "Support the mesh statically determinately: six constraints (three, two and one at three points). The reactions "
-    "there must be negligible against the loads: this checks mass, units and signs together."
-)
-OUT_OF_PLANE_NOTE = (
-    "Planar model with points or masses outside the plane z = 0: loads along z or about x and y are not given; the "
-    "mesh supports must carry them."
-)
-
-
-def readme(cases: LoadCases, nodes: DeckNodes, mark: str, tie: str, cards: Sequence[str]) -> Iterator[str]:
-    """Yield the comment lines.
+def iter_header(cases: LoadCases, nodes: DeckNodes, mark: str, tie: str, cards: Sequence[str]) -> Iterator[str]:
+    """Yield the comment lines at the top of a deck.
 
     mark: what begins a comment
     tie: how to tie the points to a mesh
     cards: notes on the cards and their signs
     """
     force, length, _, time = cases.units
-    body, name = cases.body, plain_text(cases.body.name)
-    title = f": {plain_text(cases.title)}" if cases.title else ""
-    parts: list[tuple[str, Iterable[str]]] = [
+    body, name = cases.body, make_plain_text(cases.body.name)
+    title = f": {make_plain_text(cases.title)}" if cases.title else ""
+    spec = make_plain_text(cases.spec) or "a spec"
+    is_unbalanced = any(body.compute_sums(case).relative > BALANCE_TOLERANCE for case in cases.cases)
+    paragraphs: list[tuple[str, Iterable[str]]] = [
         ("", [f"Load cases of the body {name}{title}"]),
-        ("", [f"generated by heun {cases.version} from {plain_text(cases.spec) or 'a spec'}, SHA-256 {cases.digest}"]),
         (
-            "Units",
-            [f"{', '.join(cases.units)}, rad; moments {force} {length}, accelerations {length}/{time}2"],
+            "",
+            [f"generated by heun {cases.version} from {spec}, SHA-256 {cases.digest}"],
         ),
+        ("Units", [f"{', '.join(cases.units)}, rad; moments {force} {length}, accelerations {length}/{time}2"]),
         ("Axes", ["body axes; the mesh must use them, with the body's origin at 0, 0, 0"]),
-        ("Mesh", _mesh_lines(cases)),
-        ("Cases", [line for k, case in enumerate(cases.cases, start=1) for line in _case_lines(cases, case, k)]),
-        ("Points", [f"{node.number} {plain_text(node.label)}" for node in nodes.nodes]),
-        ("Accuracy", [_accuracy_note(cases)]),
-        ("Split", [f"distribution of indeterminate reactions: {plain_text(cases.split)}"] if cases.split else []),
-        (
-            "Plane",
-            [OUT_OF_PLANE_NOTE]
-            if any(body.compute_sums(case).relative > BALANCE_TOLERANCE for case in cases.cases)
-            else [],
-        ),
+        ("Mesh", _describe_mesh(cases)),
+        ("Cases", [line for k, case in enumerate(cases.cases, start=1) for line in _describe_case(cases, case, k)]),
+        ("Points", [f"{node.number} {make_plain_text(node.label)}" for node in nodes.nodes]),
+        ("Accuracy", [_describe_accuracy(cases)]),
+        ("Split", [f"distribution of indeterminate reactions: {make_plain_text(cases.split)}"] if cases.split else []),
+        ("Plane", [OUT_OF_PLANE_NOTE] if is_unbalanced else []),
         ("Spread", [DISTRIBUTED_NOTE] if _has_distributed_loads(cases) else []),
         ("Tie", [tie]),
         ("Supports", [SUPPORT_NOTE]),
         ("Inertia", cards),
     ]
-    for head, lines in parts:
+    for keyword, lines in paragraphs:
         for i, line in enumerate(lines):
-            yield from format_comment(line, mark, head if i == 0 else "", hanging=bool(head))
+            yield from format_comment(line, mark, keyword if i == 0 else "", is_indented=bool(keyword))
 
 
-DISTRIBUTED_NOTE = (
-    "A distributed load is given as forces at the ends of ten segments of its line, statically equivalent in each: "
-    "section loads are exact at these points. The load per length there is in the comments of its case; it can be "
-    "applied to the mesh instead."
-)
-
-
-def format_comment(text: str, mark: str, keyword: str = "", *, hanging: bool = True) -> list[str]:
-    """Format a text as comment lines of bounded width; keyword: the word at its left."""
-    indent = INDENT if hanging else ""
+def format_comment(text: str, mark: str, keyword: str = "", *, is_indented: bool = True) -> list[str]:
+    """Format a text as comment lines of bounded width; keyword: the word at the left of its first line."""
+    indent = INDENT if is_indented else ""
     lines = wrap(text, WIDTH - len(mark) - len(indent), break_long_words=True, break_on_hyphens=False) or [""]
     return [
         f"{mark} {(keyword.ljust(len(indent)) if i == 0 and keyword else indent)}{line}\n"
@@ -164,8 +201,8 @@ def format_comment(text: str, mark: str, keyword: str = "", *, hanging: bool = T
     ]
 
 
-def _mesh_lines(cases: LoadCases) -> list[str]:
-    """Describe the mass properties that the mesh must have, for the body's inertia comes from the mesh."""
+def _describe_mesh(cases: LoadCases) -> list[str]:
+    """Describe the mass properties that the mesh must have: in the other program, inertia loads come from the mesh."""
     _, length, mass, _ = cases.units
     body, I = cases.body, cases.body.inertia
     first = [
@@ -181,9 +218,10 @@ def _mesh_lines(cases: LoadCases) -> list[str]:
     ]
 
 
-def _case_lines(cases: LoadCases, case: LoadCase, number: int) -> Iterator[str]:
+def _describe_case(cases: LoadCases, case: LoadCase, number: int) -> Iterator[str]:
+    """Yield the lines on a case: its name and instant, what an impulse became, and how well the loads balance."""
     sums = cases.body.balance(case)
-    yield f"{number}  {plain_text(case.name)}, t = {case.time:.9g} s"
+    yield f"{number}  {make_plain_text(case.name)}, t = {case.time:.9g} s"
     if case.averaging_time is not None:
         yield (
             f"an impulse as its mean force over {case.averaging_time:.6g} s; the peak of a half sine is pi/2 times "
@@ -200,7 +238,7 @@ def _format_imbalance(imbalance: Array, largest: float) -> str:
     return f"{float(np.abs(imbalance).max()) / largest:.1e}" if imbalance.any() else "0"
 
 
-def _accuracy_note(cases: LoadCases) -> str:
+def _describe_accuracy(cases: LoadCases) -> str:
     if not cases.estimate:
         return "each load to rounding error; every case is self-balanced"
     return (
@@ -213,37 +251,36 @@ def _has_distributed_loads(cases: LoadCases) -> bool:
     return any(action.per_length is not None for case in cases.cases for action in case.actions)
 
 
-def part_lines(load: NodeLoad, units: Sequence[str], mark: str) -> Iterator[str]:
+def iter_part_lines(load: NodeLoad, units: Sequence[str], mark: str) -> Iterator[str]:
     """Yield comments on the actions of which a point's load is the sum."""
     for part in load.parts:
-        cause = "external" if part.source == "outside" else f"by {plain_text(part.source)}"
+        cause = "external" if part.source == "outside" else f"by {make_plain_text(part.source)}"
         per_length_text = (
             "" if part.per_length is None else f", {format_vector(part.per_length)} {units[0]}/{units[1]} there"
         )
         yield from format_comment(
-            f"{load.node.number}: {part.kind} {plain_text(part.name)}, {cause}{per_length_text}", mark, hanging=False
+            f"{load.node.number}: {part.kind} {make_plain_text(part.name)}, {cause}{per_length_text}",
+            mark,
+            is_indented=False,
         )
 
 
-def case_heading(case: LoadCase, k: int, mark: str) -> list[str]:
-    """Return the comment before the cards of a case."""
-    return format_comment(f"-- case {k}: {plain_text(case.name)}, t = {case.time:.9g} s", mark, hanging=False)
+def format_case_heading(case: LoadCase, k: int, mark: str) -> list[str]:
+    """Format the comment before the cards of a case; k: its number, from 1."""
+    return format_comment(f"-- case {k}: {make_plain_text(case.name)}, t = {case.time:.9g} s", mark, is_indented=False)
 
 
 def format_number(value: float) -> str:
-    """Format a number for reading, and for comparison with that of a mesh."""
+    """Format a number of a comment with nine digits, for comparison with that of a mesh."""
     return f"{value + 0.0:.9g}"
 
 
 def format_vector(values: Array) -> str:
-    """Format a vector for reading."""
+    """Format a vector of a comment as (x, y, z)."""
     return f"({', '.join(map(format_number, values.tolist()))})"
 
 
-MAX_NUMBER_LENGTH = 20  # characters of a number that Abaqus and CalculiX read: beyond that, the exponent would be lost
-
-
-def exact(value: float) -> str:
+def format_exact(value: float) -> str:
     """Format a number with a decimal point and all its digits if they fit, otherwise with thirteen."""
     text = repr(float(value) + 0.0)
     mantissa, e, exponent = text.partition("e")

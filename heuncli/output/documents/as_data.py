@@ -1,11 +1,14 @@
-"""Write JSON: plain data and arrays, laid out with a line for each key; a document's own data, or its tables.
+"""Write plain data: a document's own data or its tables, as JSON or as CSV.
 
-Arrays are written piece by piece, so that memory holds only part of the numbers at a time, and never a whole array that
-is stored in a file (stored_arrays.py).
+JSON has a line for each key. Arrays are written piece by piece, so that memory holds only part of the numbers at a
+time, and never a whole array that is stored in a file (stored_arrays.py). CSV has all digits: a line of names, and a
+line for each row, as it comes.
 """
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -13,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.text_safety import escape
-from heuncli.output.documents.document import Cell, NumberCell, OutputDocument, OutputTable, TextCell
+from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputDocument, OutputTable, TextCell
 from heuncli.results.stored_arrays import AnyArray, StoredArray, iter_chunks
 from heuncli.version import VERSION
 
@@ -118,3 +121,30 @@ def _to_lists(values: Any) -> Any:
         if finite.all()
         else np.where(finite, (values + 0.0).astype(object), np.array(None)).tolist()
     )
+
+
+def make_columns(names: str) -> tuple[OutputColumn, ...]:
+    """Make the columns of a CSV from their names, separated by blanks."""
+    return tuple(OutputColumn(name) for name in names.split())
+
+
+def render_csv(document: OutputDocument) -> str:
+    """Render the records of the document as CSV; of a document without records, its first table."""
+    if document.make_records is not None:
+        return "".join(iter_csv(document.make_records()))
+    return "".join(iter_csv(next(part for part in document.parts if isinstance(part, OutputTable))))
+
+
+def iter_csv(table: OutputTable) -> Iterator[str]:
+    """Yield the lines one after the other; titles are left out, an empty cell is unknown."""
+    yield format_line([column.name for column in table.columns])
+    for row in table.rows:
+        if not isinstance(row, str):
+            yield format_line(map(to_value, row))
+
+
+def format_line(cells: Iterable[Cell]) -> str:
+    """Format a line of values."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(escape(cell) if isinstance(cell, str) else cell for cell in cells)
+    return text.getvalue()
