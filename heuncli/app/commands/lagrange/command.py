@@ -18,7 +18,7 @@ from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, 
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units
-from heuncli.app.commands.lagrange import course_page, forms, page
+from heuncli.app.commands.lagrange import forms, page
 from heuncli.app.commands.lagrange.forms import KEYS
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.joint_kinds import JOINTS, is_length
@@ -121,7 +121,7 @@ def write_result(spec: Spec, request: LagrangeRequest, question: LagrangeOptions
     """Compute the requested result, and write it in a format; tables in the given units."""
     if request.over is not None:
         course = find_inertia_curve(spec, parse_range(request.over, spec))
-        emit_document(course_page.make_document(course, units), form, request.output)
+        emit_document(page.make_course_document(course, units), form, request.output)
         return
     results = solve_lagrange(spec, question)
     if form == "m" and results.state_space is not None:
