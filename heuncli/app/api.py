@@ -32,9 +32,8 @@ from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve as solve_study
 
 if TYPE_CHECKING:
-    from heuncli.app.python.arguments import ArgumentKind
+    from heuncli.app.python.arguments import ArgumentKind, SpecSource
     from heuncli.app.python.solved_scene import Solved
-    from heuncli.app.python.spec_arguments import SpecSource
 
 
 def read(
@@ -98,8 +97,7 @@ def solve(
     LimitError if a limit is reached. All are HeunError, whose `problems` have code, message, hint and location. Warns
     HeunWarning.
     """
-    from heuncli.app.python.arguments import TEXT, check_arguments
-    from heuncli.app.python.spec_arguments import make_settings, resolve_source
+    from heuncli.app.python.arguments import TEXT, check_arguments, make_settings, resolve_source
 
     check_arguments(
         ("case", case, TEXT), *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes),
@@ -143,8 +141,7 @@ def solve_cases(
 
     Raises UsageError if the spec has no load cases.
     """
-    from heuncli.app.python.arguments import check_arguments
-    from heuncli.app.python.spec_arguments import make_settings, resolve_source
+    from heuncli.app.python.arguments import check_arguments, make_settings, resolve_source
 
     check_arguments(
         *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes), *_list_captions(title, labels)
@@ -171,8 +168,7 @@ def validate(spec: SpecSource | None = None, *, text: str | None = None) -> tupl
 
     Raises SpecError with every problem of the spec, in the order of the lines.
     """
-    from heuncli.app.python.arguments import TEXT, check_arguments
-    from heuncli.app.python.spec_arguments import resolve_source
+    from heuncli.app.python.arguments import TEXT, check_arguments, resolve_source
 
     check_arguments(("text", text, TEXT))
     name, source = resolve_source(spec, text)

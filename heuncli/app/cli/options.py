@@ -1,7 +1,7 @@
 """The vocabulary of requests: the class of an option, and the options that many commands share.
 
 A request is a named tuple, one per command. Each field is an option or argument; its annotation holds the words and the
-help text. app/cli/command_line.py fills it from the words of a line. Named tuples, not dataclasses, because those take
+help text. app/cli/entry.py fills it from the words of a line. Named tuples, not dataclasses, because those take
 0.6 ms each to define, and every command pays.
 """
 

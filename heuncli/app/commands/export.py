@@ -11,7 +11,6 @@ from heuncli.analyses.load_cases.model import LoadCases
 from heuncli.analyses.load_cases.unit_systems import convert_load_cases
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import (
     CASE,
     LABEL,
@@ -28,9 +27,8 @@ from heuncli.app.cli.options import (
     Option,
 )
 from heuncli.app.cli.output import emit, print_stderr
-from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_choice
-from heuncli.app.cli.spec_options import apply_captions
-from heuncli.app.cli.target import require_writable
+from heuncli.app.cli.solving import apply_captions, make_solver_options, parse_overrides, print_warnings, require_choice
+from heuncli.app.cli.target import require_other_file, require_writable
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple

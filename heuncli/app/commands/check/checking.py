@@ -11,8 +11,8 @@ from pathlib import Path
 
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError, format_problems, run_contained
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.solving import format_warnings
+from heuncli.app.cli.target import require_other_file
 from heuncli.app.commands.check import spec_files
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.app.commands.check.results import CheckResult

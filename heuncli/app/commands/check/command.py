@@ -10,10 +10,9 @@ from pathlib import Path
 from heuncli.app.cli import jobs
 from heuncli.app.cli.documents import UNLIMITED, emit_document
 from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, select_exit_code
-from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
-from heuncli.app.cli.target import choose_format, require_writable
+from heuncli.app.cli.target import choose_format, is_same_file, require_other_file, require_writable
 from heuncli.app.commands.check import spec_files
 from heuncli.app.commands.check.checking import CheckTask, check_spec
 from heuncli.app.commands.check.request import FORMATS, CheckRequest

@@ -13,11 +13,10 @@ from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
-from heuncli.app.cli.target import choose_format, note_si_format, parse_units
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_other_file
 from heuncli.app.commands.lagrange import forms, page
 from heuncli.app.commands.lagrange.forms import KEYS
 from heuncli.base.errors import Finding, Problem

@@ -6,8 +6,13 @@ from collections.abc import Iterator, Mapping
 
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings
-from heuncli.app.cli.spec_options import apply_captions, apply_captions_to_cases
+from heuncli.app.cli.solving import (
+    apply_captions,
+    apply_captions_to_cases,
+    make_solver_options,
+    parse_overrides,
+    print_warnings,
+)
 from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.report.request import ReportRequest
 from heuncli.base.errors import Finding, HeunError, Problem

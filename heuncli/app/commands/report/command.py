@@ -10,10 +10,9 @@ from pathlib import Path
 
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_choice
-from heuncli.app.cli.target import require_writable
+from heuncli.app.cli.target import require_other_file, require_writable
 from heuncli.app.commands.report.cases import solve_report_cases
 from heuncli.app.commands.report.request import FORMATS, PAPERS, ReportRequest
 from heuncli.base import files

@@ -15,11 +15,10 @@ from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import collect_results, parse_overrides, require_tolerance
-from heuncli.app.cli.target import choose_format, note_si_format, parse_units
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_other_file
 from heuncli.app.cli.variant_workers import choose_job_count, print_variant_warnings, require_job_count, solve_contained
 from heuncli.app.commands.sensitivity.page import MeasureFindings, SensitivityPage, make_document
 from heuncli.base.errors import Problem, SolveError

@@ -19,7 +19,7 @@ from heuncli.analyses.sweep_rows import (
 )
 from heuncli.analyses.variants.measures import NO_VALUE
 from heuncli.analyses.variants.sample_statistics import CONFIDENCE, SobolIndices
-from heuncli.app.commands.sweep.output.statistics import ColumnBuffer, MeasureStatistics, iter_statistics
+from heuncli.app.commands.sweep.statistics import ColumnBuffer, MeasureStatistics, iter_statistics
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.as_json import FORMAT
 
