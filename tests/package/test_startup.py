@@ -117,7 +117,6 @@ def test_a_sweep_does_without_what_clusters_need() -> None:
         "dask",
         "tornado",
         "heuncli.app.commands.sweep.cluster.scheduler",
-        "heuncli.analyses.variants.files",
     }
     assert not found & (clusters | {"scipy", "rich", "pydantic"})
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
-from heuncli.analyses.load_cases import unit_systems
+from heuncli.analyses.load_cases import model
 from heuncli.analyses.load_cases.assembly import assemble_load_cases, select_results
-from heuncli.analyses.load_cases.model import LoadCases
-from heuncli.analyses.load_cases.unit_systems import convert_load_cases
+from heuncli.analyses.load_cases.model import LoadCases, convert_load_cases
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import (
@@ -185,11 +184,11 @@ def choose_form(request: ExportRequest) -> str:
     raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension", hint=hint))
 
 
-def _parse_units(words: str | None) -> unit_systems.UnitSystem:
+def _parse_units(words: str | None) -> model.UnitSystem:
     if words is None:
-        return unit_systems.SI
+        return model.SI
     try:
-        return unit_systems.parse_units(words)
+        return model.parse_units(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
 

@@ -6,11 +6,12 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
 from heuncli.analyses.sweep_rows import (
+    JumpFinder,
     ParameterColumn,
     SweepColumns,
     SweepHead,
+    SweptJump,
     SweptRow,
     explain_missing,
     make_columns,

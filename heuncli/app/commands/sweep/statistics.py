@@ -12,8 +12,7 @@ from itertools import islice
 
 import numpy as np
 
-from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
-from heuncli.analyses.sweep_rows import SweepHead, SweptRow
+from heuncli.analyses.sweep_rows import JumpFinder, SweepHead, SweptJump, SweptRow
 from heuncli.analyses.variants.plans import Plan
 from heuncli.analyses.variants.sample_statistics import (
     SampleStatistics,
