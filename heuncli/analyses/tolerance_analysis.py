@@ -101,9 +101,19 @@ def find_tolerance_extremes(
         return SpreadExtremes(Contribution(*labels, None, 0.0, linear, below, above, True, why=why), -t, t)
     low, high, missing, runs = search_extremes(evaluate, base, name, t)
     error = max(low.error, high.error) + base.error + missing
-    size = max(-(low.gap or 0.0), high.gap or 0.0)
+    size = max(-low.gap_or_zero, high.gap_or_zero)
     contribution = Contribution(
-        *labels, size, error, linear, below, above, True, (low.x, low.gap or 0.0), (high.x, high.gap or 0.0), runs, why
+        *labels,
+        size,
+        error,
+        linear,
+        below,
+        above,
+        True,
+        (low.x, low.gap_or_zero),
+        (high.x, high.gap_or_zero),
+        runs,
+        why,
     )
     return SpreadExtremes(contribution, low.x, high.x)
 
