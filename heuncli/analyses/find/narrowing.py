@@ -1,7 +1,8 @@
 """Narrow two samples down: to a crossing or a jump of the measure, or to an edge of the solvable range.
 
 At an edge, between the last variant that fails and the first that is solved, the middle is evaluated, or the place
-where extrapolation predicts the end. Where a loop stops closing, the place x is quadratic in the measure, or in its inverse:
+where extrapolation predicts the end. Where a loop stops closing, the place x is quadratic in the measure, or in its
+inverse:
     x = a + b u + c u^2      u: the measure, or 1/measure; the edge is where x is extreme
 """
 
