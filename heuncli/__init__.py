@@ -8,6 +8,7 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # that of `typing` takes 2 ms
 if TYPE_CHECKING:
+    from heuncli.app.api import report as report
     from heuncli.app.api import solve as solve
     from heuncli.app.api import solve_cases as solve_cases
     from heuncli.app.api import validate as validate
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from heuncli.version import VERSION as __version__
 
 HOME = {  # each name, and the module that it is in
-    "solve": "app.api", "solve_cases": "app.api", "validate": "app.api",
+    "solve": "app.api", "solve_cases": "app.api", "validate": "app.api", "report": "app.api",
     "Solved": "app.python.solved_scene", "Signal": "app.python.signals", "Number": "app.python.locked_run",
     "Diagram": "app.python.result_export",
     "HeunError": "base.errors", "SpecError": "base.errors", "SolveError": "base.errors", "LimitError": "base.errors",

@@ -59,6 +59,8 @@ FORMATS = ("table", "json", "csv")  # of most commands
 FORMAT = Option(
     ("--format",), "Output format. Default: from the extension of -o FILE, else table.", "|".join(FORMATS)
 )  # fmt: skip
+REPORT_FORMATS = ("html", "pdf", "md")  # of client reports
+PAPERS = ("a4", "letter")
 SPEC = Option((), "YAML file of the spec; - reads standard input.", "SPEC", completes="spec")
 
 
