@@ -13,7 +13,7 @@ from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
+from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option, make_format_option
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_other_file
@@ -78,7 +78,7 @@ class LagrangeRequest(NamedTuple):
     ] = None
     format: Annotated[
         str | None,
-        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json|csv|m"),
+        make_format_option(("table", "json", "csv", "m")),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
