@@ -137,7 +137,7 @@ def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -
         for x in (0.0, -INNER_FRACTION * t, INNER_FRACTION * t):
             course.sample_at(x)
         missing = max(
-            max(refine_extreme(course, way, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0) for way in (-1, 1)
+            max(refine_extreme(course, sign, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0) for sign in (-1, 1)
         )
     except SampleLimitError:
         pass

@@ -85,9 +85,7 @@ def iter_meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | MeasureJ
         after = found[k + 1].side if k + 1 < len(found) else None
         if group.side == 0:
             meeting = classify_group(course, group, before, after)
-            if (
-                isinstance(meeting, Touch) and meeting.side
-            ):  # it lies between the next samples that differ from the value
+            if isinstance(meeting, Touch) and meeting.side:  # between the next samples that differ from the value
                 meeting = meeting._replace(low=found[k - 1][-1].x, high=found[k + 1][0].x)
             yield meeting
         elif group.side and before and before == -group.side:

@@ -53,31 +53,38 @@ def find_meetings(
     try:
         course.scan()
         sample_count, enclosed_count = 0, -1
-        refined_at: dict[int, Sample | None] = {}  # the extremes after their refinement
+        refined: dict[int, Sample | None] = {}  # the extremes after their refinement
         while len(course.samples) > sample_count:  # new samples are examined like those of the scan
             sample_count = len(course.samples)
             course.withhold_isolated()
             search(course)
             check_scan(course)
-            if (
-                meeting_count := sum(1 for _ in iter_meetings(course))
-            ) != enclosed_count:  # more meetings than enclosed before
+            meeting_count = sum(1 for _ in iter_meetings(course))
+            if meeting_count != enclosed_count:  # more meetings than enclosed before
                 enclose_crossings(course)
                 enclosed_count = meeting_count
             find_touches(course)
             enclose_touches(course)
             if not any(iter_meetings(course)) and find_extreme(course, 1) is not None:
                 is_refined = True
-                for sign in (-1, 1):
-                    if sign not in refined_at or find_extreme(course, sign) != refined_at[sign]:  # new or changed
-                        refine_extreme(course, sign)
-                        refined_at[sign] = find_extreme(course, sign)
+                refine_new_extremes(course, refined)
             if len(course.samples) == sample_count:
                 close_edges(course)
     except SampleLimitError:
         is_complete = False
     course.withhold_isolated()
     return collect_findings(course, relation, is_refined=is_refined, is_complete=is_complete)
+
+
+def refine_new_extremes(course: MeasureCourse, refined: dict[int, Sample | None]) -> None:
+    """Refine the least (-1) and the greatest (1) value, if it is not the one that was refined before, and record it.
+
+    Raises SampleLimitError.
+    """
+    for sign in (-1, 1):
+        if sign not in refined or find_extreme(course, sign) != refined[sign]:
+            refine_extreme(course, sign)
+            refined[sign] = find_extreme(course, sign)
 
 
 def collect_findings(

@@ -192,8 +192,8 @@ def make_force_table(results: LagrangeResults, units: Units) -> OutputTable:
     display_units = [units.find(get_units(name).force) for name in results.names]
 
     def row(cause: str, k: Array) -> tuple[Cell, ...]:
-        told = zip(k, results.scale, display_units, strict=True)
-        return cause, *(make_cell(x * by, size * by) for x, size, (_, by) in told)
+        cells = zip(k, results.scale, display_units, strict=True)
+        return cause, *(make_cell(x * factor, size * factor) for x, size, (_, factor) in cells)
 
     rows = [row(distinguish(cause, OWN_ROWS), k) for cause, k in results.forces.items()]
     rows += [row(name, k) for name, k in zip(OWN_ROWS, (results.total_force, results.coriolis), strict=True)]

@@ -180,10 +180,16 @@ def watch(request: RunRequest, run: Callable[[RunRequest], int]) -> NoReturn:
             report_problems(error.problems)
         if not request.quiet:
             print_stderr(f"heun: watching {escape(request.spec)}; Ctrl-C stops it")
-        while (new_state := read_state(request.spec)) == old_state or new_state[
-            0
-        ] is None:  # briefly missing while an editor replaces it
-            time.sleep(CHECK_INTERVAL)
+        _wait_for_change(request.spec, old_state)
+
+
+def _wait_for_change(spec: str, old_state: State) -> None:
+    """Return once the files are saved; the spec is missing for a moment while an editor replaces it."""
+    while True:
+        state = read_state(spec)
+        if state != old_state and state[0] is not None:
+            return
+        time.sleep(CHECK_INTERVAL)
 
 
 def _clear_screen() -> None:

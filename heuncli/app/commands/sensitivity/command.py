@@ -102,10 +102,10 @@ def main(request: SensitivityRequest) -> int:
         cached = CachedEvaluator(
             evaluator.answer, lambda runs: report(min(runs, variant_count), variant_count, "variants")
         )
-        begun = time.perf_counter()
+        start = time.perf_counter()
         if cached.evaluate({}).code:
             evaluator.solve({})  # raises the error with its location
-        job_count = choose_job_count(request.jobs, len(numbers), time.perf_counter() - begun)
+        job_count = choose_job_count(request.jobs, len(numbers), time.perf_counter() - start)
         solve_ahead(cached, evaluator, heads, numbers, job_count)
         all_findings = [analyse_measure(cached, k, head, numbers, spreads) for k, head in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(all_findings), cached.runs, units_shown)

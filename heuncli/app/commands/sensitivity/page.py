@@ -84,8 +84,8 @@ def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[SpecN
     """Sort the numbers by their influence on the measure, the largest first, unknown ones last."""
 
     def weight(number: SpecNumber) -> tuple[bool, float]:
-        told = compute_elasticity(number, findings)
-        return told is None, -abs(told[0]) if told else 0.0
+        elasticity = compute_elasticity(number, findings)
+        return elasticity is None, -abs(elasticity[0]) if elasticity else 0.0
 
     return sorted(page.numbers, key=weight)
 
