@@ -44,7 +44,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, OutputError, Problem
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
+from heuncli.base.process import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.base.records import replace
 from heuncli.output.figures.courses import choose_instants, require_claimed
 from heuncli.output.machine_geometry.gltf import encode_gltf

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
+from heuncli.base.process import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.output.drawing.shapes import VectorDrawing, to_svg
 
 FORMS = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
