@@ -8,13 +8,14 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # that of `typing` takes 2 ms
 if TYPE_CHECKING:
+    from heuncli.app.api import report as report
     from heuncli.app.api import solve as solve
     from heuncli.app.api import solve_cases as solve_cases
     from heuncli.app.api import validate as validate
-    from heuncli.app.python.diagrams import Diagram as Diagram
+    from heuncli.app.python.locked_run import HeunWarning as HeunWarning
+    from heuncli.app.python.locked_run import Number as Number
     from heuncli.app.python.locked_run import UnknownPath as UnknownPath
-    from heuncli.app.python.number import Number as Number
-    from heuncli.app.python.python_warnings import HeunWarning as HeunWarning
+    from heuncli.app.python.result_export import Diagram as Diagram
     from heuncli.app.python.signals import Signal as Signal
     from heuncli.app.python.solved_scene import Solved as Solved
     from heuncli.base.errors import HeunError as HeunError
@@ -28,12 +29,12 @@ if TYPE_CHECKING:
     from heuncli.version import VERSION as __version__
 
 HOME = {  # each name, and the module that it is in
-    "solve": "app.api", "solve_cases": "app.api", "validate": "app.api",
-    "Solved": "app.python.solved_scene", "Signal": "app.python.signals", "Number": "app.python.number",
-    "Diagram": "app.python.diagrams",
+    "solve": "app.api", "solve_cases": "app.api", "validate": "app.api", "report": "app.api",
+    "Solved": "app.python.solved_scene", "Signal": "app.python.signals", "Number": "app.python.locked_run",
+    "Diagram": "app.python.result_export",
     "HeunError": "base.errors", "SpecError": "base.errors", "SolveError": "base.errors", "LimitError": "base.errors",
     "OutputError": "base.errors", "UsageError": "base.errors", "UnknownPath": "app.python.locked_run",
-    "Problem": "base.errors", "SourceLocation": "base.errors", "HeunWarning": "app.python.python_warnings",
+    "Problem": "base.errors", "SourceLocation": "base.errors", "HeunWarning": "app.python.locked_run",
 }  # fmt: skip
 __all__ = [*HOME, "__version__"]
 

@@ -17,7 +17,7 @@ import os
 import sys
 import warnings
 
-from heuncli.app.cli import fast_path
+from heuncli.app.cli import terminal
 from heuncli.base import signals
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -32,7 +32,7 @@ def main() -> None:
     if not sys.warnoptions and os.environ.get("HEUN_DEBUG") != "1":
         warnings.simplefilter("ignore")  # only a safety net: in tests every warning is an error
     code = 0
-    if not fast_path.try_answer(sys.argv[1:]):
+    if not terminal.try_answer(sys.argv[1:]):
         from heuncli.app.cli.entry import enter  # after the environment is set
 
         code = enter(sys.argv[1:])

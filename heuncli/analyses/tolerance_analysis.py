@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 
 from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
 from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError, find_extreme, refine_extreme
+from heuncli.analyses.variants.evaluation import SpecNumber, SpecNumbers
 from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.analyses.variants.parameters import AxisError, split_at_commas, split_name
 from heuncli.analyses.variants.samples import Sample, make_sample
-from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import describe, parse_unit
@@ -101,9 +101,19 @@ def find_tolerance_extremes(
         return SpreadExtremes(Contribution(*labels, None, 0.0, linear, below, above, True, why=why), -t, t)
     low, high, missing, runs = search_extremes(evaluate, base, name, t)
     error = max(low.error, high.error) + base.error + missing
-    size = max(-(low.gap or 0.0), high.gap or 0.0)
+    size = max(-low.gap_or_zero, high.gap_or_zero)
     contribution = Contribution(
-        *labels, size, error, linear, below, above, True, (low.x, low.gap or 0.0), (high.x, high.gap or 0.0), runs, why
+        *labels,
+        size,
+        error,
+        linear,
+        below,
+        above,
+        True,
+        (low.x, low.gap_or_zero),
+        (high.x, high.gap_or_zero),
+        runs,
+        why,
     )
     return SpreadExtremes(contribution, low.x, high.x)
 
@@ -127,7 +137,7 @@ def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -
         for x in (0.0, -INNER_FRACTION * t, INNER_FRACTION * t):
             course.sample_at(x)
         missing = max(
-            max(refine_extreme(course, way, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0) for way in (-1, 1)
+            max(refine_extreme(course, sign, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0) for sign in (-1, 1)
         )
     except SampleLimitError:
         pass

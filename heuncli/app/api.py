@@ -3,15 +3,17 @@
     import heuncli
     study = heuncli.solve("engine.yaml", n="1500 rpm")
 
-The command line uses `read` and `solve_spec`. `solve`, `solve_cases` and `validate` add Python arguments and return the
-objects of app/python; the command line loads none of these. Nothing is printed. A scene may be solved in any thread.
+The command line uses `read` and `solve_spec`. `solve`, `solve_cases`, `validate` and `report` add Python arguments; the
+command line loads none of these, nor the objects of app/python that they return. Nothing is printed. A scene may be
+solved in any thread.
 """
 
 from __future__ import annotations
 
 import math
+import os
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -32,9 +34,8 @@ from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve as solve_study
 
 if TYPE_CHECKING:
-    from heuncli.app.python.arguments import ArgumentKind
+    from heuncli.app.python.arguments import ArgumentKind, SpecSource
     from heuncli.app.python.solved_scene import Solved
-    from heuncli.app.python.spec_arguments import SpecSource
 
 
 def read(
@@ -98,8 +99,7 @@ def solve(
     LimitError if a limit is reached. All are HeunError, whose `problems` have code, message, hint and location. Warns
     HeunWarning.
     """
-    from heuncli.app.python.arguments import TEXT, check_arguments
-    from heuncli.app.python.spec_arguments import make_settings, resolve_source
+    from heuncli.app.python.arguments import TEXT, check_arguments, make_settings, resolve_source
 
     check_arguments(
         ("case", case, TEXT), *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes),
@@ -111,7 +111,7 @@ def solve(
     options = _make_options(tolerance, method, step, least_norm, reduce, axes)
     selection = _parse_only(only)
     start = time.perf_counter()
-    with _suggest_options(parameters):
+    with _suggest_options(parameters, solve):
         scene, _ = read(name, make_settings(set or {}, parameters), case, source)
     scene = set_captions(scene, title, (labels or {}).items())
     options = replace(options, load_seconds=time.perf_counter() - start, time_limit=_check_time_limit(time_limit))
@@ -143,8 +143,7 @@ def solve_cases(
 
     Raises UsageError if the spec has no load cases.
     """
-    from heuncli.app.python.arguments import check_arguments
-    from heuncli.app.python.spec_arguments import make_settings, resolve_source
+    from heuncli.app.python.arguments import check_arguments, make_settings, resolve_source
 
     check_arguments(
         *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes), *_list_captions(title, labels)
@@ -154,13 +153,59 @@ def solve_cases(
     options = _make_options(tolerance, method, step, least_norm, reduce, axes)
     options = replace(options, time_limit=_check_time_limit(time_limit))
     selection = _parse_only(only)
-    with _suggest_options(parameters):
+    with _suggest_options(parameters, solve):
         _, cases = read(name, make_settings(set or {}, parameters), ALL_CASES, source)
     if not cases:
         hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
         raise UsageError(Problem("unknown-case", "solve_cases: the spec has no load cases", hint=hint))
     cases = {case: set_captions(scene, title, (labels or {}).items()) for case, scene in cases.items()}
     return {case: _solve_selected(scene, options, selection, by_cause, at) for case, scene in cases.items()}
+
+
+def report(
+    spec: SpecSource | None, output: str | os.PathLike[str], *, text: str | None = None, format: str | None = None,
+    case: str | Sequence[str] | None = None, set: Mapping[str, object] | None = None, units: str | None = None,
+    chapters: str | Sequence[str] | None = None, paper: str = "a4", landscape: bool = False,
+    decimal_comma: bool = False, company: str | None = None, project: str | None = None, part: str | None = None,
+    revision: str | None = None, author: str | None = None, date: str | None = None,
+    logo: str | os.PathLike[str] | None = None, tolerance: float | None = None, method: str | None = None,
+    step: float | None = None, least_norm: bool = False, reduce: bool = True, time_limit: float | None = None,
+    title: str | None = None, labels: Mapping[str, str] | None = None, **parameters: object,
+) -> bool:  # fmt: skip
+    """Write the client report that `heun report` writes; returns whether all that the spec expects is met.
+
+    spec, text, set, parameters: as in `solve`; a mapping is refused, because a report prints the text of its spec
+    output: the file, x.html, x.pdf or x.md; with `format` ("html", "pdf", "md") any name
+    case: load cases, "full,empty" or a list; default: all
+    units, chapters, paper, landscape, decimal_comma, logo: as the options of `heun report`
+    company, project, part, revision, author, date: the title block
+    tolerance, method, step, least_norm, reduce, title, labels: as in `solve`
+    time_limit: longest solving time of each case [s]
+
+    Raises what `solve` does, and OutputError if the file cannot be written or no program prints PDF. Warns HeunWarning.
+    """
+    from heuncli.app.python.arguments import FILE, TEXT, TEXTS, check_arguments, make_settings
+    from heuncli.app.python.report_call import ReportCall, write_called_report
+
+    imprint = {
+        "company": company, "project": project, "part": part, "revision": revision, "author": author, "date": date,
+    }  # fmt: skip
+    check_arguments(("output", output, FILE), ("paper", paper, TEXT), optional=False)
+    check_arguments(
+        *_list_arguments(text, set, None, None, tolerance, method, step, time_limit, None),
+        *_list_captions(title, labels), ("format", format, TEXT), ("case", case, TEXTS), ("units", units, TEXT),
+        ("chapters", chapters, TEXTS), ("logo", logo, FILE), *((key, word, TEXT) for key, word in imprint.items()),
+    )  # fmt: skip
+    _check_booleans(landscape=landscape, decimal_comma=decimal_comma, least_norm=least_norm, reduce=reduce)
+    options = _make_options(tolerance, method, step, least_norm, reduce, "world")
+    call = ReportCall(
+        spec=spec, text=text, output=os.fspath(output), format=format, case=case, units=units, chapters=chapters,
+        settings=make_settings(set or {}, parameters), paper=paper, landscape=landscape, decimal_comma=decimal_comma,
+        imprint=imprint, logo=logo, options=options, time_limit=_check_time_limit(time_limit), title=title,
+        labels=labels or {},
+    )  # fmt: skip
+    with _suggest_options(parameters, report):
+        return write_called_report(call)
 
 
 def validate(spec: SpecSource | None = None, *, text: str | None = None) -> tuple[Problem, ...]:
@@ -171,8 +216,7 @@ def validate(spec: SpecSource | None = None, *, text: str | None = None) -> tupl
 
     Raises SpecError with every problem of the spec, in the order of the lines.
     """
-    from heuncli.app.python.arguments import TEXT, check_arguments
-    from heuncli.app.python.spec_arguments import resolve_source
+    from heuncli.app.python.arguments import TEXT, check_arguments, resolve_source
 
     check_arguments(("text", text, TEXT))
     name, source = resolve_source(spec, text)
@@ -243,12 +287,13 @@ def _parse_only(words: str | Iterable[str] | None) -> ReportChoice | None:
 
 
 @contextmanager
-def _suggest_options(parameters: Mapping[str, object]) -> Iterator[None]:
-    """Add a hint to the error of an unknown parameter whose name resembles an option of `solve`."""
+def _suggest_options(parameters: Mapping[str, object], function: Callable[..., object]) -> Iterator[None]:
+    """Add a hint to the error of an unknown parameter whose name resembles an option of the function."""
     try:
         yield
     except SpecError as error:
-        options = {name: find_similar(name, solve.__kwdefaults__ or {}) for name in parameters}
+        known: Mapping[str, object] = getattr(function, "__kwdefaults__", None) or {}
+        options = {name: find_similar(name, known) for name in parameters}
         likely = {name: f"did you mean the option {option}?" for name, option in options.items() if option}
         for problem in error.problems:
             name = str(problem.location.file).partition("=")[0] if problem.location is not None else ""

@@ -49,8 +49,8 @@ def solve(spec: Spec, options: Options | None = None, stages: Stages = NO_CACHE)
         try:
             return solve_by_deadline(spec, options, deadline, stages)
         except SolveError as error:
-            on_result = any(c.ends and isinstance(c, ResultCondition) for c in spec.analysis.conditions)
-            if error.reached is None or not on_result:
+            has_result_condition = any(c.ends and isinstance(c, ResultCondition) for c in spec.analysis.conditions)
+            if error.reached is None or not has_result_condition:
                 raise
             from heuncli.study.queries.events import solve_before_failure  # few scenes end so
 
@@ -69,20 +69,20 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
 
     Raises what `solve` does; SolveError also where a motion fails after the event that was to end it.
     """
-    begun = time.perf_counter()
+    start = time.perf_counter()
     conditions = spec.analysis.conditions
     spec = apply_options(spec, options)
     setup = set_up_requested(spec, options, stages)
     if options.memory_budget is not None:
         require_memory(setup, options.memory_budget, in_parts=options.in_parts)
-    built = time.perf_counter()
+    setup_end = time.perf_counter()
     by_cause = SHARES in options.reports
     history = integrate(
         setup, spec.analysis.tolerance, deadline, by_cause=by_cause, memory_budget=options.memory_budget
     )
-    # conditions may need more results than are shown: `whole` has all of them, `setup` the requested ones
-    whole, setup = setup, replace(setup, selection=options.selection) if conditions else setup
-    moved = time.perf_counter()
+    # conditions may need more results than are shown: `full_setup` has all of them, `setup` the requested ones
+    full_setup, setup = setup, replace(setup, selection=options.selection) if conditions else setup
+    motion_end = time.perf_counter()
     parts = None
     if options.in_parts:
         from heuncli.study.compose.parts import compose_in_parts  # only for exports
@@ -95,15 +95,15 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
     )
     impulses = find_impulses(setup, history, options.least_norm, by_cause)
     results = compose(setup, history, recovery, options.reports, impulses, parts)
-    looked_for = setup.rest.seconds if setup.rest is not None else 0.0  # counted as integration by the history
-    seconds = {"load": options.load_seconds, "build": built - begun - looked_for, **history.seconds}
-    results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
+    rest_seconds = setup.rest.seconds if setup.rest is not None else 0.0  # counted as integration by the history
+    seconds = {"load": options.load_seconds, "build": setup_end - start - rest_seconds, **history.seconds}
+    results.work["seconds"] = seconds | {"recover": time.perf_counter() - motion_end}
     study = Study(spec, options, setup, history, recovery if parts is None else None, results, impulses)
     if not (conditions or spec.latches):
         return study
     from heuncli.study.queries.events import add_events  # few scenes have them
 
-    return add_events(study, whole, make_solver(options, deadline))
+    return add_events(study, full_setup, make_solver(options, deadline))
 
 
 def set_up_requested(spec: Spec, options: Options, stages: Stages = NO_CACHE) -> Setup:

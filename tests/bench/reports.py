@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.app.commands.report.cases import solve_report_cases
+from heuncli.app.commands.report.command import solve_report_cases
 from heuncli.app.commands.report.request import ReportRequest
 from heuncli.output.client_report.contents import make_report
 from heuncli.output.documents.as_html import render_html

@@ -25,9 +25,7 @@ def test_the_help_is_what_typer_makes_of_the_registry(columns: int) -> None:
 
 def answer(*words: str, code: str = "pass", **environment: str) -> str:
     """What is answered at once in a process of its own; nothing where it is left to the rest."""
-    call = (
-        f"import sys; from heuncli.app.cli import fast_path; {code}; sys.exit(not fast_path.try_answer(sys.argv[1:]))"
-    )
+    call = f"import sys; from heuncli.app.cli import terminal; {code}; sys.exit(not terminal.try_answer(sys.argv[1:]))"
     line = [sys.executable, "-c", call, *words]
     return subprocess.run(line, capture_output=True, text=True, env={**os.environ, **environment}, check=False).stdout
 

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.explain.pages import PAGES, find_section, parse_codes, read_sections
-from heuncli.app.commands.explain.paths import MEANINGS
+from heuncli.app.commands.explain.pages import MEANINGS, PAGES, find_section, parse_codes, read_sections
 from heuncli.results.path_words import NAMES
 from heuncli.results.results_schema import ROWS, Quantity
 from tests.shared.command import Heun

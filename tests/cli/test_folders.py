@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs
+from heuncli.app.commands.check.spec_files import FoundSpec, SkippedFolder, find_specs
 from tests.shared.command import SPEC_TEXTS, Heun
 
 EXPECTING = SPEC_TEXTS["expecting"]

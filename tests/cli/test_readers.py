@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from heuncli.app.cli import command_line, typer_reader
+from heuncli.app.cli import entry, typer_reader
 from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.registry import COMMANDS
 from tests.shared.loaded_modules import loaded_by
@@ -43,7 +43,7 @@ def random_line(seed: int) -> list[str]:
 @pytest.mark.parametrize("seed", range(60))
 def test_both_readers_understand_a_plain_line_alike(seed: int) -> None:
     line = random_line(seed)
-    request = command_line.read_plain(line)
+    request = entry.read_plain(line)
     assert request is not None
     assert typer_reader.read(line) == request
 
@@ -66,7 +66,7 @@ def test_both_readers_understand_a_plain_line_alike(seed: int) -> None:
 def test_what_is_not_plain_is_left_to_typer_which_answers_with_2_or_help(
     line: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert command_line.read_plain(line) is None
+    assert entry.read_plain(line) is None
     code = typer_reader.read(line)
     assert code == (0 if "--help" in line else 2)
     answer = capsys.readouterr()

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
-from heuncli.app.commands.sweep import workers
+from heuncli.app.commands.sweep import running
 from heuncli.base import process
 from tests.shared.command import Done, Heun
 from tests.shared.shell import ENVIRONMENT
@@ -83,7 +83,7 @@ REFUSED = {
 def test_what_is_refused_before_anything_runs(
     heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
-    monkeypatch.setattr(workers, "solve_batch", None)
+    monkeypatch.setattr(running, "solve_batch", None)
     given = [words] if " qq" in words else words.split()
     done = sweep(heun, *given)
     assert (done.returncode, done.stdout) == (2, "")

@@ -11,7 +11,7 @@ import pytest
 
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.app.commands.sweep.cluster import worker as cluster_worker
-from heuncli.app.commands.sweep.cluster.worker import HELLO, CachedRecipe, Variant, described, solve_batch
+from heuncli.app.commands.sweep.cluster.worker import HELLO, CachedRecipe, Variant, read_worker_version, solve_batch
 from heuncli.app.commands.sweep.cluster.workers import (
     DEPTH,
     FIRST_SIZE,
@@ -171,5 +171,5 @@ def test_a_bug_is_the_answer_of_its_variant(held: CachedRecipe, monkeypatch: pyt
 
 def test_what_a_worker_is_asked_first() -> None:
     """As text: it needs nothing of heun to be understood."""
-    assert eval(HELLO) == (VERSION, described())
+    assert eval(HELLO) == (VERSION, read_worker_version())
     assert eval(HELLO.replace(repr(VERSION), "'0.0.1'")) == (VERSION, None)

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from heuncli.analyses.find.narrowing import is_steep
 from heuncli.analyses.find.results import IntervalFindings
-from heuncli.analyses.find.search import is_steep
 from heuncli.analyses.find.study import find_meetings
 from heuncli.analyses.variants.course import MeasureCourse
 from heuncli.analyses.variants.measures import Relation

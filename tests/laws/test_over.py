@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.lagrange.inertia_curve import find_inertia_curve
-from heuncli.app.commands.lagrange import course_page
+from heuncli.app.commands.lagrange import forms, page
 from heuncli.app.commands.lagrange.command import parse_range
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.table_units import Units
@@ -83,8 +83,8 @@ def test_the_mean_is_of_the_range_not_of_its_values(words: str) -> None:
 def test_a_mean_that_does_not_settle_is_not_told() -> None:
     """Beside dead centres, at 0.2 and 0.4 m, the inertia of the slider is without bound."""
     found = find_inertia_curve(SLIDER_CRANK, parse_range("guide.travel=0.2001:0.39999/4", SLIDER_CRANK))
-    assert np.isnan(found.mean) and course_page.to_block(found)["mean"] is None
-    assert "mean does not converge" in course_page.make_document(found, Units()).facts[0][1]
+    assert np.isnan(found.mean) and forms.to_course_block(found)["mean"] is None
+    assert "mean does not converge" in page.make_course_document(found, Units()).facts[0][1]
 
 
 TIPPER = """

@@ -117,7 +117,6 @@ def test_a_sweep_does_without_what_clusters_need() -> None:
         "dask",
         "tornado",
         "heuncli.app.commands.sweep.cluster.scheduler",
-        "heuncli.analyses.variants.files",
     }
     assert not found & (clusters | {"scipy", "rich", "pydantic"})
 
@@ -156,8 +155,8 @@ def test_help_and_version_do_without_the_heavy_ones(words: tuple[str, ...]) -> N
 def test_what_is_answered_at_once_needs_next_to_nothing(words: str) -> None:
     """Beside what Python loads when it starts."""
     code = (
-        "import os, sys; before = {*sys.modules}; from heuncli.app.cli import fast_path; "
-        "fast_path.try_answer(sys.argv[1:])"
+        "import os, sys; before = {*sys.modules}; from heuncli.app.cli import terminal; "
+        "terminal.try_answer(sys.argv[1:])"
     )
     shown = "print(*sorted({*sys.modules} - before), file=sys.stderr)"
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])

@@ -46,7 +46,7 @@ KEPT = {
     "analyses/sensitivity.py": {"Contribution.below", "Contribution.above"},
     "app/api.py": {"solve(at)", "solve_cases(at)"},
     "app/commands/sweep/cluster/worker.py": {"described"},
-    "app/commands/sweep/output/as_parquet.py": {"ByteSink.tell"},
+    "app/commands/sweep/writer.py": {"ByteSink.tell"},
     "app/python/signals.py": {"Signal.computed", "Signal.beyond", "Signal.at"},
     "app/python/solved_scene.py": {"Solved.paths(under)", "Solved.at", "Solved.load_cases(at)", "Solved.plot(over)"},
     "base/named_tuples.py": {"named"},

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.app.commands.show.command import REPORTS
+from heuncli.app.commands.show import REPORTS
 from heuncli.output.machine_geometry.machine import CouplingForce, Machine, iter_coupling_forces, make_machine
 from heuncli.output.machine_geometry.poses import Poses, extract_poses
 from heuncli.output.machine_geometry.ropes import iter_rope_lines

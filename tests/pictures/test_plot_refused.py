@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.app.commands.plot.command import COMMON_OPTIONS, KINDS
 from heuncli.app.commands.plot.request import PlotRequest
-from heuncli.app.commands.plot.target import COMMON_OPTIONS, KINDS
 from heuncli.output.drawing import drawing_files
 from tests.shared.command import HANGING, Heun
 

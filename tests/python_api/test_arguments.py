@@ -49,6 +49,20 @@ def test_of_solving(name: str) -> None:
         refusals(lambda value: heuncli.solve_cases(**given, **{name: value}), name, SOLVING[name])
 
 
+REPORTING = {
+    "output": "a file name", "text": "a string", "format": "a string", "case": "a string or a list of strings",
+    "set": "a mapping", "units": "a string", "chapters": "a string or a list of strings", "paper": "a string",
+    "landscape": "True or False", "decimal_comma": "True or False", "author": "a string", "logo": "a file name",
+    "tolerance": "a number", "least_norm": "True or False", "time_limit": "a number",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REPORTING)
+def test_of_a_report(name: str) -> None:
+    given = {"text": HANGING, "output": "x.html"}
+    refusals(lambda value: heuncli.report(None, **given | {name: value}), name, REPORTING[name])
+
+
 def test_all_of_a_call_are_named_at_once() -> None:
     with pytest.raises(UsageError) as caught:
         heuncli.solve(text=HANGING, case=3, tolerance="small", at="now")  # type: ignore[arg-type]

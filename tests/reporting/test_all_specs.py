@@ -8,7 +8,7 @@ from typing import get_args
 
 import pytest
 
-from heuncli.app.commands.report.cases import solve_report_cases
+from heuncli.app.commands.report.command import solve_report_cases
 from heuncli.app.commands.report.request import ReportRequest
 from heuncli.base.records import replace
 from heuncli.output.client_report.contents import CHAPTERS, make_report

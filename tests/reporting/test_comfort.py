@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.report.cases import solve_report_cases
+from heuncli.app.commands.report.command import solve_report_cases
 from heuncli.app.commands.report.request import ReportRequest
 from heuncli.base.records import replace
 from heuncli.output.client_report.extremes import find_extremes

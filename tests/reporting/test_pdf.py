@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.app.commands.report import command
-from heuncli.base.programs import BROWSERS
+from heuncli.app import reports
+from heuncli.base.process import BROWSERS
 from tests.shared.command import Heun
 
 PRINTS = """\
@@ -61,7 +61,7 @@ def test_no_sandbox_for_root_alone(programs: Path, monkeypatch: pytest.MonkeyPat
     install(programs, "chromium", PRINTS)
     for user, is_given in ((0, True), (1000, False)):
         monkeypatch.setattr(os, "geteuid", lambda user=user: user)
-        assert ("--no-sandbox" in command.find_printer().options) is is_given
+        assert ("--no-sandbox" in reports.find_printer().options) is is_given
 
 
 def test_without_a_program_it_is_said_how(programs: Path, heun: Heun, folder: Path) -> None:
@@ -84,7 +84,7 @@ def test_a_program_that_hangs_is_ended(
     programs: Path, heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     install(programs, "chromium", HANGS)
-    monkeypatch.setattr(command, "MAX_SECONDS", 0.5)
+    monkeypatch.setattr(reports, "MAX_PRINT_SECONDS", 0.5)
     begun = time.monotonic()
     done = heun("report", "hanging.yaml", "-o", "x.pdf")
     assert done.returncode == 5

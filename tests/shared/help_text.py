@@ -7,13 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-from heuncli.app.cli import fast_path
+from heuncli.app.cli import terminal
 
-HELP = Path(fast_path.HELP)
+HELP = Path(terminal.HELP)
 CODE = "import sys; from heuncli.app.cli import typer_reader; sys.exit(typer_reader.read(['--help']))"
 
 
-def help_of_typer(columns: int = fast_path.MIN_HELP_WIDTH) -> str:
+def help_of_typer(columns: int = terminal.MIN_HELP_WIDTH) -> str:
     """What typer answers to `heun --help` on a terminal of that width."""
     environment = {**os.environ, "COLUMNS": str(columns)}
     return subprocess.run(

@@ -59,7 +59,7 @@ def test_a_missing_program_is_told_before_anything_is_solved(
 
     for program in there:
         put(programs, program, BROWSER.format(PICTURES[0]))
-    monkeypatch.setattr("heuncli.app.commands.show.command.solve", never)
+    monkeypatch.setattr("heuncli.app.commands.show.solve", never)
     done = heun("show", "swinging.yaml", "-o", name)
     assert done.returncode == 5 and said in done.stderr and "[no-film-program]" in done.stderr
     assert "hint: install" in done.stderr and not (folder / name).exists()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.app.commands.show.command import REPORTS
+from heuncli.app.commands.show import REPORTS
 from heuncli.output.machine_geometry.poses import compute_poses
 from heuncli.output.tables.export import to_json
 from heuncli.output.web_page.geometry import make_page_machine

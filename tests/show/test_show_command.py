@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.app.commands.show.command import MAX_BODIES
+from heuncli.app.commands.show import MAX_BODIES
 from heuncli.output.web_page.frames import MAX_PAGE_FRAMES
 from tests.shared.command import TURNED, Heun
 from tests.shared.folders import SPECS
@@ -59,7 +59,7 @@ def test_a_scene_of_too_many_bodies_is_refused_before_it_is_solved(
     def never(*_: object) -> None:
         raise AssertionError("solved")
 
-    monkeypatch.setattr("heuncli.app.commands.show.command.solve", never)
+    monkeypatch.setattr("heuncli.app.commands.show.solve", never)
     bodies = "".join(f"  b{k}: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n" for k in range(MAX_BODIES + 1))
     (folder / "many.yaml").write_text(f"heun: 1\nbodies:\n{bodies}")
     done = heun("show", "many.yaml", "-o", "x.html")

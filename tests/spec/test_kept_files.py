@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
-from heuncli.analyses.variants.files import add_files, add_named_files
 from heuncli.analyses.variants.parameters import parse_axis_values
 from heuncli.analyses.variants.plans import Plan, make_axes_plan
+from heuncli.app.commands.sweep.cluster.scheduler import add_files, add_named_files
 from heuncli.output.tables import measure
 from heuncli.scene.file_format.named_files import FileNotPreloaded
 from heuncli.study.model.options import Options

@@ -18,7 +18,6 @@ from heuncli.analyses.balancing.cycle import drop_rates, make_driven_mechanism, 
 from heuncli.analyses.balancing.cycle_nodes import PieceNodes
 from heuncli.analyses.balancing.cycle_plan import CyclePlan
 from heuncli.analyses.balancing.followed_run import FollowedRun, describe_nonperiodic_loads
-from heuncli.analyses.balancing.law_search import find_deviations, iter_angle_laws
 from heuncli.analyses.balancing.orders import (
     MAX_ORDERS,
     CycleRotation,
@@ -27,7 +26,7 @@ from heuncli.analyses.balancing.orders import (
     magnitudes,
     make_order_rows,
 )
-from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_scales
+from heuncli.analyses.balancing.piece_resolver import CycleResolver, find_deviations, iter_angle_laws, make_scales
 from heuncli.analyses.balancing.results import CycleLoad, OrderRow
 from heuncli.analyses.balancing.sampling import compute_square_root_magnitudes
 from heuncli.base import tolerances

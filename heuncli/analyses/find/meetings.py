@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import groupby
+from operator import attrgetter
 
 from heuncli.analyses.find.results import (
     Crossing,
@@ -84,9 +85,7 @@ def iter_meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | MeasureJ
         after = found[k + 1].side if k + 1 < len(found) else None
         if group.side == 0:
             meeting = classify_group(course, group, before, after)
-            if (
-                isinstance(meeting, Touch) and meeting.side
-            ):  # it lies between the next samples that differ from the value
+            if isinstance(meeting, Touch) and meeting.side:  # between the next samples that differ from the value
                 meeting = meeting._replace(low=found[k - 1][-1].x, high=found[k + 1][0].x)
             yield meeting
         elif group.side and before and before == -group.side:
@@ -94,7 +93,7 @@ def iter_meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | MeasureJ
             if (left.x, right.x) in course.jumps:
                 yield MeasureJump(left, right)
             elif (left.x, right.x) in course.steep:
-                yield Crossing(min(left, right, key=_compute_distance), right.x - left.x, group.side)
+                yield Crossing(min(left, right, key=attrgetter("distance")), right.x - left.x, group.side)
             elif not course.is_interrupted(course.samples.index(left)):
                 yield UnresolvedBracket(left, right)
 
@@ -103,7 +102,7 @@ def classify_group(
     course: MeasureCourse, group: SideGroup, previous_side: int | None, next_side: int | None
 ) -> Crossing | Touch:
     """Classify samples that cannot be distinguished from the value, by the sides of the adjacent groups."""
-    best = min(group, key=_compute_distance)
+    best = min(group, key=attrgetter("distance"))
     if previous_side and previous_side == next_side:
         return Touch(best, group[0].x, group[-1].x, previous_side)
     if not previous_side and not next_side:
@@ -127,7 +126,7 @@ def estimate_place_error(course: MeasureCourse, group: SideGroup, best: Sample) 
 
 def compute_value_error(group: SideGroup, best: Sample) -> float:
     """Return E: the error of the measure plus its residual."""
-    return max(sample.error for sample in group) + _compute_distance(best)
+    return max(sample.error for sample in group) + best.distance
 
 
 def iter_enclosure(course: MeasureCourse, group: SideGroup) -> Iterator[tuple[int, Sample, Sample | None]]:
@@ -149,8 +148,8 @@ def estimate_slope(course: MeasureCourse, group: SideGroup, best: Sample, value_
     noise = max((sample.error + best.error) / abs(sample.x - best.x) for sample in nearest if sample is not best)
     slope_error = noise + max((abs(points - slopes[0]) for points in slopes[1:]), default=0.0)
     a, b, c = sorted(nearest)
-    bend = ((_get_gap(c) - _get_gap(b)) / (c.x - b.x) - (_get_gap(b) - _get_gap(a)) / (b.x - a.x)) / (c.x - a.x)
-    chords = [abs((_get_gap(side[0]) - _get_gap(best)) / (side[0].x - best.x)) for side in (left, right) if side]
+    bend = ((c.gap_or_zero - b.gap_or_zero) / (c.x - b.x) - (b.gap_or_zero - a.gap_or_zero) / (b.x - a.x)) / (c.x - a.x)
+    chords = [abs((side[0].gap_or_zero - best.gap_or_zero) / (side[0].x - best.x)) for side in (left, right) if side]
     is_reliable = (
         bool(larger_sets)
         and min(chords) >= MIN_CHORD_RATIO * max(*chords, abs(slopes[0]))
@@ -163,7 +162,7 @@ def estimate_slope(course: MeasureCourse, group: SideGroup, best: Sample, value_
 def is_flattening(best: Sample, *sides: list[Sample]) -> bool:
     """Return whether g grows faster than the distance on all sides, so that its slope falls towards the place."""
     powers = [
-        math.log(_compute_distance(far) / _compute_distance(near)) / math.log((far.x - best.x) / (near.x - best.x))
+        math.log(far.distance / near.distance) / math.log((far.x - best.x) / (near.x - best.x))
         for near, far in (side for side in sides if len(side) == 2)
     ]
     return min(powers, default=0.0) > tolerances.FLATTENS
@@ -180,7 +179,7 @@ def find_neighbours(course: MeasureCourse, group: SideGroup, direction: int, min
         k += direction
         sample = samples[k]
         is_separate = not found or abs(sample.x - found[0].x) >= MIN_DISTANCE * abs(found[0].x - group[0].x)
-        if sample.side and _compute_distance(sample) >= min_size and is_separate:
+        if sample.side and sample.distance >= min_size and is_separate:
             found.append(sample)
     return found
 
@@ -192,7 +191,7 @@ def iter_enclosing_places(course: MeasureCourse) -> Iterator[float]:
         previous_side, next_side = (found[i].side if 0 <= i < len(found) else None for i in (k - 1, k + 1))
         if group.side != 0 or previous_side == next_side or not (previous_side or next_side):
             continue
-        best = min(group, key=_compute_distance)
+        best = min(group, key=attrgetter("distance"))
         value_error = compute_value_error(group, best)
         slope_estimate = estimate_slope(course, group, best, value_error)
         if slope_estimate is not None and slope_estimate.is_sufficient(value_error):
@@ -258,7 +257,7 @@ def make_edge(course: MeasureCourse, sample: Sample, neighbour_group: SideGroup 
         )
         kind: EdgeKind = "crossing" if pair in course.steep else "jump" if pair in course.jumps else "bracket"
         return MetEdge(sample.x, pair[1] - pair[0], kind)
-    best = min(neighbour_group, key=_compute_distance)
+    best = min(neighbour_group, key=attrgetter("distance"))
     if is_at_end(course, neighbour_group):
         return MetEdge((neighbour_group[-1] if best.x > sample.x else neighbour_group[0]).x, 0.0, "end")
     meeting = next(each for each in iter_meetings(course) if isinstance(each, Crossing | Touch) and each.sample is best)
@@ -277,11 +276,3 @@ def is_at_end(course: MeasureCourse, group: SideGroup) -> bool:
         or samples[first_index - 1].gap is None
         or samples[last_index + 1].gap is None
     )
-
-
-def _compute_distance(sample: Sample) -> float:
-    return abs(_get_gap(sample))
-
-
-def _get_gap(sample: Sample) -> float:
-    return sample.gap or 0.0

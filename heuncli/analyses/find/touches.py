@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from operator import attrgetter
 
 from heuncli.analyses.variants.course import FIRST_DISTRUST, NOISE, MeasureCourse
 from heuncli.analyses.variants.samples import Sample
@@ -39,11 +40,7 @@ def find_touches(course: MeasureCourse) -> None:
 
 def is_deep(left: Sample, middle: Sample, right: Sample) -> bool:
     """Return whether |g| falls at the middle sample by far more than its error, which is itself far below |g|."""
-    return (
-        NOISE * middle.error
-        < compute_distance(middle)
-        <= MIN_GAIN * max(compute_distance(left), compute_distance(right))
-    )
+    return NOISE * middle.error < middle.distance <= MIN_GAIN * max(left.distance, right.distance)
 
 
 def iter_minima(course: MeasureCourse) -> Iterator[tuple[Sample, Sample, Sample]]:
@@ -55,7 +52,7 @@ def iter_minima(course: MeasureCourse) -> Iterator[tuple[Sample, Sample, Sample]
         if (
             middle.side
             and left.side == middle.side == right.side
-            and compute_distance(middle) < min(compute_distance(left), compute_distance(right))
+            and middle.distance < min(left.distance, right.distance)
         ):
             yield left, middle, right
 
@@ -77,22 +74,22 @@ def follow_minimum(course: MeasureCourse, x: float) -> None:
         sample = course.sample_at(min(max(predicted, left.x + 0.25 * course.finest), right.x - 0.25 * course.finest))
         if sample.gap is None or sample.side != middle.side:
             return
-        if compute_distance(sample) > MIN_GAIN * compute_distance(middle) and sample is not middle:
+        if sample.distance > MIN_GAIN * middle.distance and sample is not middle:
             sample = course.sample_at(
                 0.5 * (middle.x + (left.x if abs(left.x - middle.x) > abs(right.x - middle.x) else right.x))
             )
             if sample.gap is None or sample.side != middle.side:
                 return
-        x = min((left, middle, right, sample), key=compute_distance).x
+        x = min((left, middle, right, sample), key=attrgetter("distance")).x
 
 
 def is_narrow(course: MeasureCourse, left: Sample, middle: Sample, right: Sample) -> bool:
     """Return whether |g| may double within the smallest distance of places, by the chords."""
     chord = max(
-        (compute_distance(left) - compute_distance(middle)) / (middle.x - left.x),
-        (compute_distance(right) - compute_distance(middle)) / (right.x - middle.x),
+        (left.distance - middle.distance) / (middle.x - left.x),
+        (right.distance - middle.distance) / (right.x - middle.x),
     )
-    return chord * course.finest >= compute_distance(middle)
+    return chord * course.finest >= middle.distance
 
 
 def confirm_touch(course: MeasureCourse, middle: Sample) -> None:
@@ -117,7 +114,7 @@ def find_touch_range(course: MeasureCourse, middle: Sample) -> tuple[float, floa
             sample = course.samples[k]
             if abs(sample.x - middle.x) > tolerances.TOUCH_DOUBLES * course.finest or sample.side != middle.side:
                 return None
-            if compute_distance(sample) >= DOUBLING * compute_distance(middle):
+            if sample.distance >= DOUBLING * middle.distance:
                 ends.append(sample.x)
                 break
     return (ends[0], ends[1]) if len(ends) == 2 else None
@@ -127,10 +124,10 @@ def predict_minimum(left: Sample, middle: Sample, right: Sample) -> float | None
     """Return where |g| would vanish by the power that fits the three samples; None if no power fits."""
     best_misfit, best_place = MAX_MISFIT, None
     for power in POWERS:
-        a, b = compute_distance(left) ** (1.0 / power), compute_distance(right) ** (1.0 / power)
+        a, b = left.distance ** (1.0 / power), right.distance ** (1.0 / power)
         x = (left.x * b + right.x * a) / (a + b)
         expected = ((a + b) * abs(middle.x - x) / (right.x - left.x)) ** power
-        distance = compute_distance(middle)
+        distance = middle.distance
         ratio = max(expected / distance, distance / expected) if expected > 0.0 else float("inf")
         if ratio < best_misfit:
             best_misfit, best_place = ratio, x
@@ -141,10 +138,10 @@ def find_power(touch: Sample, inner: Sample, outer: Sample) -> float | None:
     """Return p of |g| = a |x - x_touch|^p through two samples on one side of one that meets the value; None if |g| does
     not grow from it.
     """
-    size = compute_distance(inner)
-    if not inner.side or inner.side != outer.side or not size < compute_distance(outer):
+    size = inner.distance
+    if not inner.side or inner.side != outer.side or not size < outer.distance:
         return None
-    return math.log(compute_distance(outer) / size) / math.log((outer.x - touch.x) / (inner.x - touch.x))
+    return math.log(outer.distance / size) / math.log((outer.x - touch.x) / (inner.x - touch.x))
 
 
 def step_towards_value(course: MeasureCourse, i: int) -> float | None:
@@ -163,7 +160,7 @@ def step_towards_value(course: MeasureCourse, i: int) -> float | None:
     ):
         return None
     small = CLEAR_OF_VALUE * max(outer.error, met.error)
-    share = (small / compute_distance(outer)) ** (1.0 / power)
+    share = (small / outer.distance) ** (1.0 / power)
     distance = max(share * abs(outer.x - met.x), course.finest)
     if not distance < 0.5 * abs(outer.x - met.x):
         return None
@@ -179,7 +176,7 @@ def leads_to_touch(course: MeasureCourse, i: int) -> bool:
         far = i + 1 if near == i else i
         beyond = next(iter(course.find_neighbours(i, -direction)), None)
         met = find_met(course, near, direction)
-        if met is None or beyond is None or compute_distance(samples[near]) < NOISE * samples[near].error:
+        if met is None or beyond is None or samples[near].distance < NOISE * samples[near].error:
             continue
         inside = find_power(met, samples[near], samples[far])
         outside = find_power(met, samples[far], beyond)
@@ -195,17 +192,12 @@ def find_met(course: MeasureCourse, k: int, direction: int) -> Sample | None:
     samples = course.samples
     while 0 <= k + direction < len(samples) and not course.is_interrupted(k + min(direction, 0)):
         k += direction
-        is_lowest = compute_distance(samples[k]) < compute_distance(samples[k - direction])
+        is_lowest = samples[k].distance < samples[k - direction].distance
         if samples[k].side == 0 or (is_lowest and find_touch_range(course, samples[k]) is not None):
             return samples[k]
         if not is_lowest or samples[k].side != samples[k - direction].side:
             return None
     return None
-
-
-def compute_distance(sample: Sample) -> float:
-    """Return |g|."""
-    return abs(sample.gap or 0.0)
 
 
 def find_hidden_pole(course: MeasureCourse, i: int) -> float | None:
@@ -218,7 +210,7 @@ def find_hidden_pole(course: MeasureCourse, i: int) -> float | None:
     if course.is_interrupted(i) or samples[i + 1].x - samples[i].x <= 2.0 * course.finest:
         return None
     left_sample, right_sample = samples[i], samples[i + 1]
-    a, b = (sample.gap + course.value for sample in (left_sample, right_sample))  # type: ignore[operator]
+    a, b = (course.get_measure(sample) for sample in (left_sample, right_sample))
     if a * b <= 0.0 or max(abs(a), abs(b)) > tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value)):
         return None
     left, right = compute_inverse_fall(course, i, i - 1), compute_inverse_fall(course, i + 1, i + 2)
@@ -248,7 +240,7 @@ def compute_inverse_fall(course: MeasureCourse, k: int, outer: int) -> float | N
     samples = course.samples
     if not 0 <= outer < len(samples) or course.is_interrupted(min(k, outer)):
         return 0.0
-    value, outer_value = (samples[j].gap + course.value for j in (k, outer))  # type: ignore[operator]
+    value, outer_value = (course.get_measure(samples[j]) for j in (k, outer))
     rise = abs(value) - (abs(outer_value) if value * outer_value > 0.0 else -abs(outer_value))
     if rise <= NOISE * max(samples[k].error, samples[outer].error):
         return None
@@ -261,7 +253,7 @@ def is_rising_exponentially(course: MeasureCourse, end: int, inner: int, outer: 
     samples.
     """
     x = [course.samples[k].x for k in (end, inner, outer)]
-    m = [(course.samples[k].gap or 0.0) + course.value for k in (end, inner, outer)]
+    m = [course.get_measure(course.samples[k]) for k in (end, inner, outer)]
     if m[1] * m[2] <= 0.0:  # it comes from 0: nothing indicates a pole
         return True
     power = abs(x[0] - x[1]) / abs(x[1] - x[2])
@@ -274,14 +266,14 @@ def is_far_from_value(course: MeasureCourse, left: Sample, right: Sample) -> boo
     """
     if not left.side or left.side != right.side:
         return False
-    smallest = min(abs((sample.gap or 0.0) + course.value) for sample in (left, right))
+    smallest = min(abs(course.get_measure(sample)) for sample in (left, right))
     return smallest > tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value))
 
 
 def has_pole(course: MeasureCourse) -> bool:
     """Return whether the measure jumps somewhere between values beyond all usual ones, from one sign to the other."""
     ends = {x for pair in course.jumps for x in pair}
-    sizes = {sample.x: (sample.gap or 0.0) + course.value for sample in course.samples if sample.x in ends}
+    sizes = {sample.x: course.get_measure(sample) for sample in course.samples if sample.x in ends}
     least = tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value))
     return any(
         sizes[low] * sizes[high] < 0.0 and min(abs(sizes[low]), abs(sizes[high])) > least for low, high in course.jumps

@@ -1,20 +1,27 @@
-"""Lagrange's equations of a spec's scene at an instant (no. 18 to 24 of the paper)."""
+"""Lagrange's equations of a spec's scene at an instant (no. 18 to 24 of the paper), and its impulses.
+    e [q'] = h + H      (32)
+An impulse meets the apparent inertia of the point where it acts.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange import rodrigues
 from heuncli.analyses.lagrange.coordinates import (
+    RODRIGUES_NAMES,
     CoordinateChoice,
     choose_coordinates,
     compute_accelerations,
     compute_length,
     compute_rates,
+    compute_rodrigues_vector,
+    make_candidate_rows,
 )
 from heuncli.analyses.lagrange.equations import (
+    DriveRows,
     Partials,
     VelocityTerms,
     compute_forces_by_cause,
@@ -26,11 +33,12 @@ from heuncli.analyses.lagrange.equations import (
     subtract_drive_efforts,
 )
 from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
-from heuncli.analyses.lagrange.impulses import compute_apparent_inertias, compute_impulses
-from heuncli.analyses.lagrange.results import LagrangeResults, SectionForces
+from heuncli.analyses.lagrange.results import ApparentInertia, ImpulseResults, LagrangeResults, SectionForces, get_units
 from heuncli.analyses.lagrange.state_space import compute_state_space
+from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.records import record
+from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.actions import Action, collect_applied_loads, list_whole_joint_actions
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
@@ -39,7 +47,128 @@ from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.blocks import make_blocks as blocks_of
+from heuncli.study.compose.impulses import Impulses
+from heuncli.study.model.options import Options
 from heuncli.study.model.setup import attach_locations
+from heuncli.study.workflow import solve
+
+
+def compute_impulses(
+    spec: Spec,
+    instant: Instant,
+    drives: DriveRows,
+    choice: CoordinateChoice,
+    partials: Partials,
+    epsilon: Array,
+    eta: Array,
+) -> tuple[ImpulseResults, ...]:
+    """Return the impulses of an impulse analysis; empty for other analyses."""
+    if spec.analysis.type != "impulse":
+        return ()
+    impulses = solve(spec, Options(reduce=False)).impulse_results
+    count = 0 if impulses is None else len(impulses.jumps)
+    return tuple(
+        compute_impulse(impulses, k, instant, drives, choice, partials, epsilon, eta)
+        for k in range(count)
+        if impulses is not None
+    )
+
+
+def compute_impulse(
+    impulses: Impulses,
+    k: int,
+    instant: Instant,
+    drives: DriveRows,
+    choice: CoordinateChoice,
+    partials: Partials,
+    epsilon: Array,
+    eta: Array,
+) -> ImpulseResults:
+    """Return one impulse of the analysis."""
+    recovery = impulses.recovery
+    states = make_body_states(recovery.setup.scene.layout, recovery.solutions.select(np.array([k])))
+    jumps = compute_accelerations(instant.freed_scene.layout, choice.names, states)[0]
+    h = np.zeros(len(eta))
+    for action in recovery.given_actions:
+        for end, force, moment in action.iter_ends():
+            h = (
+                h
+                + force[k] @ partials.point_partials(end.body, end.position[k])
+                + moment[k] @ partials.turn_partials(end.body)
+            )
+    total = epsilon @ jumps
+    drive_impulses = drives.project_on_drives(total - h)
+    section_blocks = impulses.all_blocks["sections"]
+    return ImpulseResults(
+        t=impulses.jumps[k].time,
+        h=h,
+        drives=drive_impulses,
+        jumps=jumps,
+        reciprocal_energy=float(0.5 * h @ eta @ h),
+        sections={
+            cuts.name: compute_section_forces(section_blocks[cuts.name], k, partials, cuts.body)
+            for cuts in instant.setup.cuts
+        },
+    )
+
+
+IMMOBILE = 1e-12  # of the largest inverse inertia: below, the place does not move
+
+
+def compute_apparent_inertias(
+    instant: Instant, choice: CoordinateChoice, partials: Partials, epsilon: Array, eta: Array, requested: Sequence[str]
+) -> tuple[ApparentInertia, ...]:
+    """Return the apparent inertias along all coordinates, or at the requested places: coordinates, or
+    POINT:nx,ny,nz.
+    """
+    inertias = {
+        name: ApparentInertia(name, get_units(name).inertia, float(epsilon[i, i]), float(1.0 / eta[i, i]))
+        for i, name in enumerate(choice.names)
+    }
+    if not requested:
+        return tuple(inertias.values())
+    return tuple(
+        inertias[name] if name in inertias else compute_apparent_inertia(instant, choice, partials, eta, name)
+        for name in requested
+    )
+
+
+def compute_apparent_inertia(
+    instant: Instant, choice: CoordinateChoice, partials: Partials, eta: Array, name: str
+) -> ApparentInertia:
+    """Return the apparent inertia along a coordinate that was not chosen, or at a point. Raises SolveError if nothing
+    moves there.
+    """
+    place, colon, direction = name.partition(":")
+    if colon:
+        row, unit = make_point_row(instant, partials, place, direction, name) @ np.eye(len(eta)), "kg"
+    else:
+        rows = make_candidate_rows(instant.freed_scene.layout, instant.linear_equations)
+        if name not in rows:
+            hint = suggest(name, list(rows), "coordinates") or "or BODY.POINT:nx,ny,nz"
+            raise SolveError(Problem("no-coordinate", f"--seen {name}: there is no such coordinate", hint=hint))
+        row, unit = rows[name] @ choice.S, get_units(name).inertia
+    inverse = float(row @ eta @ row)
+    if inverse <= IMMOBILE * float(np.abs(eta).max()) * max(float(row @ row), IMMOBILE):
+        message = f"--seen {name}: it cannot move there: the apparent inertia is infinite"
+        raise SolveError(Problem("no-coordinate", message, hint="use another instant or another direction"))
+    return ApparentInertia(name, unit, None, 1.0 / inverse)
+
+
+def make_point_row(instant: Instant, partials: Partials, place: str, direction: str, option_text: str) -> Array:
+    """Return the row (f,) of the velocity of a point along a direction."""
+    mechanism = instant.freed_scene.layout.mechanism
+    points = {
+        f"{body.name}.{name}": (i, p) for i, body in enumerate(mechanism.bodies) for name, p in body.points.items()
+    }
+    if place not in points:
+        hint = suggest(place, list(points), "points") or ""
+        raise SolveError(Problem("no-coordinate", f"--seen {option_text}: there is no point {place}", hint=hint))
+    n = np.array([float(word) for word in direction.split(",")])
+    body, point = points[place]
+    states = make_body_states(instant.freed_scene.layout, instant.freed_recovered)
+    return np.asarray(n / np.sqrt(n @ n) @ partials.point_partials(body, states.point_position(body, point)[0]))
+
 
 QUASI_VELOCITY_NOTE = (
     "{names}: rates are quasi-velocities (components of angular velocity and velocity along the world axes), "
@@ -171,8 +300,8 @@ def compute_body_value(instant: Instant, states: BodyStates, name: str) -> float
     if owner not in bodies:
         return np.nan
     body, axis = bodies.index(owner), "xyz".index(quantity[-1])
-    if quantity in rodrigues.NAMES:
-        return float(rodrigues.compute_vector(states.R[0, body], owner)[axis])
+    if quantity in RODRIGUES_NAMES:
+        return float(compute_rodrigues_vector(states.R[0, body], owner)[axis])
     return float(states.centre[0, body, axis]) if quantity.startswith("d") else np.nan
 
 

@@ -147,7 +147,7 @@ def require_unique(recovery: Recovery, body: int, joints: Block, times: Array) -
     listed = ", ".join(name for name, _ in indeterminate[:6]) + (", ..." if len(indeterminate) > 6 else "")
     first_time = min(t for _, t in indeterminate)
     sums_text = "".join(
-        f"; determinate: {told}" for told in _format_determinate_sums(find_determinate_sums(recovery), names)
+        f"; determinate: {text}" for text in _format_determinate_sums(find_determinate_sums(recovery), names)
     )
     message = f"open at t = {first_time:.6g} s: {listed}: a load case cannot contain open forces{sums_text}"
     planar = PLANAR_HINT if recovery.setup.model.get("space") == "planar" and not mechanism.planar else ""

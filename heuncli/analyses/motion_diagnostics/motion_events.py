@@ -11,7 +11,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from heuncli.analyses.motion_diagnostics.chain_shares import (
+from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
+from heuncli.analyses.motion_diagnostics.twists import (
     SEQUENCES,
     Loop,
     compute_condition,
@@ -21,7 +22,6 @@ from heuncli.analyses.motion_diagnostics.chain_shares import (
     project_axis,
     to_quaternions,
 )
-from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.redundancy.self_stress import find_neighbour_poses

@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.tune.results import Trial
-from heuncli.analyses.tune.trials import Trials
+from heuncli.analyses.tune.results import Trial, Trials
 from heuncli.results.results import Array
 
 FIRST_STEP, MAX_STEP, MIN_STEP = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box

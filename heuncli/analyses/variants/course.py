@@ -21,8 +21,6 @@ import numpy as np
 
 from heuncli.analyses.variants.samples import (
     Sample,
-    _gap,
-    _size,
     find_intersection,
     interpolate,
     interpolate_corner,
@@ -121,9 +119,7 @@ class MeasureCourse:
         """Sample the places of the scan: the ends first, so that an incomplete scan has them."""
         for x in (self.scanned[0], self.scanned[-1], *self.scanned[1:-1]):
             self.sample_at(x)
-        self.usual = float(
-            np.median([_size(sample._replace(gap=_gap(sample) + self.value)) for sample in self.samples])
-        )
+        self.usual = float(np.median([abs(self.get_measure(sample)) for sample in self.samples]))
 
     def sample_at(self, x: float) -> Sample:
         """Return the sample at a place, evaluated once. Raises SampleLimitError."""
@@ -176,8 +172,12 @@ class MeasureCourse:
         inside = [peak for peak in peaks if one.x < peak.place < other.x]
         return max(inside, key=lambda peak: peak.size, default=None)
 
+    def get_measure(self, sample: Sample) -> float:
+        """Return the measure at a sample: g plus the value."""
+        return sample.gap_or_zero + self.value
+
     def _measure_at(self, i: int) -> float:
-        return _gap(self.samples[i]) + self.value
+        return self.get_measure(self.samples[i])
 
     def _find_top(self, k: int) -> CoursePeak | None:
         """Find the top of 1/measure^2 through a sample that is the largest of three."""
@@ -254,7 +254,7 @@ class MeasureCourse:
         noise = NOISE * max(sample.error for sample in samples)
         if len(samples) == 2:
             expected = interpolate(samples, x)
-            uncertainty = np.full(len(x), max(self.gap_range, _size(one), _size(other)))
+            uncertainty = np.full(len(x), max(self.gap_range, one.distance, other.distance))
             return CoursePrediction(x, expected, uncertainty, noise, uncertainty)
         parts = [part for part in (samples[:-1], samples[1:]) if one in part and other in part]
         models = [[interpolate(part, x) for part in (samples, *parts)]]
@@ -274,7 +274,7 @@ class MeasureCourse:
         )
         spread = np.max([np.abs(each - expected) for each in others], axis=0)
         uncertainty = np.maximum(spread - noise, 0.0)
-        known = [_gap(sample) for sample in samples]
+        known = [sample.gap_or_zero for sample in samples]
         steps = (max(known) - min(known)) * (x - one.x) * (other.x - x) / self.spacing**2
         uncertainty, total = (
             self.distrust * np.maximum(each, MIN_UNCERTAINTY * steps) for each in (uncertainty, spread)
@@ -288,7 +288,7 @@ class MeasureCourse:
         Not where it may touch a value at or beyond 0, which no logarithm reaches: towards a zero the logarithm falls
         ever faster, towards a pole it rises ever faster.
         """
-        m = [_gap(sample) + self.value for sample in samples]
+        m = [self.get_measure(sample) for sample in samples]
         if min(m) <= 0.0 <= max(m) or max(map(abs, m)) < LOG_RATIO * min(map(abs, m)):
             return False
         steps = [abs(b) - abs(a) for a, b in pairwise(m)]
@@ -298,8 +298,8 @@ class MeasureCourse:
 
     def _interpolate_logarithm(self, samples: list[Sample], x: Array) -> Array:
         """Interpolate some samples by a polynomial of the logarithm of the measure."""
-        sign = math.copysign(1.0, _gap(samples[0]) + self.value)
-        logs = [sample._replace(gap=math.log(abs(_gap(sample) + self.value))) for sample in samples]
+        sign = math.copysign(1.0, self.get_measure(samples[0]))
+        logs = [sample._replace(gap=math.log(abs(self.get_measure(sample)))) for sample in samples]
         found: Array = sign * np.exp(np.minimum(interpolate(logs, x), LARGEST_LOG)) - self.value
         return found
 
@@ -309,11 +309,11 @@ class MeasureCourse:
         """Interpolate samples, parts of them and, if wanted, their corner by polynomials of |m|^(-1/power), as near a
         pole of that order.
         """
-        sign = math.copysign(1.0, _gap(samples[0]) + self.value)
+        sign = math.copysign(1.0, self.get_measure(samples[0]))
         inverses = {
-            sample.x: sample._replace(gap=abs(_gap(sample) + self.value) ** (-1.0 / power)) for sample in samples
+            sample.x: sample._replace(gap=abs(self.get_measure(sample)) ** (-1.0 / power)) for sample in samples
         }
-        least = TINY_INVERSE * min(inverse.gap or 0.0 for inverse in inverses.values())
+        least = TINY_INVERSE * min(inverse.gap_or_zero for inverse in inverses.values())
         found = [interpolate([inverses[sample.x] for sample in part], x) for part in (samples, *parts)]
         if has_corner:
             ordered = [inverses[sample.x] for sample in samples]
@@ -340,7 +340,7 @@ class MeasureCourse:
 
 def _rises_convexly(samples: list[Sample]) -> bool:
     """Return whether the slopes of the logarithm of |g| rise from sample to sample."""
-    slopes = [(math.log(_size(b)) - math.log(_size(a))) / (b.x - a.x) for a, b in pairwise(samples)]
+    slopes = [(math.log(b.distance) - math.log(a.distance)) / (b.x - a.x) for a, b in pairwise(samples)]
     return all(before <= after for before, after in pairwise(slopes))
 
 
@@ -387,7 +387,7 @@ def refine_extreme(
 def find_extreme(course: MeasureCourse, direction: int) -> Sample | None:
     """Return the least or the greatest known sample."""
     known = [sample for sample in course.samples if sample.gap is not None]
-    return max(known, key=lambda sample: direction * (sample.gap or 0.0), default=None)
+    return max(known, key=lambda sample: direction * sample.gap_or_zero, default=None)
 
 
 def iter_divisible(course: MeasureCourse) -> Iterator[int]:
@@ -401,14 +401,14 @@ def estimate_gain(course: MeasureCourse, i: int, best: Sample, direction: int) -
     """Return by how much g may exceed its best between two neighbours at most, and where."""
     one, other = course.samples[i], course.samples[i + 1]
     peak = course.find_peak(i)
-    if peak is not None and (peak.size == math.inf or direction * ((one.gap or 0.0) + course.value) > 0.0):
-        gain = peak.size - direction * ((best.gap or 0.0) + course.value)
+    if peak is not None and (peak.size == math.inf or direction * course.get_measure(one) > 0.0):
+        gain = peak.size - direction * course.get_measure(best)
         if gain > 0.0:
             return gain, clip_inside(one, other, peak.place)
     expected = course.predict(i, one.x + NEAR_ENDS * (other.x - one.x))
     bound = direction * expected.gaps + expected.uncertainty
     k = int(np.argmax(bound))
-    return float(bound[k] - direction * (best.gap or 0.0)), float(expected.places[k])
+    return float(bound[k] - direction * best.gap_or_zero), float(expected.places[k])
 
 
 def clip_inside(one: Sample, other: Sample, x: float) -> float:

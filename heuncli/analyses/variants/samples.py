@@ -39,6 +39,16 @@ class Sample(NamedTuple):
             return None
         return 0 if abs(self.gap) <= self.error else 1 if self.gap > 0.0 else -1
 
+    @property
+    def gap_or_zero(self) -> float:
+        """The gap g; 0 where there is no measure."""
+        return self.gap or 0.0
+
+    @property
+    def distance(self) -> float:
+        """Distance |g| of the measure from the value; 0 where there is no measure."""
+        return abs(self.gap or 0.0)
+
 
 def make_sample(x: float, measure: NoisyValue, value: float, singular: bool = False) -> Sample:
     """Make the sample at a place from the measure there; value: what its gap is taken from."""
@@ -65,10 +75,10 @@ def restore(sample: Sample) -> Sample:
 
 def find_intersection(first: Sample, one: Sample, other: Sample, last: Sample) -> float:
     """Return where the line through two samples meets that through two others, clipped to the middle interval."""
-    before, after = ((_gap(b) - _gap(a)) / (b.x - a.x) for a, b in ((first, one), (other, last)))
+    before, after = ((b.gap_or_zero - a.gap_or_zero) / (b.x - a.x) for a, b in ((first, one), (other, last)))
     if before == after:
         return 0.5 * (one.x + other.x)
-    x = (_gap(other) - _gap(one) + before * one.x - after * other.x) / (before - after)
+    x = (other.gap_or_zero - one.gap_or_zero + before * one.x - after * other.x) / (before - after)
     return min(max(x, one.x), other.x)
 
 
@@ -102,18 +112,10 @@ def interpolate_slope(samples: list[Sample], x: float) -> float:
     return derivative
 
 
-def _gap(sample: Sample) -> float:
-    return sample.gap or 0.0
-
-
-def _size(sample: Sample) -> float:
-    return abs(_gap(sample))
-
-
 def _divided_differences(samples: list[Sample]) -> tuple[list[float], list[float]]:
     """Return nodes and divided differences."""
     nodes = [sample.x for sample in samples]
-    row = [_gap(sample) for sample in samples]
+    row = [sample.gap_or_zero for sample in samples]
     heads = [row[0]]
     for order in range(1, len(nodes)):
         row = [(b - a) / (nodes[k + order] - nodes[k]) for k, (a, b) in enumerate(pairwise(row))]

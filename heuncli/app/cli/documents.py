@@ -65,7 +65,7 @@ def make_terminal_style(style: TextStyle = PLAIN) -> TextStyle:
 
 
 def _draw_on_terminal(figure: Figure) -> str:
-    from heuncli.app.cli.figure_options import render_text  # where a figure is drawn
+    from heuncli.app.cli.target import render_text  # where a figure is drawn
 
     return render_text(figure, None, allows_colours=False)
 

@@ -1,10 +1,11 @@
 """The vocabulary of requests: the class of an option, and the options that many commands share.
 
 A request is a named tuple, one per command. Each field is an option or argument; its annotation holds the words and the
-help text. app/cli/command_line.py fills it from the words of a line. Named tuples, not dataclasses, because those take
+help text. app/cli/entry.py fills it from the words of a line. Named tuples, not dataclasses, because those take
 0.6 ms each to define, and every command pays.
 """
 
+from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol, get_type_hints
 
 from heuncli.base.named_tuples import NamedTuple
@@ -23,6 +24,13 @@ class Option(NamedTuple):
     help: str
     metavar: str | None = None
     completes: str = ""
+
+
+def make_format_option(formats: Sequence[str]) -> Option:
+    """Make the option `--format` of a command that writes tables in these formats."""
+    return Option(
+        ("--format",), "Output format. Default: from the extension of -o FILE, else table.", "|".join(formats)
+    )
 
 
 SET = Option(
@@ -56,9 +64,9 @@ WITHOUT = Option(
 )
 NO_REDUCE = Option(("--no-reduce",), "Solve the full model without reduction.")
 FORMATS = ("table", "json", "csv")  # of most commands
-FORMAT = Option(
-    ("--format",), "Output format. Default: from the extension of -o FILE, else table.", "|".join(FORMATS)
-)  # fmt: skip
+FORMAT = make_format_option(FORMATS)
+REPORT_FORMATS = ("html", "pdf", "md")  # of client reports
+PAPERS = ("a4", "letter")
 SPEC = Option((), "YAML file of the spec; - reads standard input.", "SPEC", completes="spec")
 
 

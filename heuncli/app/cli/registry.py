@@ -131,7 +131,6 @@ COMMANDS = (
     Command(
         "show",
         "Show the moving machine and its loads on a self-contained page for a browser.",
-        module="show.command",
         page="pictures",
     ),
     Command(

@@ -1,18 +1,24 @@
-"""The options `-o FILE`, `--format` and `--units`: where, in which format and in which units is written.
+"""The options of what is written: file, format, units, and of a figure its width, view and file.
 
-Impure: looks at the files.
+Outputs that would overwrite the command's inputs are refused before anything is solved. Impure: looks at the files.
 """
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli import terminal
 from heuncli.app.cli.output import print_stderr
-from heuncli.app.cli.solving import require_choice
-from heuncli.base.errors import Problem
+from heuncli.base.errors import Finding, Problem, UsageError
 from heuncli.base.files import STDOUT, find_target
-from heuncli.study.quantities.table_units import Units, read_display_units
+from heuncli.scene.file_format.reading import find_name_read
+
+if TYPE_CHECKING:
+    from heuncli.output.drawing.figure import Figure
+    from heuncli.study.quantities.table_units import Units
 
 ENDINGS = {"json": ".json", "csv": ".csv", "markdown": ".md", "parquet": ".parquet", "m": ".m"}
 TABLES = ("table", "markdown")
@@ -26,6 +32,8 @@ def choose_format(requested: str | None, output: str | None, formats: Sequence[s
     if output is not None and output != STDOUT:
         require_writable(output)
     if requested is not None:
+        from heuncli.study.model.options import require_choice  # with all that solves
+
         return require_choice("--format", requested, formats)
     if output is None or output == STDOUT:
         return formats[0]
@@ -51,6 +59,8 @@ def require_writable(output: str, option: str = "-o") -> None:
 
 def parse_units(words: str | None) -> Units:
     """Parse the units in which tables are shown. Raises UsageError."""
+    from heuncli.study.quantities.table_units import read_display_units  # with NumPy
+
     return read_display_units("--units", words)
 
 
@@ -58,3 +68,123 @@ def note_si_format(words: str | None, form: str, quiet: bool) -> None:
     """Print a note to standard error that a format other than a table stays in SI although units were given."""
     if words is not None and not quiet and form not in TABLES:
         print_stderr(f"heun: --units applies to tables only; {form} stays in SI")
+
+
+def require_other_file(output: str | None, specs: Sequence[str], option: str = "-o", kind: str = "spec") -> None:
+    """Require that the output is none of the specs, nor any file read so far. Raises UsageError.
+
+    For None and `-` the output is standard output, which a shell may append to a spec (`>>`).
+
+    kind: what the input files are called in the message, if not specs: `model`
+    """
+    to_stdout = output is None or output == STDOUT
+    state = _read_stdout_status() if to_stdout else _read_status(output)
+    if state is None:
+        return
+    name = find_name_read(state)
+    is_spec = name in specs or (not to_stdout and any(is_same_file(output, spec) for spec in specs))
+    if is_spec or name is not None:
+        member = "table" if kind == "spec" else "part"
+        what = f"the {kind} itself" if is_spec else f"a {member} of the {kind}"
+        where = "standard output" if to_stdout else f"{option} {output}"
+        raise UsageError(Problem("bad-option", f"{where}: would overwrite {what}", hint="name another file"))
+
+
+def is_same_file(one: str | None, other: str | None) -> bool:
+    """Return whether two names lead to the same file, or would if it existed."""
+    states = _read_status(one), _read_status(other)
+    if states[0] is not None and states[1] is not None:
+        return os.path.samestat(states[0], states[1])
+    return one is not None and other is not None and _resolve_path(one) == _resolve_path(other)
+
+
+def _resolve_path(name: str) -> str:
+    """Return the real path of a name, or the name itself if its folder is gone."""
+    try:
+        return os.path.realpath(name)
+    except (OSError, ValueError):
+        return name
+
+
+def _read_status(name: str | None) -> os.stat_result | None:
+    """Return the status of a file, or None if it does not exist or is standard output."""
+    if name is None or name == STDOUT:
+        return None
+    from pathlib import Path  # 3 ms that only files need
+
+    try:
+        return Path(name).stat()
+    except (OSError, ValueError):
+        return None
+
+
+def _read_stdout_status() -> os.stat_result | None:
+    try:
+        return os.fstat(sys.stdout.fileno()) if sys.stdout is not None else None
+    except (OSError, ValueError):  # a stream without a file descriptor
+        return None
+
+
+WIDTH = 100  # columns where there is no terminal
+MIN_WIDTH, MAX_WIDTH = 40, 400
+
+
+def require_width(width: int | None) -> None:
+    """Raise UsageError for a width in which nothing can be drawn."""
+    if width is not None and not MIN_WIDTH <= width <= MAX_WIDTH:
+        message = f"--width {width}: expected {MIN_WIDTH} to {MAX_WIDTH} columns"
+        raise UsageError(Problem("bad-option", message, hint=f"for example --width {WIDTH}"))
+
+
+def render_text(figure: Figure, width: int | None, output: str | None = None, *, allows_colours: bool = True) -> str:
+    """Render the figure as text, for the terminal or for a file."""
+    from heuncli.output.drawing.canvas import make_terminal_style
+    from heuncli.output.drawing.letters import draw_text
+
+    to_terminal = output is None and terminal.is_terminal()
+    columns = width or (terminal.find_width() - 1 if to_terminal else WIDTH)
+    plain = to_terminal and os.environ.get("TERM", "") in terminal.PLAIN_TERMINALS
+    encoding = "ascii" if plain else sys.stdout.encoding if to_terminal else None
+    has_colours = allows_colours and to_terminal and terminal.supports_styles()
+    return draw_text(figure, make_terminal_style(columns, encoding, has_colours=has_colours))
+
+
+def require_view(words: str | None) -> None:
+    """Require that `--view` is valid, before any work. Raises UsageError."""
+    if words is None:
+        return
+    import numpy as np
+
+    from heuncli.output.machine_geometry.views import parse_view  # with all that shows a machine
+
+    try:
+        parse_view(words, np.zeros(3))
+    except Finding as finding:
+        problem = Problem(finding.code, f"--view {words}: {finding.message}", hint=finding.hint)
+        raise UsageError(problem) from None
+
+
+def require_figure_form(name: str, option: str) -> str:
+    """Return the format of a figure file by its ending, and check that it can be written. Raises UsageError, SpecError,
+    OutputError.
+    """
+    from heuncli.output.drawing.drawing_files import find_form, require_encoder  # with all that draws
+
+    form = find_form(name, option)
+    require_writable(name, option)
+    require_encoder(form, f"{option} {name}")
+    return form
+
+
+def require_save_form(name: str | None, output: str | None) -> str | None:
+    """Return the figure format of `--save`, whose file must differ from the table's. Raises as
+    `require_figure_form`.
+    """
+    if name is None:
+        return None
+    form = require_figure_form(name, "--save")
+    if is_same_file("/dev/stdout" if output in (None, STDOUT) else output, name):
+        raise UsageError(
+            Problem("bad-option", f"--save {name}: the table is written to this file", hint="name another file")
+        )
+    return form

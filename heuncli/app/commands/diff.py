@@ -12,11 +12,10 @@ from typing import Annotated, Any
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import UNLIMITED, emit_document
 from heuncli.app.cli.entry import UsageError, run_contained
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import OUTPUT, QUIET, TIME_LIMIT_EACH, Option
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.cli.solving import format_warnings
-from heuncli.app.cli.target import choose_format
+from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.errors import Finding, HeunError, Problem, SourceLocation
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape

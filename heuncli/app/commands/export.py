@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
-from heuncli.analyses.load_cases import unit_systems
+from heuncli.analyses.load_cases import model
 from heuncli.analyses.load_cases.assembly import assemble_load_cases, select_results
-from heuncli.analyses.load_cases.model import LoadCases
-from heuncli.analyses.load_cases.unit_systems import convert_load_cases
+from heuncli.analyses.load_cases.model import LoadCases, convert_load_cases
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import (
     CASE,
     LABEL,
@@ -28,9 +26,8 @@ from heuncli.app.cli.options import (
     Option,
 )
 from heuncli.app.cli.output import emit, print_stderr
-from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_choice
-from heuncli.app.cli.spec_options import apply_captions
-from heuncli.app.cli.target import require_writable
+from heuncli.app.cli.solving import apply_captions, make_solver_options, parse_overrides, print_warnings, require_choice
+from heuncli.app.cli.target import require_other_file, require_writable
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple
@@ -186,11 +183,11 @@ def choose_form(request: ExportRequest) -> str:
     raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension", hint=hint))
 
 
-def _parse_units(words: str | None) -> unit_systems.UnitSystem:
+def _parse_units(words: str | None) -> model.UnitSystem:
     if words is None:
-        return unit_systems.SI
+        return model.SI
     try:
-        return unit_systems.parse_units(words)
+        return model.parse_units(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
 

@@ -7,9 +7,9 @@ from collections.abc import Collection
 from typing import Annotated
 
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import OUTPUT, QUIET, TIME_LIMIT, Option
 from heuncli.app.cli.output import emit, print_stderr
+from heuncli.app.cli.target import require_other_file
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple

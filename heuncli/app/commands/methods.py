@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from heuncli.app.cli.documents import emit_document
-from heuncli.app.cli.options import OUTPUT, Option
+from heuncli.app.cli.options import OUTPUT, make_format_option
 from heuncli.app.cli.target import choose_format
 from heuncli.base.method_rows import AUTO, DEFAULT, METHODS
 from heuncli.base.named_tuples import NamedTuple
@@ -17,7 +17,7 @@ class MethodsRequest(NamedTuple):
 
     format: Annotated[
         str | None,
-        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json"),
+        make_format_option(FORMATS),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
 

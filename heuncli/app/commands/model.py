@@ -7,11 +7,10 @@ from typing import Annotated, Any
 
 from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, VIEW, WIDTH, Option
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
-from heuncli.app.cli.target import choose_format
+from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputDocument, Sentence
@@ -76,14 +75,14 @@ def require_sketch(request: ModelRequest, form: str) -> None:
         message = f"{', '.join(drawing_options)}: only for a drawing, which is not requested"
         raise UsageError(Problem("bad-option", message, hint="add --sketch"))
     if request.view is not None:
-        from heuncli.app.cli.figure_options import require_view
+        from heuncli.app.cli.target import require_view
 
         require_view(request.view)
 
 
 def render_sketch(spec: Spec, request: ModelRequest) -> str:
     """Render the drawing of the assembled machine as text. Raises UsageError, and SolveError if it does not close."""
-    from heuncli.app.cli.figure_options import render_text, require_width  # rarely used
+    from heuncli.app.cli.target import render_text, require_width  # rarely used
     from heuncli.output.figures.scenes import make_assembly_figure
     from heuncli.study.model.setup import attach_locations
 

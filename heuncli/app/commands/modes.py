@@ -8,11 +8,9 @@ from typing import Annotated
 
 from heuncli.analyses.modes import compute_spec_modes, exclude_entries
 from heuncli.app.cli.documents import emit_document
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, WITHOUT
-from heuncli.app.cli.solving import parse_overrides, print_warnings
-from heuncli.app.cli.spec_options import find_excluded
-from heuncli.app.cli.target import choose_format
+from heuncli.app.cli.solving import find_excluded, parse_overrides, print_warnings
+from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.linearisation.oscillations import Mode, SceneModes

@@ -10,10 +10,9 @@ from heuncli.analyses.motion_diagnostics.results import GrowthResults, Probe, St
 from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import emit_document
-from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, make_format_option
 from heuncli.app.cli.solving import parse_overrides, print_warnings
-from heuncli.app.cli.target import choose_format
+from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import NumberCell, OutputColumn, OutputDocument, OutputTable
 from heuncli.scene.file_format.load import load
@@ -26,7 +25,7 @@ class ProbeRequest(NamedTuple):
     spec: Annotated[str, SPEC]
     format: Annotated[
         str | None,
-        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json"),
+        make_format_option(FORMATS),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()

@@ -7,9 +7,9 @@ from typing import Annotated
 
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import report_problems, run_contained, select_exit_code
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import TIME_LIMIT_EACH, Option
 from heuncli.app.cli.output import emit, print_stderr
+from heuncli.app.cli.target import require_other_file
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape

@@ -1,28 +1,97 @@
 """A solved scene that several Python threads may use: a lock admits one at a time, because the kernel's memory serves
-one.
+one. Its numbers with unit and error, and its warnings as Python warnings.
 
-Impure: caches results.
+Impure: caches results, emits warnings.
 """
 
 from __future__ import annotations
 
+import math
+import sys
+import warnings
 from _thread import RLock  # the lock of threading, whose import takes 0.5 ms
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.app.python.python_warnings import emit_warnings
 from heuncli.base.errors import Problem, SpecError, UsageError
+from heuncli.output.documents.document import append_unit
+from heuncli.output.tables import measure
 from heuncli.output.tables.run_description import collect_warnings
 from heuncli.results.results import Array, Results
 from heuncli.study.model.options import require_within_run
 from heuncli.study.model.setup import attach_locations
+from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
 
-if TYPE_CHECKING:
-    from heuncli.app.python.number import Number
+OWN_FRAMES = (__name__.partition(".")[0], "contextlib")  # frames that are heun's own
+
+
+class HeunWarning(UserWarning):
+    """A warning of a run: `warnings.simplefilter("error", heuncli.HeunWarning)` turns it into an error."""
+
+
+def emit_warnings(texts: Iterable[str]) -> None:
+    """Emit each text as a Python warning, at the line of the first caller outside heun."""
+    messages = list(texts)
+    if not messages:
+        return
+    depth, frame = 1, sys._getframe()
+    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in OWN_FRAMES:
+        depth, frame = depth + 1, frame.f_back
+    for text in messages:
+        warnings.warn(text, HeunWarning, stacklevel=depth)
+
+
+COMMAND = "measure"
+
+
+class Number(float):
+    """A number of a run: a float with its unit, error, instant and position.
+
+    unit: SI
+    error: the stated absolute error, nan if the run states none
+    at: its instant [s], or None
+    s: position along a series of cuts [m]; side, cut: the side of a load there, and the number of the cut
+    horizon: the instant [s] from which on nothing is claimed, if that makes the number nan
+    is_open: whether it is nan because the laws of rigid bodies do not determine it
+    """
+
+    unit: str = ""
+    error: float = math.nan
+    at: float | None = None
+    s: float | None = None
+    side: str | None = None
+    cut: int | None = None
+    horizon: float | None = None
+    is_open: bool = False
+
+    def __repr__(self) -> str:
+        words = append_unit(str(self), self.unit)
+        words += f" at t = {self.at:.6g} s" if self.at is not None else ""
+        words += f", s = {self.s:.6g} m" if self.s is not None else ""
+        words += f" (error {self.error:.2g})" if math.isfinite(self.error) else ""
+        words += f" (not reliable from t = {self.horizon:.4g} s on)" if self.horizon is not None else ""
+        return words + (" (open)" if self.is_open else "")
+
+    def __str__(self) -> str:
+        return float.__repr__(self)
+
+
+def compute_number(study: Study, words: str) -> Number:
+    """Compute the number that the words of a measure describe. Raises UsageError, SpecError [unknown-path]."""
+    request = measure.parse_measure(words, COMMAND)
+    measure.require_known_paths([request], study.spec, COMMAND)
+    peak, horizon = measure.measure_number(request, study, COMMAND)
+    block = measure.describe_measure(request, study, peak, horizon)
+    number = Number(math.nan if block["value"] is None else block["value"])
+    number.unit, number.at, number.horizon = find_unit(request.path, study.spec), block["at"], block.get("horizon")
+    number.s, number.side, number.cut = block.get("s"), block.get("side"), block.get("cut")
+    stated = measure_uncertainty(study, request.path, request.how, peak.value)
+    number.error = math.nan if stated is None else float(stated)
+    number.is_open = math.isnan(number) and number.horizon is None and number.at not in study.unknown
+    return number
 
 
 class UnknownPath(SpecError, KeyError):
@@ -76,8 +145,6 @@ class LockedRun:
 
     def measure(self, words: str) -> Number:
         """Compute the number that the words of a measure describe. Raises UsageError, SpecError [unknown-path]."""
-        from heuncli.app.python.number import compute_number
-
         with self.hold_lock():
             return compute_number(self.study, words)
 

@@ -1,6 +1,7 @@
-"""Export a solved scene as text, HTML and a file, with the tables of `heun run`, and signals as a pandas.DataFrame.
+"""Export a solved scene as text, HTML, a file, a diagram or a pandas.DataFrame.
 
-pandas is an optional extra (heuncli[pandas])."""
+The tables are those of `heun run`. pandas is an optional extra (heuncli[pandas]).
+"""
 
 from __future__ import annotations
 
@@ -9,21 +10,31 @@ import importlib.util
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from heuncli.app.python.arguments import FILE, check_arguments
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.records import replace
 from heuncli.output.documents.as_html import escape_text, make_element, render_table
 from heuncli.output.documents.as_text import render_text
 from heuncli.output.documents.document import format_head
+from heuncli.output.drawing.drawing_files import encode_drawing, find_form
+from heuncli.output.drawing.layout import lay_out
+from heuncli.output.drawing.shapes import VectorDrawing, to_svg
+from heuncli.output.figures.courses import FigureSource
+from heuncli.output.figures.histories import make_history
+from heuncli.output.tables.measure import require_known_paths
 from heuncli.output.tables.page import TablesQuery
 from heuncli.output.tables.report_selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.output.tables.summary_document import RunParts, make_run_parts
 from heuncli.results.results import Array
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.model.selection import Selection
+from heuncli.study.quantities.given_captions import set_captions
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units, read_display_units
+from heuncli.study.queries.measure import MeasureRequest
 from heuncli.study.queries.study import Study
 
 if TYPE_CHECKING:
@@ -31,6 +42,7 @@ if TYPE_CHECKING:
 
     from heuncli.app.python.locked_run import LockedRun
     from heuncli.app.python.signals import Signal
+
 
 # no colours, so that light and dark notebooks keep theirs; all rules apply within this class only
 STYLE = (
@@ -139,3 +151,52 @@ def make_frame(run: LockedRun, signals: Sequence[Signal], units: bool, *, is_exp
     frame = pd.DataFrame(columns, index=pd.Index(times, name="time [s]" if units else "time"))
     frame.attrs = {"units": unit_names, "errors": errors, "title": run.results.title}
     return frame
+
+
+class Diagram:
+    """A diagram as `heun plot` draws it; a notebook shows it as the last value of a cell."""
+
+    def __init__(self, picture: VectorDrawing) -> None:
+        self._picture = picture
+
+    @property
+    def svg(self) -> str:
+        """The drawing as the text of an SVG file, without external fonts or scripts."""
+        return to_svg(self._picture)
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Write the diagram in the format of the file's ending: .svg, .png or .pdf. Raises UsageError,
+        OSError.
+        """
+        check_arguments(("file", file, FILE), optional=False)
+        name = os.fspath(file)
+        Path(name).write_bytes(encode_drawing(self._picture, find_form(name, "save")))
+
+    def _repr_svg_(self) -> str:
+        return self.svg.partition("?>\n")[2]
+
+    def __repr__(self) -> str:
+        return f"<heuncli.Diagram {self._picture.title!r}>"
+
+
+def make_diagram(
+    study: Study,
+    paths: Sequence[str],
+    x_path: str | None,
+    units: str | None,
+    title: str | None = None,
+    labels: Mapping[str, str] = MappingProxyType({}),
+) -> Diagram:
+    """Draw numbers over time, or over the number at `x_path`; labels: of what is drawn, by path. Raises UsageError,
+    NotDrawable, NotOneNumber, SpecError.
+    """
+    if not paths:
+        hint = "for example study.plot('energy.kinetic')"
+        raise UsageError(Problem("bad-option", "plot: no path is given", hint=hint))
+    requests = [MeasureRequest("", path) for path in (*paths, *([] if x_path is None else [x_path]))]
+    require_known_paths(requests, study.spec, "plot")
+    spec = set_captions(study.spec, title, labels.items())
+    drawn = replace(study, spec=spec) if labels else study
+    figure = make_history([FigureSource("", drawn)], paths, read_display_units("units", units), x_path)
+    study.later_warnings.update(drawn.later_warnings)
+    return Diagram(lay_out(figure if title is None else figure._replace(title=spec.title)))

@@ -26,7 +26,7 @@ from heuncli.study.queries.measure import MeasureRequest, find_exceeded_horizon
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 
 if TYPE_CHECKING:
-    from heuncli.app.python.number import Number
+    from heuncli.app.python.locked_run import Number
 
 LISTS = (IMPULSES, "certain_sums")  # blocks of the results that are lists of blocks
 

@@ -24,8 +24,7 @@ from heuncli.app.python.arguments import (
     TEXTS,
     check_arguments,
 )
-from heuncli.app.python.locked_run import LockedRun, find_distinct_instants
-from heuncli.app.python.python_warnings import emit_warnings
+from heuncli.app.python.locked_run import LockedRun, emit_warnings, find_distinct_instants
 from heuncli.results.results import Array, Results
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.queries.study import Study
@@ -36,8 +35,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from heuncli.analyses.load_cases.model import LoadCases
-    from heuncli.app.python.diagrams import Diagram
-    from heuncli.app.python.number import Number
+    from heuncli.app.python.locked_run import Number
+    from heuncli.app.python.result_export import Diagram
     from heuncli.app.python.signals import Signal
     from heuncli.study.load_collectives import Collective
 
@@ -277,7 +276,7 @@ class Solved(Mapping[str, "Signal"]):
 
         Raises HeunError for what cannot be drawn.
         """
-        from heuncli.app.python.diagrams import make_diagram
+        from heuncli.app.python.result_export import make_diagram
 
         check_arguments(
             ("paths", paths, TEXTS), ("over", over, TEXT), ("units", units, TEXT), ("title", title, TEXT),

@@ -38,7 +38,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     Joints, stops and foundation in this order: loads, their shares by cause, axes, and which of them are indeterminate.
     """
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
-    recovered, states = recovery.solutions, recovery.states
+    solutions, states = recovery.solutions, recovery.states
     blocks_by_name: dict[str, Any] = {}
     if "foundation" in reports:
         blocks_by_name["foundation"] = foundation_block(
@@ -67,7 +67,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             rodrigues_vectors,
         )
 
-        attitude_quaternions = body_quaternions(layout, recovered)
+        attitude_quaternions = body_quaternions(layout, solutions)
         vectors = rodrigues_vectors(attitude_quaternions)
         body_momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
         blocks_by_name["bodies"] = {
@@ -75,7 +75,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             for i, b in enumerate(mechanism.bodies)
         }
         blocks_by_name["momentum"] = body_momenta.sum_bodies()
-        blocks_by_name["coordinates"] = evaluate_joint_coordinates(layout, recovered, states)
+        blocks_by_name["coordinates"] = evaluate_joint_coordinates(layout, solutions, states)
         blocks_by_name["system_vector"] = system_vector(mechanism, states)
     if "points" in reports:
         blocks_by_name["points"] = point_motions(mechanism, states)

@@ -11,13 +11,12 @@ from pathlib import Path
 
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError, format_problems, run_contained
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.solving import format_warnings
-from heuncli.app.commands.check import goldens
-from heuncli.app.commands.check.folders import FoundSpec
-from heuncli.app.commands.check.goldens import NO_FILE, compare_golden
+from heuncli.app.cli.target import require_other_file
+from heuncli.app.commands.check import spec_files
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.app.commands.check.results import CheckResult
+from heuncli.app.commands.check.spec_files import NO_FILE, FoundSpec, compare_golden
 from heuncli.base.errors import Finding, HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.process import result_memory
@@ -79,7 +78,7 @@ def check_spec(task: CheckTask, request: CheckRequest, jobs: int) -> CheckResult
     except HeunError as error:
         has_locations = all(problem.location for problem in error.problems)
         lines = format_problems(error.problems, label="" if has_locations else f"{path}: ")
-        outcomes = () if isinstance(error, goldens.GoldenError) else tuple(starmap(_make_skipped_outcome, items))
+        outcomes = () if isinstance(error, spec_files.GoldenError) else tuple(starmap(_make_skipped_outcome, items))
         checked = CheckResult(path, outcomes, error.problems, error.exit_code, messages=tuple(lines))
     return checked._replace(seconds=time.perf_counter() - start)
 
@@ -150,20 +149,20 @@ def _select_results(spec: Spec, has_golden: bool) -> Selection:
 def _read_golden(task: CheckTask, request: CheckRequest) -> GoldenFile | None:
     """Read the golden file of a spec, or return None if there is none. Raises GoldenError."""
     assert task.file is not None and request.golden is not None
-    goldens.require_inside(task.file, request.golden)
+    spec_files.require_inside(task.file, request.golden)
     if not Path(task.file).exists():
         return None
     try:
         golden_file = read_golden_file(read_bytes(task.file, MAX_BYTES).decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise goldens.make_golden_error(
+        raise spec_files.make_golden_error(
             task.file, Finding("not-golden", f"this is not UTF-8: {error.reason}", REWRITE_HINT)
         ) from None
     except Finding as finding:
-        raise goldens.make_golden_error(task.file, finding) from None
+        raise spec_files.make_golden_error(task.file, finding) from None
     if golden_file.spec.path != task.name:
         message = f"golden file of another spec: {golden_file.spec.path}, not {task.name}"
-        raise goldens.make_golden_error(
+        raise spec_files.make_golden_error(
             task.file, Finding("not-golden", message, "move it back, or remove it and use --update")
         )
     return golden_file

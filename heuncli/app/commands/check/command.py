@@ -10,15 +10,14 @@ from pathlib import Path
 from heuncli.app.cli import jobs
 from heuncli.app.cli.documents import UNLIMITED, emit_document
 from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explain_hint, select_exit_code
-from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
-from heuncli.app.cli.target import choose_format, require_writable
-from heuncli.app.commands.check import goldens
+from heuncli.app.cli.target import choose_format, is_same_file, require_other_file, require_writable
+from heuncli.app.commands.check import spec_files
 from heuncli.app.commands.check.checking import CheckTask, check_spec
-from heuncli.app.commands.check.folders import FoundSpec, SkippedFolder, find_specs, select_specs
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
 from heuncli.app.commands.check.results import FAILED, CheckResult, CheckSummary, make_document, render_github
+from heuncli.app.commands.check.spec_files import FoundSpec, SkippedFolder, find_specs, select_specs
 from heuncli.base import files
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.text_safety import escape
@@ -41,7 +40,7 @@ def main(request: CheckRequest) -> int:
         message = f"no *.yaml in {', '.join(request.paths)}" if request.paths else "no PATH is given"
         raise UsageError(Problem("nothing-to-check", message, hint=NAMED))
     form = choose_format(request.format, request.output, FORMATS)
-    golden_files = goldens.map_golden_files(specs, request.golden) if request.golden is not None else {}
+    golden_files = spec_files.map_golden_files(specs, request.golden) if request.golden is not None else {}
     orphans = _report_orphans(request, specs, golden_files)
     selected = select_specs(specs, request.select) if request.select is not None else specs
     paths = [one.path for one in selected]
@@ -77,7 +76,7 @@ def _check_references(request: CheckRequest) -> int:
 
 def _require_consistent_options(request: CheckRequest) -> None:
     """Raise UsageError if options contradict each other, or a number is invalid."""
-    goldens.require_consistent_options(request)
+    spec_files.require_consistent_options(request)
     for word, number in (("--jobs", request.jobs), ("--durations", request.durations)):
         if number is not None and number < 1:
             raise UsageError(
@@ -101,7 +100,7 @@ def _report_orphans(request: CheckRequest, specs: Sequence[FoundSpec], golden_fi
     """
     if request.golden is None or any(one.folder is None for one in specs):
         return []
-    orphans = goldens.find_orphans(request.golden, golden_files.values())
+    orphans = spec_files.find_orphans(request.golden, golden_files.values())
     for path in orphans if not request.quiet or request.strict else ():
         print_stderr(f"{'heun' if request.strict else 'warning'}: {escape(path)}: a golden file without a spec")
     return orphans
@@ -130,7 +129,7 @@ def _check_all(specs: Sequence[FoundSpec], golden_files: dict[str, str], request
 def _make_task(one: FoundSpec, file: str | None, request: CheckRequest) -> CheckTask:
     if file is None or request.golden is None or one.problem is not None:
         return CheckTask(one)
-    return CheckTask(one, file, goldens.make_spec_name(file, one.path, request.golden))
+    return CheckTask(one, file, spec_files.make_spec_name(file, one.path, request.golden))
 
 
 def _has_failed(one: CheckResult) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from heuncli.app.commands.check.folders import SkippedFolder
+from heuncli.app.commands.check.spec_files import GoldenUpdate, SkippedFolder
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
@@ -14,14 +14,6 @@ from heuncli.output.snapshots.outcomes import GOLDEN, Annotation, Outcome, iter_
 from heuncli.output.tables.nouns import format_count
 
 FAILED = 1
-
-
-class GoldenUpdate(NamedTuple):
-    """The golden file of a spec: its path, and its new text if it is to be written."""
-
-    path: str
-    text: str | None = None
-    is_new: bool = False
 
 
 class CheckResult(NamedTuple):

@@ -12,12 +12,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from heuncli.app.commands.explain.pages import (
     PAGES,
     ManualSection,
+    explain_path,
     find_section,
     make_request,
     read_page,
     read_sections,
 )
-from heuncli.app.commands.explain.paths import explain_path
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results_schema import NOT_YET, ROWS, is_share
 

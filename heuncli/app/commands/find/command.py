@@ -14,7 +14,6 @@ from heuncli.analyses.variants.parameters import DesignVariable, parse_interval
 from heuncli.analyses.variants.samples import Sample, make_sample
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import (
     CASE,
     FORMAT,
@@ -30,7 +29,7 @@ from heuncli.app.cli.options import (
 )
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, require_tolerance
-from heuncli.app.cli.target import choose_format, note_si_format, parse_units
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_other_file
 from heuncli.app.cli.variant_workers import print_variant_warnings
 from heuncli.app.commands.find.page import FindPage, make_document
 from heuncli.base.errors import Problem, SolveError

@@ -13,12 +13,11 @@ from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
+from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option, make_format_option
 from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import parse_overrides, print_warnings
-from heuncli.app.cli.target import choose_format, note_si_format, parse_units
-from heuncli.app.commands.lagrange import course_page, forms, page
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_other_file
+from heuncli.app.commands.lagrange import forms, page
 from heuncli.app.commands.lagrange.forms import KEYS
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.joint_kinds import JOINTS, is_length
@@ -79,7 +78,7 @@ class LagrangeRequest(NamedTuple):
     ] = None
     format: Annotated[
         str | None,
-        Option(("--format",), "Output format. Default: from the extension of -o FILE, else table.", "table|json|csv|m"),
+        make_format_option(("table", "json", "csv", "m")),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
@@ -121,7 +120,7 @@ def write_result(spec: Spec, request: LagrangeRequest, question: LagrangeOptions
     """Compute the requested result, and write it in a format; tables in the given units."""
     if request.over is not None:
         course = find_inertia_curve(spec, parse_range(request.over, spec))
-        emit_document(course_page.make_document(course, units), form, request.output)
+        emit_document(page.make_course_document(course, units), form, request.output)
         return
     results = solve_lagrange(spec, question)
     if form == "m" and results.state_space is not None:

@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from heuncli.analyses.lagrange.equations import to_lists
-from heuncli.analyses.lagrange.results import MIXED_INERTIA_UNIT, LagrangeResults, StateSpace, get_units
+from heuncli.analyses.lagrange.results import (
+    MIXED_INERTIA_UNIT,
+    InertiaCurve,
+    LagrangeResults,
+    StateSpace,
+    get_units,
+)
 from heuncli.base.joint_kinds import is_length
 from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell
@@ -144,3 +150,43 @@ def to_m(linear: StateSpace) -> str:
 def make_impulse_block(results: LagrangeResults, section: str) -> dict[str, Any]:
     """Return r' of a section in the first impulse, or nothing if there is no impulse."""
     return {"r": to_lists(results.impulses[0].sections[section])} if results.impulses else {}
+
+
+COURSE_CSV_COLUMNS = make_columns("coordinate at quantity component unit value")
+
+
+def to_course_block(course: InertiaCurve) -> dict[str, Any]:
+    """Return the course as the JSON has it: lists over the coordinates have an additional first axis over the
+    values.
+    """
+    return {
+        "title": course.title,
+        "over": {"coordinate": course.name, "values": course.values.tolist()},
+        "coordinates": [course.name],
+        "units": [get_units(course.name).value],
+        "driven": [course.is_driven],
+        "rates": [[course.rate]] * len(course.values),
+        "epsilon": course.epsilon[:, None, None].tolist(),
+        "eta": (1.0 / course.epsilon)[:, None, None].tolist(),
+        "gamma": course.half[:, None, None, None].tolist(),
+        "momenta": (course.epsilon * course.rate)[:, None].tolist(),
+        "coriolis": (course.half * course.rate**2)[:, None].tolist(),
+        "half_slope": course.half.tolist(),
+        "forces": {
+            "total": course.total_force[:, None].tolist(),
+            "shares": {name: k[:, None].tolist() for name, k in course.forces.items()},
+        },
+        "mean": None if np.isnan(course.mean) else course.mean,
+    }
+
+
+def iter_course_records(course: InertiaCurve) -> Iterator[tuple[Cell, ...]]:
+    """Yield the course in long form, one row per value and quantity."""
+    unit_set = get_units(course.name)
+    for i, value in enumerate(course.values.tolist()):
+        lead = (course.name, value)
+        yield *lead, "epsilon", "", unit_set.inertia, float(course.epsilon[i])
+        yield *lead, "half_slope", "", unit_set.slope, float(course.half[i])
+        yield *lead, "force", "", unit_set.force, float(course.total_force[i])
+        for name, k in course.forces.items():
+            yield *lead, "force", name, unit_set.force, float(k[i])

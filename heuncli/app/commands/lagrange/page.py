@@ -1,4 +1,4 @@
-"""Make the document of Lagrange's equations at an instant."""
+"""Make the documents of Lagrange's equations: at an instant, and over a range of the coordinate."""
 
 from __future__ import annotations
 
@@ -9,8 +9,15 @@ from operator import attrgetter
 import numpy as np
 
 from heuncli.analyses.lagrange.equations import list_cuts
-from heuncli.analyses.lagrange.results import ANGLE, LENGTH, LagrangeResults, StateSpace, get_units
-from heuncli.app.commands.lagrange.forms import CSV_COLUMNS, iter_records, to_block
+from heuncli.analyses.lagrange.results import ANGLE, LENGTH, InertiaCurve, LagrangeResults, StateSpace, get_units
+from heuncli.app.commands.lagrange.forms import (
+    COURSE_CSV_COLUMNS,
+    CSV_COLUMNS,
+    iter_course_records,
+    iter_records,
+    to_block,
+    to_course_block,
+)
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable, format_head
 from heuncli.results.results import Array
 from heuncli.study.quantities.labels import distinguish
@@ -185,8 +192,8 @@ def make_force_table(results: LagrangeResults, units: Units) -> OutputTable:
     display_units = [units.find(get_units(name).force) for name in results.names]
 
     def row(cause: str, k: Array) -> tuple[Cell, ...]:
-        told = zip(k, results.scale, display_units, strict=True)
-        return cause, *(make_cell(x * by, size * by) for x, size, (_, by) in told)
+        cells = zip(k, results.scale, display_units, strict=True)
+        return cause, *(make_cell(x * factor, size * factor) for x, size, (_, factor) in cells)
 
     rows = [row(distinguish(cause, OWN_ROWS), k) for cause, k in results.forces.items()]
     rows += [row(name, k) for name, k in zip(OWN_ROWS, (results.total_force, results.coriolis), strict=True)]
@@ -267,3 +274,53 @@ def make_cells(values: Array | None, sizes: Sequence[float], reach: Array | floa
         return ["open"] * len(sizes)
     factors = np.array(sizes)
     return [make_cell(x, size) for x, size in zip(values * factors, reach * factors, strict=True)]
+
+
+TOTAL = "k"
+COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
+
+
+def make_course_document(course: InertiaCurve, units: Units) -> OutputDocument:
+    """Make the document of a course; its table in the given units."""
+    unit_set = get_units(course.name)
+    unit, size = units.find(unit_set.value)
+    low, high = int(np.argmin(course.epsilon)), int(np.argmax(course.epsilon))
+    least, largest = (
+        f"{course.epsilon[i]:.6g} {unit_set.inertia} at {course.values[i] * size:.6g} {unit}" for i in (low, high)
+    )
+    mean = (
+        "mean does not converge"
+        if np.isnan(course.mean)
+        else f"mean {course.mean:.6g} {unit_set.inertia} over the range"
+    )
+    facts = [("inertia", f"ε {mean}; smallest value {least}, largest {largest}")]
+    return OutputDocument(
+        course.title,
+        facts,
+        [make_course_table(course, units)],
+        lambda: to_course_block(course),
+        lambda: OutputTable("", COURSE_CSV_COLUMNS, list(iter_course_records(course))),
+    )
+
+
+def make_course_table(course: InertiaCurve, units: Units) -> OutputTable:
+    """Make the table with one row per value of the coordinate."""
+    unit_set = get_units(course.name)
+    length_scale = np.abs(course.values).max() if unit_set is LENGTH else 1.0
+    largest_inertia = float(course.epsilon.max())
+    columns_of_values = [
+        (course.name, unit_set.value, course.values, 0.0),
+        ("ε", unit_set.inertia, course.epsilon, 0.0),
+        ("½ dε/dq", unit_set.slope, course.half, largest_inertia / length_scale),
+    ]
+    forces = [(TOTAL, course.total_force), *((distinguish(name, (TOTAL,)), k) for name, k in course.forces.items())]
+    columns_of_values += [(name, unit_set.force, k, course.force_scale) for name, k in forces]
+    columns, cells = [], []
+    for name, unit, values, scale in columns_of_values:
+        shown_unit, size = units.find(unit)
+        columns.append(OutputColumn(name, unit=shown_unit))
+        largest = max(scale, float(np.abs(values).max(initial=0.0)))
+        cells.append([make_cell(x * size, largest * size) for x in values])
+    rows = tuple(zip(*cells, strict=True))
+    unit, size = units.find(unit_set.rate)
+    return OutputTable(COURSE.format(rate=course.rate * size, unit=unit), columns, rows)

@@ -10,13 +10,13 @@ from heuncli.app.cli.solving import collect_results, require_choice
 from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import (
+    PlotTarget,
     list_extreme_paths,
     load_specs,
     parse_instants,
     require_joint_paths,
     solve_source,
 )
-from heuncli.app.commands.plot.target import PlotTarget
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.spelling import find_similar
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES

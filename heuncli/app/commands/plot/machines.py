@@ -7,19 +7,17 @@ import numpy as np
 from heuncli.analyses.balancing.study import balance
 from heuncli.analyses.modes import BodyModes, exclude_entries, find_body_modes
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.figure_options import require_view
-from heuncli.app.cli.solving import print_warnings
-from heuncli.app.cli.spec_options import find_excluded
-from heuncli.app.cli.target import parse_units
+from heuncli.app.cli.solving import find_excluded, print_warnings
+from heuncli.app.cli.target import parse_units, require_view
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import (
+    PlotTarget,
     list_extreme_paths,
     load_specs,
     parse_instants,
     require_no_paths,
     solve_source,
 )
-from heuncli.app.commands.plot.target import PlotTarget
 from heuncli.base.errors import Finding, Problem
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.courses import FigureSource, make_title

@@ -9,12 +9,19 @@ from pathlib import PurePath
 
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.solving import make_solver_options, parse_overrides, print_warnings, require_cases, require_choice
-from heuncli.app.cli.spec_options import apply_captions, apply_captions_to_cases
+from heuncli.app.cli.solving import (
+    apply_captions,
+    apply_captions_to_cases,
+    make_solver_options,
+    parse_overrides,
+    print_warnings,
+    require_cases,
+    require_choice,
+)
+from heuncli.app.cli.target import require_other_file
 from heuncli.app.commands.plot.request import PlotRequest
-from heuncli.app.commands.plot.target import PlotTarget
 from heuncli.base.errors import Problem
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.figures.courses import FigureSource
@@ -29,6 +36,14 @@ from heuncli.study.model.selection import select_paths
 from heuncli.study.model.setup import attach_locations
 from heuncli.study.queries.at_option import find_requested_times, make_extreme_requests, parse
 from heuncli.study.workflow import solve
+
+
+class PlotTarget(NamedTuple):
+    """The files, the kind of figure, and its paths."""
+
+    files: Sequence[str]
+    kind: str
+    paths: Sequence[str]
 
 
 def load_specs(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:

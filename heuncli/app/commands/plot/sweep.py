@@ -28,7 +28,7 @@ from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.request import PlotRequest
-from heuncli.app.commands.plot.target import PlotTarget
+from heuncli.app.commands.plot.sources import PlotTarget
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.named_tuples import NamedTuple

@@ -7,7 +7,9 @@ from heuncli.app.cli.options import (
     LEAST_NORM,
     METHOD,
     NO_REDUCE,
+    PAPERS,
     QUIET,
+    REPORT_FORMATS,
     SET,
     SPEC,
     STEP,
@@ -17,9 +19,6 @@ from heuncli.app.cli.options import (
     Option,
 )
 from heuncli.base.named_tuples import NamedTuple
-
-FORMATS = ("html", "pdf", "md")
-PAPERS = ("a4", "letter")
 
 
 class ReportRequest(NamedTuple):
@@ -34,7 +33,9 @@ class ReportRequest(NamedTuple):
     ] = None
     format: Annotated[
         str | None,
-        Option(("--format",), "Output format. Default: from the extension of -o FILE, else html.", "|".join(FORMATS)),
+        Option(
+            ("--format",), "Output format. Default: from the extension of -o FILE, else html.", "|".join(REPORT_FORMATS)
+        ),
     ] = None
     date: Annotated[str | None, Option(("--date",), "Date in the title block. Default: none.", "TEXT")] = None
     author: Annotated[str | None, Option(("--author",), "Author of the report.", "TEXT")] = None

@@ -1,33 +1,58 @@
-"""`heun run`: solve a scene, and report its loads and motion."""
+"""`heun run`: solve a scene, and report its loads and motion.
+
+`--watch` runs again whenever the spec, or a file that it reads, is saved. Checking the status of the files five times a
+second works on every system, and also notices editors that replace the old file by a new one. Impure: files, time,
+terminal.
+"""
 
 from __future__ import annotations
 
+import sys
 import time
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from heuncli.app.api import read
-from heuncli.app.cli import timeout
-from heuncli.app.cli.guard import require_other_file
-from heuncli.app.cli.output import emit
-from heuncli.app.cli.solving import make_solver_options, parse_overrides, require_choice
-from heuncli.app.cli.spec_options import apply_captions, apply_captions_to_cases
-from heuncli.app.cli.target import TABLES, choose_format, note_si_format, parse_units
+from heuncli.app.cli import terminal, timeout
+from heuncli.app.cli.entry import UsageError, report_problems, run_contained
+from heuncli.app.cli.output import emit, print_stderr
+from heuncli.app.cli.solving import (
+    apply_captions,
+    apply_captions_to_cases,
+    make_solver_options,
+    parse_overrides,
+    require_choice,
+)
+from heuncli.app.cli.target import TABLES, choose_format, note_si_format, parse_units, require_other_file
 from heuncli.app.commands.run.request import FORMATS, RunRequest
-from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
+from heuncli.app.commands.run.scene import (
+    RunTask,
+    finish,
+    note_measure_units,
+    require_alone,
+    run_overview,
+    solve_and_render,
+)
+from heuncli.base.errors import Finding, HeunError, Problem
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace
+from heuncli.base.text_safety import escape
 from heuncli.loads.kinetostatics.reactions import JOINT_AXES
 from heuncli.output.tables.page import EXPORT_DEFAULT
 from heuncli.output.tables.report_selection import ReportChoice, find_default_reports, parse_choice, select_reports
 from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.names import ALL_CASES
+from heuncli.scene.file_format.names import ALL_CASES, as_mapping
+from heuncli.scene.file_format.reading import STANDARD_INPUT
+from heuncli.scene.file_format.source import read_source
 from heuncli.study.model.options import MemoryBudget
 from heuncli.study.model.selection import Selection, select_paths
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from heuncli.app.commands.run.collective import CollectiveTask
     from heuncli.study.queries.measure import MeasureRequest
+
 
 HARDPOINT_REPORTS = frozenset({"joints", "forces"})
 
@@ -35,8 +60,6 @@ HARDPOINT_REPORTS = frozenset({"joints", "forces"})
 def main(request: RunRequest) -> int:
     """Run the command; returns the exit code."""
     if request.watch:
-        from heuncli.app.commands.run.watching import watch  # rarely used
-
         watch(request, main)
     require_other_file(request.output, [request.spec])
     form = choose_format(request.format, request.output, FORMATS)
@@ -46,9 +69,7 @@ def main(request: RunRequest) -> int:
     units_shown = parse_units(request.units)
     is_overview = request.summary or request.hardpoints
     if is_overview:
-        from heuncli.app.commands.run import overview
-
-        overview.require_alone(request)
+        require_alone(request)
     options = replace(make_solver_options(request), axes=_choose_axes(request))
     start = time.perf_counter()
     spec, cases = read(request.spec, parse_overrides(request.set), request.case)
@@ -63,7 +84,7 @@ def main(request: RunRequest) -> int:
     options = replace(options, requested_reports=selection.reports, entries=selection.entries, in_parts=is_export)
     task = RunTask(request, form, options, selection, measures, units_shown, collectives)
     if is_overview:
-        return overview.run_overview(task, spec, cases)
+        return run_overview(task, spec, cases)
     if request.case == ALL_CASES:
         from heuncli.app.commands.run.cases import run_all  # of few runs
 
@@ -136,3 +157,72 @@ def _require_paths(
 
     require_paths(collectives, spec)
     return collectives.paths
+
+
+CHECK_INTERVAL = 0.2  # s between two checks
+CLEAR = "\x1b[2J\x1b[3J\x1b[H"
+State = tuple[tuple[str, int, int, int] | None, ...]
+
+
+def watch(request: RunRequest, run: Callable[[RunRequest], int]) -> NoReturn:
+    """Run again after each change, until interrupted. Raises UsageError if there is no file to watch."""
+    for is_given, word in ((request.time_limit is not None, "--time-limit"), (request.spec == STANDARD_INPUT, "-")):
+        if is_given:
+            hint = "leave it out; --watch runs until Ctrl-C and needs a file"
+            raise UsageError(Problem("bad-option", f"--watch and {word} cannot be combined", hint=hint))
+    single_run = request._replace(watch=False)
+    while True:
+        old_state = read_state(request.spec)
+        _clear_screen()
+        try:
+            run_contained(lambda: run(single_run), ("run", request.spec))
+        except HeunError as error:
+            report_problems(error.problems)
+        if not request.quiet:
+            print_stderr(f"heun: watching {escape(request.spec)}; Ctrl-C stops it")
+        _wait_for_change(request.spec, old_state)
+
+
+def _wait_for_change(spec: str, old_state: State) -> None:
+    """Return once the files are saved; the spec is missing for a moment while an editor replaces it."""
+    while True:
+        state = read_state(spec)
+        if state != old_state and state[0] is not None:
+            return
+        time.sleep(CHECK_INTERVAL)
+
+
+def _clear_screen() -> None:
+    """Clear the screen, if there is one."""
+    if terminal.is_terminal() and terminal.supports_styles():
+        sys.stdout.write(CLEAR)
+        sys.stdout.flush()
+
+
+def read_state(spec: str) -> State:
+    """Return the status of the spec and of the tables and curves that it names; it differs after a save."""
+    from pathlib import Path  # 3 ms that a single run does not need
+
+    return tuple(_read_stamp(Path(name)) for name in (spec, *_iter_files(spec)))
+
+
+def _read_stamp(path: Path) -> tuple[str, int, int, int] | None:
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return str(path), status.st_mtime_ns, status.st_size, status.st_ino
+
+
+def _iter_files(spec: str) -> Iterator[str]:
+    """Yield the files that a spec names; none while it cannot be read."""
+    from pathlib import Path
+
+    try:
+        data = as_mapping(read_source(spec, None).data)
+    except (HeunError, Finding):
+        return
+    expected: Any = data.get("expect")
+    names = [as_mapping(table).get("file") for table in as_mapping(data.get("tables")).values()]
+    names += [as_mapping(item).get("curve") for item in (expected if isinstance(expected, list) else [])]
+    yield from (str(Path(spec).parent / name) for name in names if isinstance(name, str))

@@ -16,6 +16,7 @@ from heuncli.app.cli.options import (
     TITLE,
     TOLERANCE,
     Option,
+    make_format_option,
 )
 from heuncli.base.named_tuples import NamedTuple
 
@@ -28,11 +29,7 @@ class RunRequest(NamedTuple):
     spec: Annotated[str, SPEC]
     format: Annotated[
         str | None,
-        Option(
-            ("--format",),
-            "Output format. Default: from the extension of -o FILE, else table.",
-            "|".join(FORMATS),
-        ),
+        make_format_option(FORMATS),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     only: Annotated[

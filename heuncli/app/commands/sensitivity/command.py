@@ -9,17 +9,22 @@ from typing import Annotated
 
 from heuncli.analyses.sensitivity import NoisyDerivative, compute_derivative
 from heuncli.analyses.tolerance_analysis import NumberSpread, combine_tolerances, parse_spreads
-from heuncli.analyses.variants.evaluation import CachedEvaluator, KnownResults, Recipe, VariantEvaluator
+from heuncli.analyses.variants.evaluation import (
+    CachedEvaluator,
+    KnownResults,
+    Recipe,
+    SpecNumber,
+    SpecNumbers,
+    VariantEvaluator,
+)
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue, Reason
-from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import require_other_file
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import collect_results, parse_overrides, require_tolerance
-from heuncli.app.cli.target import choose_format, note_si_format, parse_units
+from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_other_file
 from heuncli.app.cli.variant_workers import choose_job_count, print_variant_warnings, require_job_count, solve_contained
 from heuncli.app.commands.sensitivity.page import MeasureFindings, SensitivityPage, make_document
 from heuncli.base.errors import Problem, SolveError
@@ -97,10 +102,10 @@ def main(request: SensitivityRequest) -> int:
         cached = CachedEvaluator(
             evaluator.answer, lambda runs: report(min(runs, variant_count), variant_count, "variants")
         )
-        begun = time.perf_counter()
+        start = time.perf_counter()
         if cached.evaluate({}).code:
             evaluator.solve({})  # raises the error with its location
-        job_count = choose_job_count(request.jobs, len(numbers), time.perf_counter() - begun)
+        job_count = choose_job_count(request.jobs, len(numbers), time.perf_counter() - start)
         solve_ahead(cached, evaluator, heads, numbers, job_count)
         all_findings = [analyse_measure(cached, k, head, numbers, spreads) for k, head in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(all_findings), cached.runs, units_shown)

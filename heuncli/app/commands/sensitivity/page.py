@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.variants.evaluation import SpecNumber
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
-from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import (
@@ -84,8 +84,8 @@ def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[SpecN
     """Sort the numbers by their influence on the measure, the largest first, unknown ones last."""
 
     def weight(number: SpecNumber) -> tuple[bool, float]:
-        told = compute_elasticity(number, findings)
-        return told is None, -abs(told[0]) if told else 0.0
+        elasticity = compute_elasticity(number, findings)
+        return elasticity is None, -abs(elasticity[0]) if elasticity else 0.0
 
     return sorted(page.numbers, key=weight)
 

@@ -1,20 +1,35 @@
 """The axes of a sweep, each value with its place: words of the command line, or columns of the table `--variants FILE`.
 
-The table is a CSV file, one column per parameter and one row per variant. Impure: reads it."""
+The table is a CSV file, one column per parameter and one row per variant. Names and units of all axes are checked
+before the first variant runs, and all problems reported at once. Problems that depend on the size of a value (a
+negative mass, a loop that does not close) are not checked here: such a variant gets the reason in its row. Impure:
+reads the table.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
 
-from heuncli.analyses.variants.parameters import CASE, ParameterAxis, RandomVariable, make_axis, parse_axis_values
+from heuncli.analyses.variants.evaluation import SPELLING_CODES, SpecNumbers, VariantEvaluator, varies_cases
+from heuncli.analyses.variants.parameters import (
+    CASE,
+    ParameterAxis,
+    RandomVariable,
+    format_value,
+    make_axis,
+    parse_axis_values,
+)
 from heuncli.app.cli.entry import UsageError
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import suggest
 from heuncli.base.units import parse_unit
 from heuncli.scene.file_format.column_layout import iter_rows
 from heuncli.scene.file_format.headings import split_heading
 from heuncli.scene.file_format.names import ALL_CASES
+from heuncli.scene.file_format.parameters import parse_path
 from heuncli.scene.file_format.quantity import NumberWithUnit, ParameterValue, parse_number_with_unit
 from heuncli.scene.file_format.reading import STANDARD_INPUT, read_bytes
 
@@ -230,3 +245,97 @@ def _iter_cells(line: str, mark: str) -> Iterator[TableCell]:
             cell_end = len(line) if cell_end < 0 else cell_end
             yield TableCell(line[cell_start:cell_end].strip(), start + 1)
         cell_start = cell_end + 1
+
+
+# Codes of problems that do not depend on a value's size, besides those that begin with unknown-.
+NAME_CODES = frozenset({
+    "no-such-key", "dimension", "wrong-dimension", "wrong-kind", "expression-syntax", "expression-limit",
+    "function-arguments", "parameter-circle", "not-in-time", "not-yaml", "bad-character", "too-deep", "empty",
+})  # fmt: skip
+ONCE = "give one axis per parameter"
+
+
+def find_problems(
+    axes: Sequence[AxisArgument], evaluator: VariantEvaluator, overrides: Collection[str]
+) -> list[Problem]:
+    """Return the problems of the axes' names and units.
+
+    overrides: names that --set sets in all variants
+    """
+    problems = list(_find_duplicates(axes, evaluator, overrides))
+    for one in axes if not problems else ():
+        if one.name == CASE and varies_cases(evaluator.spec):
+            problems += _check_cases(one, evaluator)
+        elif one.name == CASE and CASE not in evaluator.spec.parameters:
+            problem = Problem(
+                "no-such-key", "the spec has no load cases", hint="cases: {NAME: {set: {PARAMETER: VALUE}}}"
+            )
+            problems.append(one.locate_problem(problem))
+        else:
+            problems += _check_values(one, evaluator)
+    return list(dict.fromkeys(problems))
+
+
+def _find_duplicates(
+    axes: Sequence[AxisArgument], evaluator: VariantEvaluator, overrides: Collection[str]
+) -> Iterator[Problem]:
+    """Yield parameters that two words vary, or that are both varied and set."""
+    data = {"parameters": dict.fromkeys(evaluator.spec.parameters)}
+    paths = [parse_path(one.name, data) for one in axes]
+    fixed = [parse_path(name, data) for name in overrides]
+    for k, one in enumerate(axes):
+        if paths[k] in paths[:k]:
+            yield one.locate_problem(Problem("bad-option", f"{one.name} is varied twice", hint=ONCE))
+        elif paths[k] in fixed:
+            message = f"{one.name} is varied, and set by --set"
+            yield one.locate_problem(Problem("bad-option", message, hint="leave one of them out"))
+
+
+def _check_cases(one: AxisArgument, evaluator: VariantEvaluator) -> Iterator[Problem]:
+    """Yield load cases that do not exist."""
+    known = evaluator.spec.cases
+    for value, k in one.list_samples().items():
+        text = format_value(value)
+        if text not in known and not one.is_all_cases:
+            hint = suggest(text, known, "cases")
+            yield one.locate_problem(Problem("unknown-case", f"there is no load case '{text}'", hint=hint), k)
+
+
+def _check_values(one: AxisArgument, evaluator: VariantEvaluator) -> Iterator[Problem]:
+    """Yield the problems of an axis that do not depend on the size of its values, at the first location of each
+    kind.
+    """
+    for value, k in one.list_samples().items():
+        try:
+            evaluator.load({one.name: value})
+        except SpecError as error:
+            relevant = [each for each in error.problems if each.code in NAME_CODES or each.code.startswith("unknown-")]
+            count_text = f"; {len(relevant)} places in all" if len(relevant) > 1 else ""
+            for problem in relevant[:1]:
+                extended = problem._replace(message=problem.message + count_text)
+                yield one.locate_problem(extended, None if problem.code == "no-such-key" else k)
+
+
+def find_warnings(axes: Sequence[AxisArgument], evaluator: VariantEvaluator) -> list[str]:
+    """Return warnings about the axes, one sentence each, before their variants are solved."""
+    warnings = []
+    for one in axes:
+        for value, k in one.list_samples().items():
+            with suppress(SpecError):
+                spec = evaluator.load({one.name: value})
+                located = [
+                    one.locate_problem(problem, k) for problem in spec.warnings if problem.code in SPELLING_CODES
+                ]
+                warnings += [str(problem._replace(hint=_make_unit_hint(one, evaluator))) for problem in located]
+    unused = evaluator.find_unused_parameters([one.name for one in axes])
+    warnings += [f"{one.word}: {one.name} has no effect" for one in axes if one.name in unused]
+    return list(dict.fromkeys(warnings))
+
+
+def _make_unit_hint(one: AxisArgument, evaluator: VariantEvaluator) -> str:
+    unit = SpecNumbers(evaluator.recipe, evaluator.spec).find_number(one.name).unit
+    return (
+        f"in the head of the column: {one.name} [{unit}]"
+        if one.column is not None
+        else f"with the unit: {one.word}{unit}"
+    )

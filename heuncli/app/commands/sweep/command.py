@@ -21,16 +21,21 @@ from heuncli.analyses.variants.plans import (
 )
 from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
-from heuncli.app.cli.target import choose_format, parse_units, require_writable
+from heuncli.app.cli.target import choose_format, is_same_file, parse_units, require_other_file, require_writable
 from heuncli.app.cli.variant_workers import require_job_count
-from heuncli.app.commands.sweep.axes import AxisArgument, parse_axis, parse_shard, read_axes
-from heuncli.app.commands.sweep.checks import find_problems, find_warnings
-from heuncli.app.commands.sweep.output.writer import SweepOutput, require_writable_form
+from heuncli.app.commands.sweep.axes import (
+    AxisArgument,
+    find_problems,
+    find_warnings,
+    parse_axis,
+    parse_shard,
+    read_axes,
+)
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep, show_stored
+from heuncli.app.commands.sweep.writer import SweepOutput, require_writable_form
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace

@@ -2,7 +2,19 @@
 
 from typing import Annotated
 
-from heuncli.app.cli.options import LEAST_NORM, METHOD, NO_REDUCE, OUTPUT, QUIET, SET, STEP, TOLERANCE, UNITS, Option
+from heuncli.app.cli.options import (
+    LEAST_NORM,
+    METHOD,
+    NO_REDUCE,
+    OUTPUT,
+    QUIET,
+    SET,
+    STEP,
+    TOLERANCE,
+    UNITS,
+    Option,
+    make_format_option,
+)
 from heuncli.base.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "csv", "parquet")
@@ -65,11 +77,7 @@ class SweepRequest(NamedTuple):
     ] = False
     format: Annotated[
         str | None,
-        Option(
-            ("--format",),
-            "Output format. Default: from the extension of -o FILE, else table.",
-            "|".join(FORMATS),
-        ),
+        make_format_option(FORMATS),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()

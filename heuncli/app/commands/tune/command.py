@@ -2,28 +2,37 @@
 
 from __future__ import annotations
 
+import shlex
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from heuncli.analyses.tune.results import TuneResults
+from heuncli.analyses.tune.results import (
+    Trials,
+    TuneResults,
+)
 from heuncli.analyses.tune.study import Tuning
-from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
+from heuncli.analyses.variants.parameters import format_value
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.guard import is_same_file, require_other_file
 from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tolerance
-from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_writable
+from heuncli.app.cli.target import (
+    choose_format,
+    is_same_file,
+    note_si_format,
+    parse_units,
+    require_other_file,
+    require_writable,
+)
 from heuncli.app.cli.variant_workers import choose_job_count, make_death_result, require_job_count, solve_contained
 from heuncli.app.commands.tune.options import FORMATS, TuneRequest, TuningOptions, make_task, parse_options
-from heuncli.app.commands.tune.page import make_document
-from heuncli.app.commands.tune.result_block import TunedScene, format_command, make_history
+from heuncli.app.commands.tune.page import TunedScene, make_document, make_history
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.base.files import STDOUT
 from heuncli.output.documents.as_data import iter_csv
@@ -173,3 +182,19 @@ def solve_variant(evaluator: VariantEvaluator, values: Values) -> VariantResult:
 def solve_in_worker(evaluator: VariantEvaluator, values: Values) -> VariantResult:
     """Solve a variant in a worker process under the time limit set here."""
     return solve_contained(evaluator, values, "tune", timeout.remaining_time())
+
+
+def format_command(options: TuningOptions, recipe: Recipe, results: TuneResults) -> str:
+    """Format the command line that gives the measures of the best variant, to the bit."""
+    words = ["heun", "run", recipe.path]
+    if recipe.case is not None:
+        words += ["--case", recipe.case]
+    for name, value in {**recipe.overrides, **results.best_texts}.items():
+        words += ["--set", f"{name}={format_value(value)}"]
+    if recipe.options.tolerance is not None:
+        words += ["--tolerance", repr(recipe.options.tolerance)]
+    if not recipe.options.reduce:
+        words += ["--no-reduce"]
+    for text in (options.goal, *(one.measure for one in options.conditions)):
+        words += ["--measure", text]
+    return shlex.join(words)

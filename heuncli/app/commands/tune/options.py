@@ -13,7 +13,7 @@ from heuncli.analyses.variants.evaluation import VariantEvaluator
 from heuncli.analyses.variants.measures import WrittenCondition, parse_condition, resolve_condition
 from heuncli.analyses.variants.parameters import INTERVAL_HINT, AxisError, DesignVariable, parse_interval
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, TOLERANCE, UNITS, Option
+from heuncli.app.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, TOLERANCE, UNITS, Option, make_format_option
 from heuncli.app.cli.solving import split_spec_and_assignments
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
@@ -72,11 +72,7 @@ class TuneRequest(NamedTuple):
     ] = None
     format: Annotated[
         str | None,
-        Option(
-            ("--format",),
-            "Output format. Default: from the extension of -o FILE, else table.",
-            "|".join(FORMATS),
-        ),
+        make_format_option(FORMATS),
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     history: Annotated[str | None, Option(("--history",), "Also write all variants in order: history.csv.", "FILE")] = (

@@ -8,7 +8,9 @@ had when it goes away, no more tasks are under way than are useful, and results 
 remaining batches of a worker that went away go to others; a variant that ends workers repeatedly gets that as its
 result. At the end, also after an error or a signal, nothing is left on the cluster.
 
-Impure: the network, the clock, another thread, in which `distributed` reports that a task has ended.
+The files that the variants name are read once here, and sent with the recipe.
+
+Impure: files, the network, the clock, another thread, in which `distributed` reports that a task has ended.
 """
 
 from __future__ import annotations
@@ -17,14 +19,14 @@ import socket
 import time
 from asyncio import CancelledError
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from itertools import chain
 from typing import Any
 
 from heuncli.analyses.variants.evaluation import Recipe
-from heuncli.analyses.variants.files import add_files, add_named_files
 from heuncli.analyses.variants.measures import WORKER_DIED, VariantResult
+from heuncli.analyses.variants.parameters import CASE
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.commands.sweep.cluster.connection import PATIENCE, ClusterGone, connect
@@ -38,8 +40,52 @@ from heuncli.app.commands.sweep.cluster.workers import (
     WorkerPool,
     format_addresses,
 )
-from heuncli.base.errors import Problem
+from heuncli.base.errors import HeunError, Problem
+from heuncli.scene.file_format.incremental_loader import SpecVariants
+from heuncli.scene.file_format.named_files import NamedFiles, TrackedFiles
+from heuncli.scene.file_format.parameters import parse_settings
 from heuncli.version import VERSION
+
+FILE_KEYS = (".file", ".curve")  # endings of the keys whose values are names of files
+
+
+def add_files(recipe: Recipe, plan: Plan) -> Recipe:
+    """Add to the recipe the files that its spec names and those that the axes set, with their present content.
+
+    A variant may name a further file, by a key that holds a whole table: see `add_named_files`. Raises SpecError.
+    """
+    noted_files = TrackedFiles(recipe.path)
+    spec = SpecVariants(recipe.path, recipe.text, recipe.overrides, False, recipe.case, noted_files).spec
+    for case in _iter_cases(plan, spec.cases):
+        try:
+            SpecVariants(recipe.path, recipe.text, recipe.overrides, False, case, noted_files)
+        except HeunError:  # the rows of that case report it
+            continue
+    return add_named_files(recipe, [*noted_files.names, *_iter_set_files(plan)])
+
+
+def add_named_files(recipe: Recipe, names: Iterable[str]) -> Recipe:
+    """Add some files to the recipe."""
+    files = NamedFiles(recipe.path)
+    files_by_name = dict(recipe.files or {})
+    files_by_name.update((name, files.get_file(name)) for name in dict.fromkeys(names) if name not in files_by_name)
+    return recipe._replace(files=files_by_name)
+
+
+def _iter_cases(plan: Plan, cases: Iterable[str]) -> Iterator[str]:
+    """Yield the load cases that the plan varies."""
+    texts = {text for axis in (*plan.columns, *plan.axes) if axis.name == CASE for text in axis.values}
+    return (case for case in cases if case in texts)
+
+
+def _iter_set_files(plan: Plan) -> Iterator[str]:
+    """Yield the files that axes name."""
+    for axis in (*plan.columns, *plan.axes):
+        if axis.name.endswith(FILE_KEYS):
+            for text in axis.values if axis.unit is None else ():
+                settings, _ = parse_settings({axis.name: str(text)})
+                yield from (setting.value for setting in settings if isinstance(setting.value, str))
+
 
 UPDATE_INTERVAL = 1.0  # seconds between updates of the list of workers
 LONGEST_WAIT = 600.0  # seconds without a worker

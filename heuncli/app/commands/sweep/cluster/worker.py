@@ -52,12 +52,12 @@ class PartialResults(NamedTuple):
 # The first request to a worker, as text: without heun there, none of its functions could be sent.
 HELLO = (
     "(lambda load: (lambda version: (version, "
-    f"load({__name__!r}).described() if version == {VERSION!r} else None))(load('heuncli.version').VERSION)"
+    f"load({__name__!r}).read_worker_version() if version == {VERSION!r} else None))(load('heuncli.version').VERSION)"
     ")(__import__('importlib').import_module)"
 )
 
 
-def described() -> WorkerVersion:
+def read_worker_version() -> WorkerVersion:
     """Return the version of heun in this process."""
     return WorkerVersion(text_digest(), KERNEL)
 

@@ -13,7 +13,7 @@ from heuncli.app.commands.sweep.cluster.worker import (
     CachedRecipe,
     Variant,
     WorkerVersion,
-    described,
+    read_worker_version,
     solve_batch,
 )
 from heuncli.base.named_tuples import NamedTuple
@@ -145,7 +145,7 @@ class WorkerPool:
         self.known: dict[str, ClusterWorker] = {}
         self.tasks: dict[str, ClusterTask] = {}
         self.remarks: dict[str, list[str]] = {}  # remarks on workers, with their addresses
-        self.own_version = described()
+        self.own_version = read_worker_version()
         self.keys = (f"heun-{client.id}-{number}" for number in count())
         self.wake_up_task: Any = None  # a task for any worker, so that an adaptive cluster starts one
 

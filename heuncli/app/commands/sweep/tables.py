@@ -9,7 +9,7 @@ import numpy as np
 from heuncli.analyses.sweep_rows import ParameterColumn, SweepHead, make_parameter_columns, to_cell
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureValue
 from heuncli.analyses.variants.plans import Plan
-from heuncli.app.commands.sweep.output.top_k import MeasureExtremes, ShownRows
+from heuncli.app.commands.sweep.statistics import MeasureExtremes, ShownRows
 from heuncli.output.documents.as_text import draw_histogram, draw_sparkline
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable, format_cell, trim_cells
 from heuncli.output.tables.nouns import format_count

@@ -6,11 +6,12 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from heuncli.analyses.sweep_jumps import JumpFinder, SweptJump
 from heuncli.analyses.sweep_rows import (
+    JumpFinder,
     ParameterColumn,
     SweepColumns,
     SweepHead,
+    SweptJump,
     SweptRow,
     explain_missing,
     make_columns,
@@ -19,7 +20,7 @@ from heuncli.analyses.sweep_rows import (
 )
 from heuncli.analyses.variants.measures import NO_VALUE
 from heuncli.analyses.variants.sample_statistics import CONFIDENCE, SobolIndices
-from heuncli.app.commands.sweep.output.statistics import ColumnBuffer, MeasureStatistics, iter_statistics
+from heuncli.app.commands.sweep.statistics import ColumnBuffer, MeasureStatistics, iter_statistics
 from heuncli.base.text_safety import escape
 from heuncli.output.documents.as_data import FORMAT
 

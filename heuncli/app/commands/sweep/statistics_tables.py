@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from heuncli.analyses.sweep_rows import SweepHead, make_parameter_columns
 from heuncli.analyses.variants.parameters import RandomVariable
 from heuncli.analyses.variants.sample_statistics import CONFIDENCE, MIN_INDEX_BOUNDED, BoundedEstimate
-from heuncli.app.commands.sweep.output.statistics import MeasureStatistics
-from heuncli.app.commands.sweep.output.tables import choose_number_style, format_parameter, format_variant_count
+from heuncli.app.commands.sweep.statistics import MeasureStatistics
+from heuncli.app.commands.sweep.tables import choose_number_style, format_parameter, format_variant_count
 from heuncli.output.documents.document import Cell, NumberCell, OutputColumn, OutputTable
 from heuncli.output.tables.nouns import format_count
 from heuncli.study.quantities.digits import format_error

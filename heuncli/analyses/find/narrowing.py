@@ -1,0 +1,274 @@
+"""Narrow two samples down: to a crossing or a jump of the measure, or to an edge of the solvable range.
+
+At an edge, between the last variant that fails and the first that is solved, the middle is evaluated, or the place
+where extrapolation predicts the end. Where a loop stops closing, the place x is quadratic in the measure, or in its
+inverse:
+    x = a + b u + c u^2      u: the measure, or 1/measure; the edge is where x is extreme
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from operator import attrgetter
+
+import numpy as np
+
+from heuncli.analyses.variants.course import NOISE, MeasureCourse
+from heuncli.analyses.variants.samples import Sample, interpolate, withhold
+from heuncli.base import tolerances
+
+MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
+WIDE_BRACKET = 1000.0  # times the narrowest bracket: a wider one, across which a jump has the same size
+MIN_BRACKET = 10.0  # times the narrowest bracket: a comparison bracket that is not wider proves no jump
+FIRST_POLE_SHARE, MIN_POLE_SHARE = 0.05, 1e-6  # of a bracket: distance to both sides of the predicted pole
+
+
+def narrow_all(course: MeasureCourse) -> None:
+    """Enclose all crossings and jumps between neighbours on different sides. Raises SampleLimitError."""
+    while (i := next(iter_unresolved_pairs(course), None)) is not None:
+        narrow_pair(course, i)
+
+
+def iter_unresolved_pairs(course: MeasureCourse) -> Iterator[int]:
+    """Yield neighbours on different sides between which neither a crossing nor a jump is known yet."""
+    for i, left, right in course.iter_pairs():
+        is_known = (left.x, right.x) in course.steep or course.is_interrupted(i)
+        if not is_known and left.side and right.side and left.side != right.side:
+            yield i
+
+
+def narrow_pair(course: MeasureCourse, i: int) -> None:
+    """Narrow two neighbours on different sides down to a crossing or a jump.
+
+    By Brent's rule: the root of the predicted measure, and the middle whenever that gained too little. At a pole both
+    sides of the root of the inverse measure are tried, ever closer to it.
+    """
+    left, right = course.samples[i], course.samples[i + 1]
+    failures, pole_share = 0, FIRST_POLE_SHARE
+    while right.x - left.x > course.finest:
+        if failures and (pole := course.find_pole(course.samples.index(left))) is not None:
+            width = right.x - left.x
+            left, right = narrow_pole(course, left, right, pole, pole_share)
+            if left.gap is None or right.gap is None or not left.side or not right.side:
+                return
+            is_narrower = right.x - left.x < 2.5 * pole_share * width
+            pole_share = max(pole_share * pole_share, MIN_POLE_SHARE) if is_narrower else FIRST_POLE_SHARE
+            failures = 1 if right.x - left.x < 0.5 * width else 2
+            if is_narrower or failures == 1:
+                continue
+        x = (
+            0.5 * (left.x + right.x)
+            if failures > 1
+            else step_past_root(course, left, right)
+            if failures
+            else predict_root(course, left, right)
+        )
+        best = min(left.distance, right.distance)
+        sample = course.sample_and_learn(x)
+        if sample.gap is None or sample.side == 0:
+            return
+        failures = 0 if abs(sample.gap) < MAX_REMAINING_GAP * best else failures + 1
+        left, right = (sample, right) if sample.side == left.side else (left, sample)
+    is_jump = not is_steep(course, left, right) and is_jump_size(course, left, right)
+    (course.jumps if is_jump else course.steep).add((left.x, right.x))
+
+
+def narrow_pole(course: MeasureCourse, left: Sample, right: Sample, pole: float, share: float) -> tuple[Sample, Sample]:
+    """Evaluate both sides of a predicted pole, at a share of the bracket, and return the narrower bracket."""
+    distance = max(share * (right.x - left.x), 0.25 * course.finest)
+    for x in (pole - distance, pole + distance):
+        if left.x < x < right.x:
+            sample = course.sample_at(x)
+            if not sample.side:
+                return left, sample
+            left, right = (sample, right) if sample.side == left.side else (left, sample)
+    return left, right
+
+
+def step_past_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
+    """Return a place just past the root, where g slightly exceeds its error; else the middle."""
+    nearer, farther = sorted((left, right), key=attrgetter("distance"))
+    gap, noise = nearer.distance, NOISE * max(nearer.error, farther.error)
+    fraction = (gap + noise) / abs(farther.gap_or_zero - nearer.gap_or_zero) if gap <= noise else 0.5
+    distance = max(min(fraction, 0.5) * abs(farther.x - nearer.x), course.finest)
+    return nearer.x + distance if farther is right else nearer.x - distance
+
+
+def is_steep(course: MeasureCourse, left: Sample, right: Sample) -> bool:
+    """Return whether the slope outside suffices to pass from one side to the other within the narrowest bracket.
+
+    Near a jump the slope outside is small, near a pole it grows. Only the change that exceeds both errors counts.
+    """
+    i = next(i for i, sample, _ in course.iter_pairs() if sample is left)
+    outer_pairs = [(left, each) for each in course.find_neighbours(i, -1)[:1]] + [
+        (right, each) for each in course.find_neighbours(i, 1)[:1]
+    ]
+    errors = 2.0 * (left.error + right.error)
+    slope_inside = max(abs(right.gap_or_zero - left.gap_or_zero) - errors, 0.0) / (right.x - left.x)
+    slopes = [(far.gap_or_zero - near.gap_or_zero) / (far.x - near.x) * (right.side or 0) for near, far in outer_pairs]
+    return slope_inside == 0.0 or (
+        bool(slopes) and min(slopes) > 0.0 and slope_inside <= tolerances.STEEPER_THAN_SLOPE * max(slopes)
+    )
+
+
+def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
+    """Return whether the measure changes as much across the narrowest bracket as across one a thousand times wider.
+
+    A jump does, and a pole changes by more; a vertical tangent, as of a root of x - c, changes by less.
+    """
+    distance = 0.5 * WIDE_BRACKET * (right.x - left.x)
+    outer_left, outer_right = sample_outside(course, left, -1, distance), sample_outside(course, right, 1, distance)
+    if outer_right.x - outer_left.x < MIN_BRACKET * (right.x - left.x):
+        return False
+    inner_change = abs(right.gap_or_zero - left.gap_or_zero) + left.error + right.error
+    return inner_change >= tolerances.JUMP_KEEPS * abs(outer_right.gap_or_zero - outer_left.gap_or_zero)
+
+
+def sample_outside(course: MeasureCourse, end: Sample, direction: int, distance: float) -> Sample:
+    """Return a sample about this distance outside of another one, as far as the range extends.
+
+    Raises SampleLimitError.
+    """
+    k, best = course.samples.index(end), end
+    while 0 <= k + direction < len(course.samples) and not course.is_interrupted(k + min(direction, 0)):
+        k += direction
+        if abs(course.samples[k].x - end.x) > distance:
+            sample = course.sample_at(end.x + direction * distance)
+            return sample if sample.gap is not None else best
+        best = course.samples[k]
+        if abs(best.x - end.x) >= 0.5 * distance:
+            return best
+    return best
+
+
+def predict_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
+    """Return where the measure is predicted to cross its value between two neighbours on different sides."""
+    near = min((left, right), key=attrgetter("distance"))
+    stretch = find_stretch(course, left)
+    others = sorted((each for each in stretch if each not in (left, right)), key=lambda each: abs(each.x - near.x))
+    samples = _straighten_pole(course, [left, right, *others[:2]])
+    low, high = left.x, right.x
+    for _ in range(60):  # halvings of a polynomial, which cost nothing
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        is_before_root = float(interpolate(samples, np.array([middle]))[0]) * (left.side or 0) > 0.0
+        low, high = (middle, high) if is_before_root else (low, middle)
+    margin = 0.25 * course.finest
+    return min(max(0.5 * (low + high), left.x + margin), right.x - margin)
+
+
+def _straighten_pole(course: MeasureCourse, samples: list[Sample]) -> list[Sample]:
+    """Return samples of 1/value - 1/measure, which has the same root, where it is followed better by a polynomial, as
+    towards a pole; else the same samples. The nearest to the root is predicted from the others.
+    """
+    m = [course.get_measure(sample) for sample in samples]
+    if len(samples) < 4 or min(x * course.value for x in m) <= 0.0:
+        return samples
+    near, others = samples[k := int(np.argmin([sample.distance for sample in samples]))], [*samples]
+    del others[k]
+    inverses = [sample._replace(gap=1.0 / course.value - 1.0 / x) for sample, x in zip(samples, m, strict=True)]
+    expected, inverse = (
+        float(interpolate(part, np.array([near.x]))[0]) for part in (others, inverses[:k] + inverses[k + 1 :])
+    )
+    inverse_error = abs((inverse - inverses[k].gap_or_zero) * m[k] * course.value)
+    return inverses if inverse_error < abs(expected - near.gap_or_zero) else samples
+
+
+def find_stretch(course: MeasureCourse, one: Sample) -> list[Sample]:
+    """Return the samples of the stretch that contains a sample."""
+    stretch: list[Sample] = []
+    for i, sample in enumerate(course.samples):
+        if stretch and course.is_interrupted(i - 1):
+            if one in stretch:
+                return stretch
+            stretch = []
+        stretch.append(sample)
+    return stretch
+
+
+FIRST_FRACTION = 0.05  # of the bracket: first distance to both sides of the predicted edge
+MIN_FRACTION = 1e-6
+
+
+def close_edges(course: MeasureCourse) -> None:
+    """Narrow all ends of the solvable range down to adjacent numbers. Raises SampleLimitError."""
+    while (pair := next(iter_edges(course), None)) is not None:
+        close_edge(course, *pair)
+
+
+def iter_edges(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
+    """Yield pairs of a solved sample and its failed neighbour with another number between them."""
+    for _, left, right in course.iter_pairs():
+        if (left.gap is None) != (right.gap is None) and not is_closed(course, left, right):
+            yield (left, right) if left.gap is not None else (right, left)
+
+
+def is_closed(course: MeasureCourse, left: Sample, right: Sample) -> bool:
+    """Return whether an edge is narrow enough; one of the two samples is not solved, or withheld."""
+    withheld = left.withheld_gap is not None or right.withheld_gap is not None
+    return (
+        abs(right.x - left.x) <= tolerances.NEAR_SINGULAR_RUN * course.spacing
+        if withheld
+        else find_middle(left.x, right.x) is None
+    )
+
+
+def find_middle(low: float, high: float) -> float | None:
+    """Return the middle of two numbers; None if there is no number between them."""
+    middle = low + 0.5 * (high - low)
+    return middle if min(low, high) < middle < max(low, high) else None
+
+
+def close_edge(course: MeasureCourse, solved: Sample, unsolved: Sample) -> None:
+    """Narrow one edge down. Raises SampleLimitError."""
+    fraction, is_trusted = FIRST_FRACTION, True
+    while not is_closed(course, solved, unsolved):
+        middle = solved.x + 0.5 * (unsolved.x - solved.x)
+        width = unsolved.x - solved.x
+        predicted = (
+            predict_edge(course, solved, width)
+            if is_trusted and abs(width) < tolerances.EDGE_BRACKET * course.spacing
+            else None
+        )
+        if predicted is None:
+            solved, unsolved = evaluate_between(course, solved, unsolved, middle)
+            is_trusted = True
+            continue
+        old_width = abs(width)
+        for x in (predicted - fraction * width, predicted + fraction * width):
+            if min(solved.x, unsolved.x) < x < max(solved.x, unsolved.x):
+                solved, unsolved = evaluate_between(course, solved, unsolved, x)
+        is_trusted = abs(unsolved.x - solved.x) < 2.5 * fraction * old_width
+        fraction = max(fraction * fraction, MIN_FRACTION) if is_trusted else FIRST_FRACTION
+
+
+def evaluate_between(course: MeasureCourse, solved: Sample, unsolved: Sample, x: float) -> tuple[Sample, Sample]:
+    """Evaluate one more place and return the two samples between which the edge lies."""
+    sample = course.sample_at(x)
+    if unsolved.withheld_gap is not None and sample.singular:
+        sample = withhold(sample)
+    return (solved, sample) if sample.gap is None else (sample, unsolved)
+
+
+def predict_edge(course: MeasureCourse, solved: Sample, width: float) -> float | None:
+    """Return the edge that the solved samples predict within the bracket; None if they predict none."""
+    samples = course.samples
+    k, direction = samples.index(solved), -1 if width > 0.0 else 1
+    nearest = [samples[k + direction * j] for j in range(3) if 0 <= k + direction * j < len(samples)]
+    if len(nearest) < 3 or any(sample.gap is None for sample in nearest):
+        return None
+    m = [course.get_measure(sample) for sample in nearest]
+    if abs(m[0]) > abs(m[1]) > abs(m[2]) > 0.0:
+        m = [1.0 / value for value in m]
+    if not (m[0] < m[1] < m[2] or m[0] > m[1] > m[2]):
+        return None
+    x = [sample.x - solved.x for sample in nearest]
+    chord = (x[1] - x[0]) / (m[1] - m[0])
+    bend = ((x[2] - x[1]) / (m[2] - m[1]) - chord) / (m[2] - m[0])
+    if bend == 0.0 or not math.isfinite(bend):
+        return None
+    slope = chord - bend * (m[1] - m[0])  # of x over u, at the solved sample
+    distance = -0.25 * slope * slope / bend
+    return solved.x + distance if 0.0 < distance / width < 1.0 else None
