@@ -46,7 +46,7 @@ from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format.models import Drive, Spec
 from heuncli.study.model.setup import Setup, attach_locations, set_up
 
-DIFFERENCE_FACTOR = 2.0  # times the difference of two poses, as for errors of loads (study/solve/error_extents.py)
+DIFFERENCE_FACTOR = 2.0  # times the difference of two poses, as for errors of loads (study/solve/error_estimates.py)
 
 
 def widen_errors(

@@ -28,7 +28,7 @@ from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.selection import Selection
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_extents import DIFFERENCE_ONLY, BalanceTerms, Weights
+from heuncli.study.solve.error_estimates import DIFFERENCE_ONLY, BalanceTerms, Weights
 from heuncli.study.solve.load_errors import LoadErrors, Quantity
 
 LOAD_SELECTION = Selection(frozenset({"joints", "sections"}))

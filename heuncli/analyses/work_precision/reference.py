@@ -23,7 +23,7 @@ from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED, load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.results.results import Array
-from heuncli.study.solve.error_extents import ESTIMATED
+from heuncli.study.solve.error_estimates import ESTIMATED
 from heuncli.study.solve.history import require_followed
 
 # Pairs of methods, the first the reference; the second pair where the first does not agree, as in stiff scenes

@@ -8,7 +8,7 @@ from typing import Protocol
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.quantities.given_captions import OPTIONS, set_captions
+from heuncli.study.quantities.captions import OPTIONS, set_captions
 
 EXAMPLE = "for example --label joints.main='Main bearing'"
 

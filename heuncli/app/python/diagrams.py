@@ -16,7 +16,7 @@ from heuncli.output.drawing.shapes import VectorDrawing, to_svg
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.histories import make_history
 from heuncli.output.snapshots.measure import require_known_paths
-from heuncli.study.quantities.given_captions import set_captions
+from heuncli.study.quantities.captions import set_captions
 from heuncli.study.quantities.table_units import read_display_units
 from heuncli.study.queries.measure import MeasureRequest
 from heuncli.study.queries.study import Study

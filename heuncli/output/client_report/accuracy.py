@@ -30,7 +30,7 @@ from heuncli.output.tables.heading import make_heading
 from heuncli.output.tables.nouns import format_count
 from heuncli.results.path_words import error_kind_of_path
 from heuncli.results.results_schema import XYZ
-from heuncli.study.quantities.reader_numbers import choose_reader_style
+from heuncli.study.quantities.digits import choose_reader_style
 from heuncli.version import VERSION
 
 INTEGRATED_NOTE = (

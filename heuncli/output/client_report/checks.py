@@ -11,8 +11,7 @@ from heuncli.output.client_report.report_data import AS_IT_STANDS, ReportData
 from heuncli.output.documents.document import OutputColumn, OutputTable, Part, TextCell
 from heuncli.output.snapshots.outcomes import Outcome
 from heuncli.study.quantities.captions import describe_path, parse_path
-from heuncli.study.quantities.digits import OPEN
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.quantities.digits import OPEN, ReaderStyle, choose_reader_style
 from heuncli.study.queries.measure_uncertainty import find_unit
 
 HOLDS, FAILS = "passed", "FAILED"

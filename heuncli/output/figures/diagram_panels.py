@@ -13,8 +13,7 @@ from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spo
 from heuncli.output.drawing.style import HATCH_WIDTH, LEFT, RIGHT, SIGN_SIZE, WIDTH
 from heuncli.output.figures.curves import choose_number_style, is_visible
 from heuncli.results.results import Array, Mask
-from heuncli.study.quantities.digits import OPEN
-from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.quantities.digits import OPEN, ReaderStyle
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.bar_curves import BarLine, BarRange, Extreme
 from heuncli.study.queries.bars import WholeBar

@@ -16,8 +16,8 @@ from heuncli.output.tables.extremes_tables import CONSTANT, MARK, PARTLY_OPEN_NO
 from heuncli.output.tables.nouns import join_ranges
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.digits import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.version import VERSION
 
 HEADING = 'SUMMARY  greatest loads; for a joint, the reaction of "from" on "to"'

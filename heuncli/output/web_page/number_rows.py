@@ -2,7 +2,7 @@
 in.
 
 A row is one quantity over the frames: a number, or a vector with its components. It is shown as a reader needs it, with
-four significant digits of the largest number of its object (study/quantities/reader_numbers.py), and fewer where the
+four significant digits of the largest number of its object (study/quantities/digits.py), and fewer where the
 stated error of the run does not justify them. Values are in SI; each row also has its display unit.
 """
 
@@ -27,9 +27,8 @@ from heuncli.study.quantities.channels import (
     iter_channels,
     iter_impulse_channels,
 )
-from heuncli.study.quantities.digits import StatedErrors, Style, largest_magnitude
+from heuncli.study.quantities.digits import DIGITS, StatedErrors, Style, choose_reader_style, largest_magnitude
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import DIGITS, choose_reader_style
 
 ZERO_ROWS_PREFIX = "All values 0: "
 EXCLUDED_KINDS = frozenset({"bodies", "points", "sections"})  # sections have rows of their own

@@ -37,7 +37,7 @@ from heuncli.study.queries.bar_curves import (
     make_interpolation,
     make_places,
 )
-from heuncli.study.queries.curve_sampling import choose_curve_instants, find_bounds, halve_steps
+from heuncli.study.queries.curves import choose_curve_instants, find_bounds, halve_steps
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import ChannelSearch, StudyColumns

@@ -29,7 +29,7 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_extents import BalanceTerms
+from heuncli.study.solve.error_estimates import BalanceTerms
 
 
 def add_shares(

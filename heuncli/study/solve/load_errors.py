@@ -45,10 +45,10 @@ from heuncli.results.path_words import BY_CAUSE, TRAVELS
 from heuncli.results.results import Array, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_estimates import ErrorEstimates
-from heuncli.study.solve.error_extents import (
+from heuncli.study.solve.error_estimates import (
     ESTIMATED,
     BalanceTerms,
+    ErrorEstimates,
     Weights,
     compare_attitudes,
     iter_momentum_quantities,

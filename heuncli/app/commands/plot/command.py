@@ -12,7 +12,7 @@ from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.target import KINDS, parse_words, require_applicable_options
 from heuncli.output.drawing.drawing_files import encode_drawing
 from heuncli.output.drawing.figure import Figure
-from heuncli.study.quantities.given_captions import check_text
+from heuncli.study.quantities.captions import check_text
 
 
 def main(request: PlotRequest) -> int:
