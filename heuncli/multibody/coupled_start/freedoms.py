@@ -19,9 +19,8 @@ import numpy as np
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import Assembly, Directed, Joint
 from heuncli.multibody.response import MeasuredState, make_unsettled_workspace, measure_state
-from heuncli.multibody.tree.idle_spins import IdleSpin
 from heuncli.multibody.tree.layout import Layout, rate_indices
-from heuncli.multibody.tree.prepare import PreparedScene
+from heuncli.multibody.tree.prepare import IdleSpin, PreparedScene
 from heuncli.multibody.tree.starts import axial_angle, body_state
 from heuncli.results.results import Array, Indices
 from heuncli.scene.shapes.rotations import cross_rows, quaternion_from_vector, quaternion_product, vector_from_rotation

@@ -9,7 +9,7 @@ about the axis may replace it, with the spin that has the same angular momentum:
 
 A thin wire gets a moment of inertia large enough against the rounding of moments about its axis, and a fast top turns
 no faster than it nutates. Where there is no inertia about the axis at all there is no spin, which
-multibody/tree/idle_spins.py handles. Not reduced: bodies with loads that turn with them (a force in their axes),
+multibody/tree/prepare.py handles. Not reduced: bodies with loads that turn with them (a force in their axes),
 couples, pins, dampers in their balls.
 """
 

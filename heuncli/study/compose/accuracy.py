@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
-from heuncli.loads.kinetostatics.balance import balance_residual
-from heuncli.loads.kinetostatics.energy import energy_drift, power_imbalance, work_scale
+from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, power_imbalance, work_scale
 from heuncli.motion.integration.contacts.impulses import free_impulse_energy
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Accuracy, Array, Mask, Results

@@ -19,7 +19,7 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
-from heuncli.loads.kinetostatics.balance import find_load_magnitudes, find_magnitudes, inertia_scale
+from heuncli.loads.kinetostatics.balance import energy_block, find_load_magnitudes, find_magnitudes, inertia_scale
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.couplings import (
     CouplingLoads,
@@ -27,7 +27,6 @@ from heuncli.loads.kinetostatics.couplings import (
     list_coupling_actions,
     list_rope_actions,
 )
-from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, select_instants
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable

@@ -17,8 +17,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import AppliedLoad
+from heuncli.loads.kinetostatics.balance import system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.energy import system_vector
 from heuncli.loads.kinetostatics.foundation import find_momenta, inertia_rows
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.loads import RopeLoad

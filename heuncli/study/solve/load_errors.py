@@ -26,6 +26,7 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
+from heuncli.loads.kinetostatics.balance import energy_block
 from heuncli.loads.kinetostatics.bodies import BodyStates, KernelBodyStates, make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
@@ -35,7 +36,6 @@ from heuncli.loads.kinetostatics.couplings import (
     list_coupling_actions,
     list_rope_actions,
 )
-from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves

@@ -17,7 +17,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.motion.integration.check.run_comparison import MotionPoints
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.request import ClosuresLost, EventfulRun, MotionTask, StiffRun, StoppingRules
 from heuncli.motion.integration.run.runner import Runner

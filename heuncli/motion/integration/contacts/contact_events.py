@@ -1,7 +1,7 @@
 """Handle contact events: what is struck at an instant of a run, by which impulses, and what is held from then on.
 
-touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses, resting.py
-the contacts that stay closed, contact_problem.py the errors and sentences.
+touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses and the
+contacts that stay closed, contact_problem.py the errors and sentences.
 """
 
 from __future__ import annotations
@@ -39,15 +39,13 @@ from heuncli.motion.integration.contacts.latches import (
     add_catches,
     work_of_catches,
 )
-from heuncli.motion.integration.contacts.resting import (
-    acceleration_noise,
-    find_contradicted,
-    find_resting,
-    is_short_flight,
-)
 from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
+    acceleration_noise,
+    find_contradicted,
     find_coupled_groups,
+    find_resting,
+    is_short_flight,
     solve_contact_impulses,
 )
 from heuncli.motion.integration.contacts.sequential_impacts import (

@@ -18,9 +18,8 @@ from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad, RopeLoad
-from heuncli.multibody.tree.idle_spins import find_massless_axes
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.prepare import PreparedScene, find_missing_inertia
+from heuncli.multibody.tree.prepare import PreparedScene, find_massless_axes, find_missing_inertia
 from heuncli.multibody.tree.tables import Table, make_table, vector_array
 from heuncli.results.results import Array
 
