@@ -21,9 +21,8 @@ from heuncli.kernel.carried_points import (
     world_place,
 )
 from heuncli.kernel.declarations import *
-from heuncli.kernel.meshing import measure_mesh, mesh_tangent
 from heuncli.kernel.plane_rows import measure_in_plane
-from heuncli.kernel.rolling import measure_rolling, rolling_tangent
+from heuncli.kernel.rolling import measure_mesh, measure_rolling, mesh_tangent, rolling_tangent
 from heuncli.kernel.sheaves import measure_arc, measure_strand, measure_wound, strand_tangent
 from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
 from heuncli.kernel.tracks import measure_track, track_row_tangent

@@ -138,7 +138,7 @@ def loop_input(start: LoopStart, method: Method, layout: Layout) -> dict[str, An
 
 
 def stiffness_limits(method: Method, layout: Layout) -> dict[str, float]:
-    """Return the limits by which the kernel's loop notices stiffness (kernel/stiffness.py); none for implicit
+    """Return the limits by which the kernel's loop notices stiffness (kernel/stages.py); none for implicit
     methods.
     """
     if method.stable == 0.0:

@@ -8,7 +8,7 @@ Where that happens, a method of half the stages repeats that part (check/runs.py
 continues; where events become rare, the run restarts with its first method. Work is counted in evaluations, not in
 seconds, so that a scene is always solved in the same way.
 
-Where stability has limited the steps for a while (kernel/stiffness.py), an implicit method is tried for some steps from
+Where stability has limited the steps for a while (kernel/stages.py), an implicit method is tried for some steps from
 the state reached. If the whole motion, restarted with it, costs less than the rest of this run, the run stops:
 `StiffRun`. The cost is measured, because fast oscillations that are worth following cost an implicit method as much. It
 is counted in evaluations, not in seconds, so that a scene is always solved in the same way.
