@@ -401,6 +401,18 @@ def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
     return compute_stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
 
 
+def find_moment_arm(cuts: Cuts) -> float:
+    """Return a length [m] that compares moments with forces: of the run of cuts; of a single one how far the mass
+    beyond it reaches from the body's origin, or, without such mass, how far the body reaches.
+    """
+    points = cuts.points.reshape(-1, 3)
+    length = float(np.abs(points - points.mean(axis=0)).max())
+    mass = float(cuts.pieces[..., 3, 3].max())
+    if length == 0.0 and mass > 0.0:
+        length = float(np.sqrt(np.abs(cuts.pieces[..., :3, :3]).max() / mass))
+    return length or cuts.plane_tolerance / tolerances.IN_PLANE
+
+
 def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
     """Find the points of the plane where force and moment in it are parallel: Q.p = -n.(Q x M_t)/N, direction n x Q.
 
@@ -412,9 +424,7 @@ def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
     n = cuts.n[:, None, None]
     N, T = axis_component(cuts.n, force), axis_component(cuts.n, moment)
     Q, M_t = force - n * N, moment - n * T
-    points = cuts.points.reshape(-1, 3)
-    reach = float(np.abs(points - points.mean(axis=0)).max())
-    reach = reach or float(np.sqrt(np.abs(cuts.pieces[..., :3, :3]).max() / cuts.pieces[..., 3, 3].max()))
+    reach = find_moment_arm(cuts)
     size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
     q = np.sqrt(np.sum(Q**2, axis=0))
     no_N, no_Q = np.abs(N) <= tolerances.NO_FORCE * size, q <= tolerances.NO_FORCE * size
