@@ -195,6 +195,17 @@ class MotionTangent(Value):
     a: Vec3
 
 
+class RelativeMotion(Value):
+    """Velocity and acceleration of b's point as seen from a, at one place, world axes; and their changes along a
+    direction of the state.
+    """
+
+    v: Vec3
+    A: Vec3
+    dv: Vec3
+    dA: Vec3
+
+
 class Instants(Value):
     """States to recover, and work arrays; the results of one kind follow each other, state by state."""
 

@@ -23,7 +23,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses
 from heuncli.results.results import SIDE_WORDS, Array, Block, Mask
-from heuncli.scene.shapes.rotations import cross_rows
+from heuncli.scene.shapes.rotations import cross_first_axis, cross_rows
 
 
 @record
@@ -214,24 +214,19 @@ def find_moving_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attac
     inertia = -np.einsum("i...tj,tkjl->il...tk", A, cuts.pieces)
     force = inertia[:, 3].copy()
     moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
-    moment -= cross_components(p, force)
+    moment -= cross_first_axis(p, force)
     for a in attached_loads:
         fraction, first = a.fraction_on_pieces(cuts)
         F, M = (np.moveaxis(x, -1, 0)[..., None] for x in (a.force, a.moment))
         force += F * fraction
-        moment += cross_components(np.moveaxis(first, -1, 0) - p * fraction, F)
+        moment += cross_first_axis(np.moveaxis(first, -1, 0) - p * fraction, F)
         moment += M * fraction
     return force, moment
 
 
-def cross_components(a: Array, b: Array) -> Array:
-    """Return a x b of vectors (3, ...)."""
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-
-
 def shift_moment(force: Array, moment: Array, offset: Array) -> Array:
     """Return moments about points at an `offset` from the old one, (3, n_t, k): M - offset x s."""
-    return moment - cross_components(offset, force)
+    return moment - cross_first_axis(offset, force)
 
 
 @record
@@ -428,13 +423,13 @@ def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
     size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
     q = np.sqrt(np.sum(Q**2, axis=0))
     no_N, no_Q = np.abs(N) <= tolerances.NO_FORCE * size, q <= tolerances.NO_FORCE * size
-    twist = axis_component(cuts.n, cross_components(Q, M_t))
+    twist = axis_component(cuts.n, cross_first_axis(Q, M_t))
     free_N = np.where(no_N, np.nan, N)
     free_Q = np.where(no_Q | no_N, np.nan, q)
     n = np.broadcast_to(n, Q.shape)
     point = cut_points - twist / (free_N * free_Q**2) * Q
-    direction = cross_components(n, Q) / free_Q
-    pressure = cut_points + cross_components(n, M_t) / free_N
+    direction = cross_first_axis(n, Q) / free_Q
+    pressure = cut_points + cross_first_axis(n, M_t) / free_N
     parallel = np.abs(twist) <= tolerances.NO_FORCE * size * size * reach
     kind = np.where(no_N, np.where(parallel, 2.0, 1.0), np.where(no_Q, 2.0, 0.0))
     return {

@@ -51,8 +51,8 @@ ERROR_KINDS = (  # of estimated errors, the block they are of, and its numbers b
 )
 
 
-def remove_loads(setup: Setup) -> Setup:
-    """Return the setup without weight and loads, as an impulse is solved; its cuts have no stresses."""
+def make_impulse_setup(setup: Setup) -> Setup:
+    """Return the setup that an impulse is solved with: without weight and loads, and without stresses of its cuts."""
     scene = setup.scene
     joints = tuple(replace(joint, bearing=None) for joint in scene.mechanism.joints)
     mechanism = replace(scene.mechanism, gravity=np.zeros(3), loads=(), joints=joints)
@@ -148,7 +148,7 @@ class Impulses:
 
     def with_cuts(self, setup: Setup) -> Impulses:
         """Return the impulses with the cuts of another setup of the same scene."""
-        rest_setup = remove_loads(setup)
+        rest_setup = make_impulse_setup(setup)
         return replace(self, setup=rest_setup, recovery=replace(self.recovery, setup=rest_setup))
 
     def make_block(self, k: int) -> Block:
@@ -181,7 +181,7 @@ def make_impulses(setup: Setup, history: History, least_norm: bool, by_cause: bo
 
 def make_run_impulses(setup: Setup, jumps: tuple[ImpulseEvent, ...], least_norm: bool, by_cause: bool) -> Impulses:
     """Return the impulses of one run."""
-    rest_setup = remove_loads(setup)
+    rest_setup = make_impulse_setup(setup)
     solutions = concatenate_solutions([make_rest_solution(jump) for jump in jumps])
     given_actions = tuple(make_actions(setup.scene.mechanism, jumps))
     size = rest_setup.scene.layout.size

@@ -200,7 +200,9 @@ class Recovery:
             replace(
                 own,
                 rate=np.where(
-                    own.length == 0.0, vector_magnitudes(separation_velocity(layout, own.load, recovered)), own.rate
+                    own.length == 0.0,
+                    compute_vector_magnitudes(separation_velocity(layout, own.load, recovered)),
+                    own.rate,
                 ),
             )
             if isinstance(own.load, PairLoad)
@@ -305,7 +307,7 @@ class Recovery:
         return self.decided.remaining_self_stress if self.decided is not None else None
 
 
-def vector_magnitudes(velocities: Array) -> Array:
+def compute_vector_magnitudes(velocities: Array) -> Array:
     """The magnitudes of vectors (n_t, 3)."""
     return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
 

@@ -184,7 +184,7 @@ class PartialFriction(NamedTuple):
         return math.tanh(abs(self.rate) / self.speed)
 
 
-def full_friction_rate() -> float:
+def compute_full_friction_rate() -> float:
     """The rate from which on friction is full, in multiples of its `speed`."""
     return math.atanh(1.0 - tolerances.FRICTION_LACKS)
 
@@ -214,7 +214,7 @@ def list_partial_friction(mechanism: Mechanism, solutions: Evaluation) -> dict[f
         if not isinstance(load, JointLoad | ThreadLoad) or not is_smoothed(load):
             continue
         rates: Array = np.abs(solutions.loads[:, own]["rate"]).max(axis=1)
-        for k in np.flatnonzero(rates < full_friction_rate() * load.speed).tolist():
+        for k in np.flatnonzero(rates < compute_full_friction_rate() * load.speed).tolist():
             partial = PartialFriction(load.name, float(rates[k]), load.speed)
             found.setdefault(float(solutions.times[k]), []).append(partial)
     return found
@@ -234,14 +234,15 @@ def describe_partial(partial: Sequence[PartialFriction]) -> str:
     """Say which friction is below its full value, and by how much."""
     texts = [f"{own.name} is at {100.0 * own.share:.3g} % of its full value" for own in partial[:MAX_NAMED]]
     more = f" and {len(partial) - MAX_NAMED} more" if len(partial) > MAX_NAMED else ""
-    return f"smoothed friction {', '.join(texts)}{more}: the rate is below {full_friction_rate():.3g} times its `speed`"
+    rate = compute_full_friction_rate()
+    return f"smoothed friction {', '.join(texts)}{more}: the rate is below {rate:.3g} times its `speed`"
 
 
 def make_partial_note(partial_by_time: dict[float, list[PartialFriction]]) -> str:
     """Explain the mark beside numbers, with the names of the friction."""
     names = dict.fromkeys(own.name for partial in partial_by_time.values() for own in partial)
     some = ", ".join(list(names)[:MAX_NAMED]) + (" ..." if len(names) > MAX_NAMED else "")
-    rate = f"{full_friction_rate():.3g}"
+    rate = f"{compute_full_friction_rate():.3g}"
     return f"smoothed friction ({some}) is below its full value here: rate below {rate} times its `speed`"
 
 
@@ -277,7 +278,7 @@ def list_accelerated_bodies(recovery: Recovery) -> list[str]:
     radius = np.sqrt(np.array([np.trace(b.inertia) for b in mechanism.bodies]) / mass)
     shift, turn = (np.sqrt(np.sum(a[0] ** 2, axis=1)) for a in (states.a_centre, states.alpha))
     fastest = np.maximum(shift, turn * radius)
-    is_accelerated = fastest > tolerances.STARTS_MOVING * load_scale(recovery) / mass
+    is_accelerated = fastest > tolerances.STARTS_MOVING * find_load_scale(recovery) / mass
     return [
         f"{mechanism.bodies[i].name} " + (f"{shift[i]:.3g} m/s\u00b2" if shift[i] >= turn[i] * radius[i]
                                           else f"{turn[i]:.3g} rad/s\u00b2")
@@ -300,7 +301,7 @@ def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
     ):
         return []
     mass = np.array([b.mass for b in layout.mechanism.bodies])
-    least = tolerances.STARTS_MOVING * float((load_scale(recovery) / mass).max())
+    least = tolerances.STARTS_MOVING * float((find_load_scale(recovery) / mass).max())
     found = [
         (abs(row["udot"]) * lever, f, abs(row["udot"])) for (f, row), lever in zip(free_freedoms, levers, strict=True)
     ]
@@ -311,7 +312,7 @@ def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
     ]
 
 
-def load_scale(recovery: Recovery) -> Array:
+def find_load_scale(recovery: Recovery) -> Array:
     """The largest load on each body, including its weight and inertia loads, (n,) [N]; moments are divided by the
     scene's size.
     """

@@ -49,7 +49,7 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
         "freedoms": layout.tree_freedoms - (redundancy.active_rows - redundancy.dependent) - scene.undetermined_count,
         "driven": len(mechanism.laws),
         "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": redundancy.generic,
-        "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler_freedoms(mechanism),
+        "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": count_grubler_freedoms(mechanism),
         "chosen": list(scene.start.start_choices), "notes": [],
     }  # fmt: skip
     if scene.start.displaced_bodies:
@@ -117,7 +117,7 @@ def add_rest_sentences(block: Block, sentences: Sequence[str]) -> Block:
     return block | {"rest": list(sentences), "notes": [*sentences, *block["notes"]]} if sentences else block
 
 
-def grubler_freedoms(mechanism: Mechanism) -> int:
+def count_grubler_freedoms(mechanism: Mechanism) -> int:
     """Grübler's count of freedoms: 6 (in the plane 3) per body minus the constraints of joints and drives."""
     kinds = [JOINTS[j.kind] for j in mechanism.joints]
     rows = sum(kind.planar_row_count if mechanism.planar else kind.row_count for kind in kinds)
@@ -261,7 +261,7 @@ def describe_stiffness(mechanism: Mechanism) -> str:
 
 def describe_length(layout: Layout, last: float) -> list[str]:
     """Say in a sentence whether the motion is long and conservative, or short; empty if it is neither."""
-    swings = last * typical_rate(layout) / (2.0 * math.pi)
+    swings = last * estimate_typical_rate(layout) / (2.0 * math.pi)
     if swings < 1.0:
         return ["short motion: less than one revolution or oscillation"]
     if swings >= LONG_MOTION and is_conservative(layout):
@@ -283,13 +283,13 @@ def is_conservative(layout: Layout) -> bool:
     )
 
 
-def typical_rate(layout: Layout) -> float:
+def estimate_typical_rate(layout: Layout) -> float:
     """How fast the scene turns, or would swing as a pendulum of its size [rad/s]."""
     gravity = float(np.sqrt(np.sum(np.square(layout.mechanism.gravity))))
-    return max(largest_rate(layout), math.sqrt(gravity / layout.size))
+    return max(find_largest_rate(layout), math.sqrt(gravity / layout.size))
 
 
-def largest_rate(layout: Layout) -> float:
+def find_largest_rate(layout: Layout) -> float:
     """The largest rate at the start; a speed is divided by the scene's size [1/s]."""
     y: Array = layout.y0
     rates = [np.abs(y[int(g["rates"]) : int(g["end"])] * layout.weights[int(g["rates"]) : int(g["end"])])

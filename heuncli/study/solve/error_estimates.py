@@ -106,7 +106,7 @@ class Extent:
         return max(min(self.high - self.low, self.largest), 0.0)
 
 
-def norms(vectors: Array) -> Array:
+def compute_norms(vectors: Array) -> Array:
     """The lengths of vectors (n, m, 3), (n, m)."""
     return np.asarray(np.sqrt(np.einsum("tni,tni->tn", vectors, vectors)))
 
@@ -154,7 +154,7 @@ def iter_momentum_quantities(
         ("N·m/s", body_vectors, ()),
     ):
         sums = [part.sum(axis=1, keepdims=True) for part in parts]
-        rounding = tolerances.SUM_ROUNDING * sum(norms(part).sum(axis=1) for part in parts)
+        rounding = tolerances.SUM_ROUNDING * sum(compute_norms(part).sum(axis=1) for part in parts)
         yield unit, np.concatenate([*(totals or parts), *sums], axis=1), np.asarray(rounding)
 
 

@@ -51,9 +51,9 @@ from heuncli.study.solve.error_estimates import (
     ErrorEstimates,
     Weights,
     compare_attitudes,
+    compute_norms,
     iter_momentum_quantities,
     lengths,
-    norms,
 )
 
 
@@ -238,10 +238,10 @@ class LoadErrors(ErrorEstimates):
 
         def find_differences(values: Array) -> Array:
             own = values[0::count]
-            return reduce(np.maximum, [norms(own - values[k::count]) for k in range(1, count)])
+            return reduce(np.maximum, [compute_norms(own - values[k::count]) for k in range(1, count)])
 
         omega_difference, alpha_difference = find_differences(states.omega), find_differences(states.alpha)
-        centripetal = 2.0 * norms(states.omega[0::count]) * omega_difference
+        centripetal = 2.0 * compute_norms(states.omega[0::count]) * omega_difference
         for unit, difference in (
             ("rad/s", omega_difference),
             ("rad/s²", alpha_difference),
@@ -334,7 +334,9 @@ class LoadErrors(ErrorEstimates):
         axis = central_axis(force[is_requested], moment[is_requested], self.setup.moment_point, 0.0)
         for unit, values in (("1", axis["direction"]), ("m", axis["point"]), ("m", axis["pitch"][:, None])):
             first_run = values[0::count]
-            difference = np.max([norms((first_run - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0)
+            difference = np.max(
+                [compute_norms((first_run - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0
+            )
             self.find_extent("axis", unit).add_difference(np.nan_to_num(difference), self.is_claimed[self.is_requested])
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:

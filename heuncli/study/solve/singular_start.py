@@ -45,7 +45,7 @@ def require_motion(layout: Layout, start_solution: Evaluation) -> None:
             resting[k] = own_places, accelerations[own_places] / scale
     if not resting:
         return
-    bare = Runner(remove_loads(layout))
+    bare = Runner(remove_weight_and_loads(layout))
     rates = rate_places[rate_places >= 0]
     all_motions, is_kept = solve_with_rates(bare, start_solution, rates, list(resting.values()))
     if (
@@ -83,8 +83,8 @@ def solve_with_rates(
     return solution, bool(rate_changes.max() <= tolerances.MOVES)
 
 
-def remove_loads(layout: Layout) -> Layout:
-    """Return the scene without weight and loads, so that only its closures act."""
+def remove_weight_and_loads(layout: Layout) -> Layout:
+    """Return the layout of the scene on which only its closures act."""
     mechanism = replace(layout.mechanism, gravity=np.zeros(3))
     return replace(layout, mechanism=mechanism, tables=layout.tables | {"loads": layout.tables["loads"][:0]})
 
