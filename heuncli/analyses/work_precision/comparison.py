@@ -16,7 +16,7 @@ from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.motion.integration.check.estimate import evaluate_run, evaluate_together
 from heuncli.motion.integration.check.run_comparison import (
-    angle_difference,
+    find_angle_difference,
     is_between_impulses,
     point_distance,
     replace_nan_errors,
@@ -88,7 +88,7 @@ class ReferenceComparison:
         with np.errstate(all="ignore"):  # a diverged run may have any values
             for part, bodies_pair in evaluate_together(self.runs, self.reference, self.times, states):
                 distances = point_distance(self.runs.motion_points, bodies_pair.bodies, 2, layout.size)
-                turn_angles, angle = angle_difference(layout, bodies_pair, 2)
+                turn_angles, angle = find_angle_difference(layout, bodies_pair, 2)
                 places, angles = max(places, _largest(distances)), max(angles, _largest(turn_angles))
                 largest = max(largest, float(angle.max(initial=1.0)))
                 mask = is_compared[part]

@@ -180,7 +180,7 @@ class LoopSides:
 
 
 def _is_along(normal: Array | None, direction: Array) -> bool:
-    """Whether a normal is known, and along a direction."""
+    """Return whether a normal is known, and along a direction."""
     return normal is not None and abs(float(normal @ direction)) >= 1.0 - tolerances.SUM_ROUNDING
 
 

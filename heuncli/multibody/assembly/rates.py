@@ -124,7 +124,7 @@ class RateAssembly:
         return [rate_rows(d, self.poses.x, self.poses.R, self.rates.s) for d in self.conditions]
 
     def is_at_rest(self) -> bool:
-        """Whether no motion, and no acceleration from rest, is prescribed."""
+        """Return whether no motion, and no acceleration from rest, is prescribed."""
         is_prescribed = any(any(d.spin) or any(d.slip) or any(d.stretch) for d in self.conditions)
         return not is_prescribed and self.rates.are_zero
 

@@ -242,7 +242,7 @@ def _turn_since_start(joint: Joint, start: Assembly, present: Assembly) -> float
 
 
 def _travel(joint: Joint, assembly: Assembly) -> float:
-    """The travel of a joint; along a path on the branch that is held."""
+    """Return the travel of a joint; along a path on the branch that is held."""
     xa, Ra, _, _ = body_state(assembly, joint.a)
     xb, Rb, _, _ = body_state(assembly, joint.b)
     place = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p

@@ -93,7 +93,7 @@ def format_explanation(body: Body, spin: Spin) -> str:
 
 
 def added_inertia(spin: Spin) -> Array:
-    """The inertia added to a body about its axis, body axes."""
+    """Return the inertia added to a body about its axis, body axes."""
     return np.asarray((spin.replacement_moment - spin.moment) * np.outer(spin.axis, spin.axis))
 
 
@@ -174,7 +174,7 @@ def spin_rate(layout: Layout, i: int, axis: Array) -> float:
 
 
 def is_axisymmetric(body: Body, arms: Array, axis: Array, size: float, rounding: float) -> bool:
-    """Whether a body is symmetric about an axis on which all points lie, arms (n, 3) from its centre; body axes."""
+    """Return whether a body is symmetric about an axis that has all points; arms (n, 3) from its centre, body axes."""
     moment = float(axis @ body.inertia @ axis)
     across = 0.5 * (float(np.trace(body.inertia)) - moment)
     symmetric_inertia = across * np.eye(3) + (moment - across) * np.outer(axis, axis)

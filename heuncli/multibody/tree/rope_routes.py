@@ -163,7 +163,7 @@ def find_pins(mechanism: Mechanism, body: int, point: Array) -> list[tuple[int, 
 
 
 def is_parallel(a: Array, b: Array) -> bool:
-    """Whether two unit vectors are along one line."""
+    """Return whether two unit vectors are along one line."""
     off = np.cross(a, b)
     return bool(off @ off <= tolerances.ON_AXIS**2)
 
@@ -294,7 +294,7 @@ def require_directions(name: str, points: Sequence[RopePoint]) -> None:
 
 
 def vertical_direction(mechanism: Mechanism) -> Array:
-    """The upward direction: against gravity; without it y in a planar scene, else z."""
+    """Return the upward direction: against gravity; without it y in a planar scene, else z."""
     g = mechanism.gravity
     if float(g @ g) > 0.0:
         return normalize(-g)
@@ -302,7 +302,7 @@ def vertical_direction(mechanism: Mechanism) -> Array:
 
 
 def matches_side(points: Sequence[RopePoint], route: RopeRoute, k: int, vertical: Array) -> bool:
-    """Whether the rope runs over, or under, a sheave as given."""
+    """Return whether the rope runs over, or under, a sheave as given."""
     side = points[k].passage.side
     if side not in ("over", "under"):
         return True

@@ -129,7 +129,7 @@ TILTS = {"xz": 0.0, "yz": 0.0, "zx": 0.0, "zy": 0.0, "zz": 1.0}  # of an attitud
 
 
 def moves_in_plane(bodies: Table, freedoms: Table) -> bool:
-    """Whether all bodies only turn about z and shift across it, exactly and at all times.
+    """Return whether all bodies only turn about z and shift across it, exactly and at all times.
 
     Then velocities have three numbers, and components normal to the plane do no work: heights of points, products of
     inertia with z and forces along z load joints and move nothing.

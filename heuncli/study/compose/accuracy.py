@@ -111,7 +111,7 @@ def larger(so_far: float, value: float) -> float:
 
 
 def largest_magnitude(values: Array) -> float:
-    """The largest magnitude."""
+    """Return the largest magnitude."""
     return float(np.abs(values).max(initial=0.0))
 
 
@@ -149,7 +149,7 @@ def require_finite_blocks(blocks: Mapping[str, Any], times: Array, is_known: Mas
 
 
 def is_all_finite(node: Any) -> bool:
-    """Whether all numbers below a node of the results are finite, as they are where nothing is indeterminate."""
+    """Return whether all numbers below a node of the results are finite, as they are where nothing is indeterminate."""
     if isinstance(node, np.ndarray):
         return node.dtype.kind != "f" or bool(np.isfinite(node).all())
     if isinstance(node, float):
@@ -172,7 +172,7 @@ def iter_numbers(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> 
 
 
 def is_wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, Any], is_known: Mask) -> bool:
-    """Whether a number is neither finite nor indeterminate."""
+    """Return whether a number is neither finite nor indeterminate."""
     if isinstance(value, float) and math.isfinite(value):
         return False
     array = np.asarray(value)

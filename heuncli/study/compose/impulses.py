@@ -242,7 +242,7 @@ def select_causes(block: Block, causes: Sequence[str]) -> Block:
 
 
 def is_indeterminate(block: Block, path: str) -> bool:
-    """Whether a component named by its path within a block is indeterminate: nan."""
+    """Return whether a component named by its path within a block is indeterminate: nan."""
     *names, last = path.split(".")
     value: Any = block
     for name in names if last in {*"xyz"} else (*names, last):
@@ -290,12 +290,12 @@ def select_shares(block: Block) -> Block:
 
 
 def are_shares(name: str, value: Any) -> bool:
-    """Whether these are blocks by cause, and not a joint of that name."""
+    """Return whether these are blocks by cause, and not a joint of that name."""
     return name == SHARES and isinstance(value, dict) and all(isinstance(own, dict) for own in value.values())
 
 
 def largest_difference(values: Array, check_values: Array, matched_pairs: Sequence[tuple[int, int]]) -> float:
-    """The largest difference of numbers over the impulses that both runs have; of others the number itself."""
+    """Return the largest difference of numbers over the impulses that both runs have; of others the number itself."""
     reference = np.zeros_like(values)
     for i, k in matched_pairs:
         reference[i] = check_values[k]

@@ -71,7 +71,7 @@ class Recovery:
 
     def with_cuts(self, setup: Setup) -> Recovery:
         """Return the same with the cuts of another setup; what was computed stays."""
-        return self._share_computed(replace(self, setup=setup), INDEPENDENT_OF_CUTS)
+        return self._use_computed(replace(self, setup=setup), INDEPENDENT_OF_CUTS)
 
     def compute_loads(self) -> None:
         """Compute the loads that all cuts need, so that recoveries with other cuts share them."""
@@ -84,9 +84,9 @@ class Recovery:
 
     def without_indeterminacy_search(self) -> Recovery:
         """Return the same without a search for indeterminate components; what was computed stays."""
-        return self._share_computed(replace(self, skips_indeterminacy_search=True), INDEPENDENT_OF_VERDICTS)
+        return self._use_computed(replace(self, skips_indeterminacy_search=True), INDEPENDENT_OF_VERDICTS)
 
-    def _share_computed(self, other: Recovery, names: frozenset[str]) -> Recovery:
+    def _use_computed(self, other: Recovery, names: frozenset[str]) -> Recovery:
         other.__dict__.update({name: value for name, value in self.__dict__.items() if name in names})
         return other
 
@@ -308,7 +308,7 @@ class Recovery:
 
 
 def compute_vector_magnitudes(velocities: Array) -> Array:
-    """The magnitudes of vectors (n_t, 3)."""
+    """Return the magnitudes of vectors (n_t, 3)."""
     return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
 
 

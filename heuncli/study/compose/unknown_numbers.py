@@ -197,8 +197,8 @@ def find_largest_by_kind(groups: Sequence[LeafGroup], minimum_by_unit: Mapping[s
 
 
 def estimate_typical_sizes(recovery: Recovery, close_instants: Indices) -> dict[str, Array]:
-    """The typical size of numbers, by unit, at some instants of a motion under its weight, applied loads and speed,
-    (n,).
+    """Return the typical size of numbers, by unit, at some instants of a motion under its weight, applied loads and
+    speed, (n,).
 
     Accelerations and reactions are not used: they may be noise there. Numbers far below these sizes count as 0.
     """
@@ -222,7 +222,7 @@ def estimate_typical_sizes(recovery: Recovery, close_instants: Indices) -> dict[
 
 
 def find_largest_magnitudes(values: Array) -> Array:
-    """The largest magnitude at each instant, (n,); nan does not count."""
+    """Return the largest magnitude at each instant, (n,); nan does not count."""
     found = np.abs(values).reshape(len(values), -1)
     return np.asarray(np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0))
 

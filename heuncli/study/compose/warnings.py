@@ -139,7 +139,7 @@ def describe_loss(mechanism: Mechanism, name: str) -> str:
 
 
 def has_pushing_rope(rope: CouplingLoads) -> bool:
-    """Whether the rope of a coupling pushes at the single instant, before or after any of its sheaves."""
+    """Return whether the rope of a coupling pushes at the single instant, before or after any of its sheaves."""
     return any(
         row.tension_only and force[0] > 0.0 for row, force in zip(rope.coupling.rows, rope.multipliers, strict=False)
     )
@@ -185,22 +185,22 @@ class PartialFriction(NamedTuple):
 
 
 def compute_full_friction_rate() -> float:
-    """The rate from which on friction is full, in multiples of its `speed`."""
+    """Return the rate from which on friction is full, in multiples of its `speed`."""
     return math.atanh(1.0 - tolerances.FRICTION_LACKS)
 
 
 def has_smoothed_friction(mechanism: Mechanism) -> bool:
-    """Whether a scene has friction that is smoothed."""
+    """Return whether a scene has friction that is smoothed."""
     return any(is_smoothed(load) for load in mechanism.loads)
 
 
 def is_smoothed(load: Load) -> bool:
-    """Whether a load is friction that is smoothed: it has a size of its own and does not stick."""
+    """Return whether a load is friction that is smoothed: it has a size of its own and does not stick."""
     return load.row.is_friction and not (isinstance(load, JointLoad) and load.static > 0.0)
 
 
 def depends_on_friction(path: str) -> bool:
-    """Whether a number, by its path, depends on the friction at the same instant."""
+    """Return whether a number, by its path, depends on the friction at the same instant."""
     words = path.split(".")
     if words[0] in KINDS:
         return words[-1] not in ("point", "normal", "first_axis", "s", "side") and words[:2] != ["foundation", "axis"]
@@ -313,8 +313,8 @@ def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
 
 
 def find_load_scale(recovery: Recovery) -> Array:
-    """The largest load on each body, including its weight and inertia loads, (n,) [N]; moments are divided by the
-    scene's size.
+    """Return the largest load on each body, including its weight and inertia loads, (n,) [N]; moments are divided by
+    the scene's size.
     """
     setup = recovery.setup
     largest: Array = inertia_scale(setup.scene.mechanism, recovery.states)[0]

@@ -87,7 +87,7 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
 
 
 def has_rolling_wheels(mechanism: Mechanism) -> bool:
-    """Whether wheels constrain speeds and not poses."""
+    """Return whether wheels constrain speeds and not poses."""
     return any(row.parts[0].constrains_speed for coupling in mechanism.couplings for row in coupling.rows)
 
 
@@ -234,7 +234,7 @@ def end_time(spec: Spec) -> float:
 
 
 def is_smooth(layout: Layout) -> bool:
-    """Whether only jumps in time can end a step early, apart from the step's own error."""
+    """Return whether only jumps in time can end a step early, apart from the step's own error."""
     return not (layout.pack.branch_count or layout.contacts or layout.mechanism.impulses)
 
 
@@ -275,7 +275,7 @@ def describe_length(layout: Layout, last: float) -> list[str]:
 
 
 def is_conservative(layout: Layout) -> bool:
-    """Whether nothing adds or takes energy: only weight and springs act, without drives, impulses or contacts."""
+    """Return whether nothing adds or takes energy: only weight and springs act; no drives, impulses or contacts."""
     mechanism = layout.mechanism
     is_driven = bool(mechanism.laws)
     return not (is_driven or layout.contacts or mechanism.impulses) and all(
@@ -284,13 +284,13 @@ def is_conservative(layout: Layout) -> bool:
 
 
 def estimate_typical_rate(layout: Layout) -> float:
-    """How fast the scene turns, or would swing as a pendulum of its size [rad/s]."""
+    """Return how fast the scene turns, or would swing as a pendulum of its size [rad/s]."""
     gravity = float(np.sqrt(np.sum(np.square(layout.mechanism.gravity))))
     return max(find_largest_rate(layout), math.sqrt(gravity / layout.size))
 
 
 def find_largest_rate(layout: Layout) -> float:
-    """The largest rate at the start; a speed is divided by the scene's size [1/s]."""
+    """Return the largest rate at the start; a speed is divided by the scene's size [1/s]."""
     y: Array = layout.y0
     rates = [np.abs(y[int(g["rates"]) : int(g["end"])] * layout.weights[int(g["rates"]) : int(g["end"])])
              for k, g in enumerate(layout.tables["groups"]) if k != layout.energy_group]  # fmt: skip

@@ -197,7 +197,7 @@ def iter_numbers_by_block(setup: Setup) -> Iterator[tuple[str, int]]:
 
 
 def is_in_results(row: Quantity, setup: Setup) -> bool:
-    """Whether the results have a quantity."""
+    """Return whether the results have a quantity."""
     if row.is_words or (is_share(row) and SHARES not in setup.selection.reports):
         return False
     return not row.path.startswith("sections.SECTION.stress.") or any(cuts.properties for cuts in setup.cuts)

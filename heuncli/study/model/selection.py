@@ -44,7 +44,7 @@ class Selection:
         return self.reports >= ALL_OF_IT and not self.entries
 
     def has_whole(self, report: str) -> bool:
-        """Whether all of a report is requested."""
+        """Return whether all of a report is requested."""
         return report in self.reports and report not in self.partial
 
     @property

@@ -85,15 +85,15 @@ class StatedErrors(NamedTuple):
     units: Units = DEFAULT_UNITS
 
     def error_of(self, kind: str, unit: str) -> float:
-        """The estimated error of numbers of this kind and unit, at least their rounding."""
+        """Return the estimated error of numbers of this kind and unit, at least their rounding."""
         return max(self.errors.get((kind, unit), 0.0), self.rounding_of(unit))
 
     def rounding_of(self, unit: str) -> float:
-        """The rounding error of numbers of this unit."""
+        """Return the rounding error of numbers of this unit."""
         return self.rounding.get(unit, 0.0)
 
     def find_error(self, channel: Channel) -> float:
-        """The estimated error of a channel's numbers, SI."""
+        """Return the estimated error of a channel's numbers, SI."""
         return self.error_of(channel.error_kind, channel.unit)
 
     def choose_style(self, kind: str, unit: str, scale: float) -> Style:
@@ -114,7 +114,7 @@ def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes)
     }
     for kind in LOADS:
         for error_kind in (kind, f"{kind} {BY_CAUSE}"):
-            errors |= _wrench_errors(error_kind, results.relative_error(kind), scales, magnitudes.size)
+            errors |= _find_wrench_errors(error_kind, results.relative_error(kind), scales, magnitudes.size)
     errors |= magnitudes.errors
     errors |= results.position_errors(magnitudes.size)
     for unit in ("m", "m/s", "m/s²", "rad/s²"):  # where no path has its own measure of travel
@@ -148,18 +148,20 @@ def find_scales(results: Results, labels: Labels, only_kind: str | None = None) 
 
 
 def is_load(kind: str, unit: str) -> bool:
-    """Whether numbers are forces or moments of a kind that has one common error."""
+    """Return whether numbers are forces or moments of a kind that has one common error."""
     return kind in LOADS and unit in ("N", "N·m")
 
 
 def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, kind: str, unit: str) -> float:
     """Return the error of one kind of loads, as `find_stated_errors` gives it without a horizon."""
-    estimates = _wrench_errors(kind, results.relative_error(kind), find_scales(results, labels, kind), magnitudes.size)
+    estimates = _find_wrench_errors(
+        kind, results.relative_error(kind), find_scales(results, labels, kind), magnitudes.size
+    )
     errors = {**estimates, **magnitudes.errors}
     return max(errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
 
 
-def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
+def _find_wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
     """Return the errors of forces and moments of one kind of loads; a force counts as a moment with the scene's size as
     lever.
     """
@@ -187,7 +189,7 @@ def add_axis_errors(certain: StatedErrors, results: Results, magnitudes: Magnitu
 
 
 def largest_magnitude(values: Array) -> float:
-    """The largest finite magnitude, 0 where there is none."""
+    """Return the largest finite magnitude, 0 where there is none."""
     maximum = float(np.abs(values).max(initial=0.0))
     if math.isfinite(maximum):
         return maximum

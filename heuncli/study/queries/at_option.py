@@ -148,14 +148,14 @@ def _iter_impulses(request: InstantRequest, study: Study) -> Iterator[LoadCaseIn
         named = [int(request.what)]
     if not named:
         raise NotOneNumber(
-            f"--at {request.word}: there is no such impulse in this run", _impulse_hint(impulses, request.what)
+            f"--at {request.word}: there is no such impulse in this run", _format_impulse_hint(impulses, request.what)
         )
     for k in named:
         word = request.word if len(named) == 1 else f"{request.word}#{k}"
         yield LoadCaseInstant(word, float(impulses[k]["time"]), k)
 
 
-def _impulse_hint(impulses: Sequence[Block], word: str) -> str:
+def _format_impulse_hint(impulses: Sequence[Block], word: str) -> str:
     if not impulses:
         return "this run has no impulses: use a time, such as --at last"
     names = dict.fromkeys(name for block in impulses for name in block["names"])

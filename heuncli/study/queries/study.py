@@ -278,8 +278,8 @@ class Study:
         return replace_runs(self.setup, bent)
 
     def is_searched(self, columns: int) -> bool:
-        """Whether the extremes of that many columns of a whole report are searched between the requested instants,
-        too.
+        """Return whether the extremes of that many columns of a whole report are searched between the requested
+        instants, too.
         """
         return columns <= extremes.MAX_COLUMNS and columns * len(self.search_times) <= MOST_SEARCHED
 

@@ -270,8 +270,8 @@ def choose_search_times(setup: Setup, history: History, max_instants: int = MAX_
 
 
 def has_loads_along_coordinates(setup: Setup) -> bool:
-    """Whether loads depend on coordinates or points: if they push a constrained direction, no step shows how fast they
-    change.
+    """Return whether loads depend on coordinates or points: if they push a constrained direction, no step shows how
+    fast they change.
     """
     return any(value.uses for load in setup.scene.mechanism.loads for value in load.values)
 

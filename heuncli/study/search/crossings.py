@@ -102,7 +102,7 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
         shape = pool.compute_bends()
         least = tolerances.EPS * np.abs(pool.f[:, 1:3]).max(axis=1, initial=0.0)
-        worth = wide & (pool.promised_heights(shape) > least)
+        worth = wide & (pool.bound_heights(shape) > least)
         pool, shape = pool.select(worth), shape.select(worth)
         if not len(pool.target):
             return merge_samples(more_t, more_h, complete=True)

@@ -240,7 +240,7 @@ def refine_best(sample: ColumnSampler, pool: Intervals, targets: Targets, best: 
     probes = 0
     for turn in range(MAX_ROUNDS):
         shape = pool.compute_bends()
-        promise = targets.limit_promise(pool.promised_heights(shape), pool.target)
+        promise = targets.limit_promise(pool.bound_heights(shape), pool.target)
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * grid_size.span
         worth = wide & (promise > (best.height + targets.min_gain(best.height))[pool.target])
         if not worth.all():

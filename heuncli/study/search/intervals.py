@@ -80,8 +80,8 @@ class Intervals(NamedTuple):
             rise_before, rise_after = rise[0] * (w[1] / w[0]), -rise[2] * (w[1] / w[2])
         return Bends(*fill_missing(kappa_before, kappa_after), rise_before, rise_after)
 
-    def promised_heights(self, bends: Bends) -> Array:
-        """The highest values that may lie between b and c."""
+    def bound_heights(self, bends: Bends) -> Array:
+        """Return the highest values that may lie between b and c."""
         b, c = self.f[:, 1], self.f[:, 2]
         smooth = bound_heights(
             b, c, bends.kappa_before, bends.kappa_after, self.doubt, bends.rise_before, bends.rise_after

@@ -78,7 +78,7 @@ def add_turning_points(
         shape = pool.compute_bends()
         required = required_height(pool.f[:, 1], pool.f[:, 2], pool.target)
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
-        worth = wide & (targets.limit_promise(pool.promised_heights(shape), pool.target) > required)
+        worth = wide & (targets.limit_promise(pool.bound_heights(shape), pool.target) > required)
         pool, shape = pool.select(worth), shape.select(worth)
         if not len(pool.target) or probes > MAX_PROBES:
             break

@@ -90,7 +90,7 @@ def iter_compared_shares(
 
 
 def compute_term_ratio(column: CauseResults, terms: BalanceTerms) -> Array:
-    """The ratio of the terms of the largest share to those of the whole, at least 1, (n_t,)."""
+    """Return the ratio of the terms of the largest share to those of the whole, at least 1, (n_t,)."""
     row_forces = column.rows["multiplier"][..., None] * column.rows["f"]
     parts = [column.bodies["joint_force"], row_forces]
     largest = np.max([np.abs(x).max(axis=(0, 2, 3), initial=0.0) for x in parts], axis=0)

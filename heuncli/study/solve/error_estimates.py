@@ -107,17 +107,17 @@ class Extent:
 
 
 def compute_norms(vectors: Array) -> Array:
-    """The lengths of vectors (n, m, 3), (n, m)."""
+    """Return the lengths of vectors (n, m, 3), (n, m)."""
     return np.asarray(np.sqrt(np.einsum("tni,tni->tn", vectors, vectors)))
 
 
 def lengths(values: Array) -> Array:
-    """The largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
+    """Return the largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
     return _lengths(instants_last(values))
 
 
 def _lengths(values: Array) -> Array:
-    """The same for values with the instants last, (..., 3, n) or (n,)."""
+    """Return the same for values with the instants last, (..., 3, n) or (n,)."""
     if values.ndim == 1:
         return np.abs(values)
     squares = (values * values).sum(axis=-2).reshape(-1, values.shape[-1])
@@ -225,8 +225,8 @@ class BalanceTerms:
             *(x.T for x in pulls),
         ]
         moments = [spin, angular_motion * gyration, joint_moment, *(instants_last(x.moment) for x in applied)]
-        self.force = np.maximum(_largest_at_each_instant(forces), np.abs(self.weight).max(initial=0.0))
-        self.moment = np.maximum(_largest_at_each_instant(moments), size * self.force)
+        self.force = np.maximum(_find_largest_at_each_instant(forces), np.abs(self.weight).max(initial=0.0))
+        self.moment = np.maximum(_find_largest_at_each_instant(moments), size * self.force)
         self.rounding = estimate_load_rounding(recovered, self.force, self.moment, size)
 
     @cached_property
@@ -240,8 +240,8 @@ class BalanceTerms:
         return instants_first(self.by_component[1])
 
 
-def _largest_at_each_instant(values: Iterable[Array]) -> Array:
-    """The largest of all values at each instant, (c n,); each (..., c n)."""
+def _find_largest_at_each_instant(values: Iterable[Array]) -> Array:
+    """Return the largest of all values at each instant, (c n,); each (..., c n)."""
     return np.asarray(np.max([largest_magnitude(x) for x in values], axis=0))
 
 
@@ -281,19 +281,19 @@ class ErrorEstimates:
         """Return the estimated error of each requested kind, relative to its largest result."""
         size, found = self.setup.scene.layout.size, ErrorEstimate()
         if "reactions" in self.compared:
-            found["reactions"] = self.relative_wrench_error(size, "reactions")
+            found["reactions"] = self.find_relative_wrench_error(size, "reactions")
             found["drives"] = max(
-                self.relative_wrench_error(1.0, "drives", "thrust", ""),
-                self.relative_wrench_error(1.0, "drives", "", "torque"),
+                self.find_relative_wrench_error(1.0, "drives", "thrust", ""),
+                self.find_relative_wrench_error(1.0, "drives", "", "torque"),
             )
         if "foundation" in self.compared:
-            found["foundation"] = self.relative_wrench_error(
+            found["foundation"] = self.find_relative_wrench_error(
                 size + self.reach, "foundation", other_kinds=("effects", "elements")
             )
         if "sections" in self.compared:
-            found["sections"] = self.relative_wrench_error(size, "sections")
+            found["sections"] = self.find_relative_wrench_error(size, "sections")
         if "energy" in self.compared:
-            found["energy"] = self.relative_energy_error()
+            found["energy"] = self.find_relative_energy_error()
         return found
 
     def errors(self) -> dict[tuple[str, str], float]:
@@ -323,19 +323,19 @@ class ErrorEstimates:
         found["energy", "J"] = max(
             error_by_name.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work")
         )
-        return found | self.errors_by_cause()
+        return found | self.estimate_errors_by_cause()
 
-    def errors_by_cause(self) -> dict[tuple[str, str], float]:
+    def estimate_errors_by_cause(self) -> dict[tuple[str, str], float]:
         """Return the estimated errors of shares by cause, by kind and unit, before the horizon."""
         units = {"force": "N", "moment": "N·m"}
         extents = {name: extent for name, extent in self.extents.items() if name[0].endswith(BY_CAUSE)}
         return {(kind, units[name]): extent.claimed_error for (kind, name), extent in extents.items()}
 
-    def relative_wrench_error(
+    def find_relative_wrench_error(
         self, arm: float, kind: str, force: str = "force", moment: str = "moment", other_kinds: Sequence[str] = ()
     ) -> float:
-        """The relative error of forces and moments of a kind, together with those of other kinds; arm: the longest of a
-        moment.
+        """Return the relative error of forces and moments of a kind, together with those of other kinds; arm: the
+        longest of a moment.
         """
         if not other_kinds and not {(kind, force), (kind, moment)} & self.extents.keys():
             return 0.0
@@ -356,8 +356,8 @@ class ErrorEstimates:
             relative_error(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
         )
 
-    def relative_energy_error(self) -> float:
-        """The relative error of the energies."""
+    def find_relative_energy_error(self) -> float:
+        """Return the relative error of the energies."""
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
         kinetic, potential, work = (self.find_extent("energy", name) for name in ("kinetic", "potential", "work"))
         lift = sum(b.mass for b in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
@@ -368,5 +368,5 @@ class ErrorEstimates:
         return relative_error(error, kinetic.largest, shown_energy, kinetic.largest)
 
     def largest_kinetic_energy(self) -> float:
-        """The largest kinetic energy over the run [J]."""
+        """Return the largest kinetic energy over the run [J]."""
         return self.find_extent("energy", "kinetic").largest

@@ -272,7 +272,7 @@ def solve_state(setup: Setup, time: float, tolerance: float, by_cause: bool = Fa
         impulses=impulses[0],
         check_impulses=tuple(impulses[1:]),
         seconds=seconds,
-        errors=errors.errors_by_cause(),
+        errors=errors.estimate_errors_by_cause(),
         state_instants=None if setup.steady_spin_axes else errors.last,
         notes=notes,
     )

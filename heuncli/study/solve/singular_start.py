@@ -63,7 +63,7 @@ def require_motion(layout: Layout, start_solution: Evaluation) -> None:
 
 
 def is_immobile(island: Island, rows: NamedArrays) -> bool:
-    """Whether the island has as many independent rows as freedoms: what cannot move is pushed nowhere."""
+    """Return whether the island has as many independent rows as freedoms: what cannot move is pushed nowhere."""
     return float(rows["chosen"][island.rows].sum()) >= len(island.freedoms)
 
 
@@ -90,7 +90,7 @@ def remove_weight_and_loads(layout: Layout) -> Layout:
 
 
 def rate_derivatives(layout: Layout, solution: Evaluation) -> Array:
-    """The derivatives of the state's rates, each at the place of its rate, 0 elsewhere; of one instant."""
+    """Return the derivatives of the state's rates, each at the place of its rate, 0 elsewhere; of one instant."""
     found = np.zeros(layout.n_state)
     for k, body in enumerate(layout.bodies):
         if body["ball"]:
@@ -102,7 +102,9 @@ def rate_derivatives(layout: Layout, solution: Evaluation) -> Array:
 
 
 def is_pushed(layout: Layout, solution: Evaluation, motion: Evaluation) -> bool:
-    """Whether the loads act along a motion by more than the pose is known: power of the inertia loads over loads."""
+    """Return whether the loads act along a motion by more than the pose is known: power of the inertia loads over
+    loads.
+    """
     bodies = layout.mechanism.bodies
     states: BodyStates = make_body_states(layout, solution)
     moving = make_body_states(layout, motion)

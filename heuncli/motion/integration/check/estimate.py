@@ -37,9 +37,9 @@ from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.check.run_comparison import (
     JoinedStates,
-    angle_error,
-    bounded_motion_error,
+    bound_motion_error,
     choose_instants,
+    find_angle_error,
     find_ends_between,
     interleave,
     is_between_impulses,
@@ -271,8 +271,8 @@ def estimate_errors(
     several = None
     for part, several in evaluate_together(runs, a, times, states):
         with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
-            point_errors[part] = bounded_motion_error(runs.motion_points, several, len(states), layout.size)
-            angle_errors[part], largest_angle = angle_error(layout, several, len(states))
+            point_errors[part] = bound_motion_error(runs.motion_points, several, len(states), layout.size)
+            angle_errors[part], largest_angle = find_angle_error(layout, several, len(states))
         largest = max(largest, largest_angle)
     whole = several if several is not None and len(several.times) == len(states) * len(times) else None
     return np.maximum(point_errors, angle_errors / largest), whole

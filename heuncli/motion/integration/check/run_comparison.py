@@ -52,7 +52,7 @@ def pair_runs(count: int) -> tuple[Indices, Indices]:
     return np.triu_indices(count, 1)
 
 
-def bounded_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, size: float) -> Array:
+def bound_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, size: float) -> Array:
     """Bound that error (n,). The bound equals the error where it is largest and where it may exceed CLAIMED.
 
     A point is no farther away than its body's joint point plus the longest arm times the body's rotation. Two attitudes
@@ -71,18 +71,18 @@ def bounded_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int
             np.maximum(distance, point_distance.max(axis=0), out=distance)
     bound = ROUNDING_MARGIN * (2.0 * (distance / size) + tolerances.PLACE_ROUNDING * np.maximum(extent, 1.0))
 
-    def exact_error(which: Indices) -> Array:
+    def find_exact_error(which: Indices) -> Array:
         bodies = evaluation.bodies[(count * which[:, None] + np.arange(count)).ravel()]
         return motion_error(marks, bodies, count, size)
 
     if len(bound) <= FULL_CHECKS or not np.isfinite(bound).all():
-        return exact_error(np.arange(len(bound)))
+        return find_exact_error(np.arange(len(bound)))
     first = np.argpartition(bound, -FULL_CHECKS)[-FULL_CHECKS:]
-    exact = exact_error(first)
+    exact = find_exact_error(first)
     bound[first] = 0.0
     others = np.flatnonzero(bound >= min(float(exact.max()), tolerances.CLAIMED))
     if len(others):
-        bound[others] = exact_error(others)
+        bound[others] = find_exact_error(others)
     bound[first] = exact
     return bound
 
@@ -103,17 +103,17 @@ def point_distance(marks: MotionPoints, bodies: Table, count: int, size: float, 
     )
 
 
-def angle_error(layout: Layout, evaluation: Evaluation, count: int) -> tuple[Array, float]:
+def find_angle_error(layout: Layout, evaluation: Evaluation, count: int) -> tuple[Array, float]:
     """Estimate the error of the angles that are counted over turns [rad], (n,), and return the largest of them, at
     least 1.
     """
-    difference, largest = angle_difference(layout, evaluation, count)
+    difference, largest = find_angle_difference(layout, evaluation, count)
     for k in range(1, count - 1):
-        difference = np.maximum(difference, angle_difference(layout, evaluation, count, k)[0])
+        difference = np.maximum(difference, find_angle_difference(layout, evaluation, count, k)[0])
     return replace_nan_errors(2.0 * difference + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
 
 
-def angle_difference(layout: Layout, evaluation: Evaluation, count: int, first: int = 0) -> tuple[Array, Array]:
+def find_angle_difference(layout: Layout, evaluation: Evaluation, count: int, first: int = 0) -> tuple[Array, Array]:
     """Return the largest difference of any counted angle between run `first` and a later one [rad], (n,), and the
     largest angle, at least 1, (n,).
 

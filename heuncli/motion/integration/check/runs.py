@@ -210,7 +210,7 @@ def has_shared_steps(a: Array, b: Array) -> bool:
 
 
 @cache
-def asymmetric_numbers(count: int) -> Array:
+def list_asymmetric_numbers(count: int) -> Array:
     """Return numbers between a half and one of either sign, without a pattern, (count,)."""
     fraction = np.modf(0.6180339887498949 * np.arange(1, count + 1))[0]
     numbers = np.where(fraction < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * fraction)[0] / 2.0)
@@ -226,7 +226,7 @@ def perturb_start(layout: Layout) -> Array:
     of the golden section.
     """
     y = layout.y0.copy()
-    direction = asymmetric_numbers(len(y))
+    direction = list_asymmetric_numbers(len(y))
     for group in layout.tables["groups"]:
         coordinates, rates, end = group["coordinates"], group["rates"], group["end"]
         unit = 1.0 / layout.weights[coordinates:end]
@@ -282,13 +282,13 @@ def explain_fixed_step_error(
 
 def suggest_step(runner: Runner, method: Method, step: float) -> str:
     """Say which steps to try in place of a step [s]."""
-    rate = 0.0 if method.implicit else fastest_rate(runner)
+    rate = 0.0 if method.implicit else find_fastest_rate(runner)
     if rate * step > STABILITY_LIMIT:
         return f"the fastest rate at the start is {rate:.2g} 1/s: use steps of {STABILITY_LIMIT / rate:.1g} s or less"
     return f"use steps shorter than {step:g} s"
 
 
-def fastest_rate(runner: Runner) -> float:
+def find_fastest_rate(runner: Runner) -> float:
     """Return the largest eigenvalue magnitude of the linearised motion at the start [1/s]; 0 if it has none."""
     integrated_scene = runner.integrated_scene
     start = integrated_scene.restrict(0.0, runner.layout.y0)

@@ -37,11 +37,11 @@ from heuncli.motion.integration.contacts.latches import (
     LatchConditions,
     Latches,
     add_catches,
-    work_of_catches,
+    compute_catch_work,
 )
 from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
-    acceleration_noise,
+    estimate_acceleration_noise,
     find_contradicted,
     find_coupled_groups,
     find_resting,
@@ -50,8 +50,8 @@ from heuncli.motion.integration.contacts.restitution import (
 )
 from heuncli.motion.integration.contacts.sequential_impacts import (
     EndlessImpacts,
-    endless_impacts_error,
     find_independent,
+    make_endless_impacts_error,
 )
 from heuncli.motion.integration.contacts.shared_impulses import (
     LoadedContact,
@@ -61,7 +61,12 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     select_loaded,
 )
 from heuncli.motion.integration.contacts.sticking import FrictionStates
-from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
+from heuncli.motion.integration.contacts.touching import (
+    TouchingContacts,
+    can_move_bodies,
+    find_opening_rates,
+    find_touching,
+)
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
 from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
@@ -195,7 +200,7 @@ class Contacts:
         solution = solve_impulses(
             self.evaluator.workspace, given_impulse.before_time, sides.still.states[0], loads, jumps
         )
-        rates = opening_rates(contacts_touching, solution.columns.bodies)
+        rates = find_opening_rates(contacts_touching, solution.columns.bodies)
         A = 0.5 * (rates[:, n:] + rates[:, n:].T)
         return solution, ContactProblem(
             contacts_touching, A, can_move_bodies(self.layout, contacts_touching, A), rates[:, :n].sum(axis=1)
@@ -224,7 +229,7 @@ class Contacts:
             holding, acceleration = find_resting(
                 contacts_touching, problem.A, problem.moves, impulses.rate, after_evaluation, self.layout
             )
-            noise = acceleration_noise(self.layout, contacts_touching, problem.A, after_evaluation)
+            noise = estimate_acceleration_noise(self.layout, contacts_touching, problem.A, after_evaluation)
             is_still = impulses.rate == 0.0
             require_yielding(
                 self.layout, problem, np.where(is_still, acceleration, 0.0), noise, given_impulse.after_time
@@ -249,7 +254,7 @@ class Contacts:
             impulses, columns, total = self.refine(given_impulse, sides, unrefined)
             after_state, work = state_after(self.layout, given_impulse, sides, total)
         work += float(impulses.impulses @ (0.5 * (contacts_touching.rate + impulses.rate)))
-        work += work_of_catches(self.layout, catches, columns.multipliers)
+        work += compute_catch_work(self.layout, catches, columns.multipliers)
         self.bring_to_rest(sides.still.states[0], after_state)
         return ContactOutcome(impulses, holding, at_rest, columns, after_state, work)
 
@@ -264,7 +269,7 @@ class Contacts:
             )
         except EndlessImpacts as endless:
             names = [self.layout.contacts[i].name for i in contacts_touching.indices.tolist()]
-            raise endless_impacts_error(
+            raise make_endless_impacts_error(
                 t, [names[k] for k in endless.contacts.tolist()], names[endless.most_struck]
             ) from None
 

@@ -132,7 +132,7 @@ def find_resting(
     contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
     rows = evaluation.rows[0]
     q = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    noise = acceleration_noise(layout, contacts_touching, A, evaluation)
+    noise = estimate_acceleration_noise(layout, contacts_touching, A, evaluation)
     is_still = rate == 0.0
     candidates = np.flatnonzero(is_still & moves)
     solution = solve_complementarity(A[np.ix_(candidates, candidates)], q[candidates], noise[candidates])
@@ -155,14 +155,16 @@ def find_contradicted(
     """
     contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
     rows = evaluation.rows[0]
-    noise = acceleration_noise(layout, contacts_touching, A, evaluation)
+    noise = estimate_acceleration_noise(layout, contacts_touching, A, evaluation)
     z = np.array([-c.sense * float(rows["multiplier"][c.row]) for c in contacts])
     w = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
     is_pulling = (holding == CLOSED) & (z * np.diag(A) < -noise)
     return np.asarray(is_pulling | ((holding == OPEN) & (rate == 0.0) & (w < -noise)))
 
 
-def acceleration_noise(layout: Layout, contacts_touching: TouchingContacts, A: Array, evaluation: Evaluation) -> Array:
+def estimate_acceleration_noise(
+    layout: Layout, contacts_touching: TouchingContacts, A: Array, evaluation: Evaluation
+) -> Array:
     """Return the rounding of the accelerations of opening (k,), from the terms of motion, and all loads and weights.
 
     Where a contact lets go, these cancel: a force that has become zero is known only to the rounding of what it was.
@@ -343,7 +345,7 @@ def solve_round(
     return solve_complementarity(A[np.ix_(candidates, candidates)], q, noise[candidates])
 
 
-def chattering_error(t: float, name: str) -> SolveError:
+def make_chattering_error(t: float, name: str) -> SolveError:
     """Make the error of contacts that follow each other endlessly at one instant; name: of the one most often
     struck.
     """

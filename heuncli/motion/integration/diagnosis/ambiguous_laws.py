@@ -115,7 +115,7 @@ def find_half_turned(mechanism: Mechanism, evaluation: Evaluation, instant: int)
 # Half turns
 
 
-def half_turn_error(
+def make_half_turn_error(
     integrated_scene: IntegratedScene, body: int, t: float, state: Array, *, is_unreduced: bool
 ) -> SolveError:
     """Make the error of a body, by its number in the tree, whose kappa grows without bound in the state at t.
@@ -163,7 +163,9 @@ def find_jammed_after(mechanism: Mechanism, workspace: Workspace, t: float) -> l
     return [make_jamming_problem(mechanism, status, row, when)] if status != kernel.FOUND and when >= t else []
 
 
-def indeterminate_friction_problem(mechanism: Mechanism, loads: Sequence[JointLoad | ThreadLoad], t: float) -> Problem:
+def make_indeterminate_friction_problem(
+    mechanism: Mechanism, loads: Sequence[JointLoad | ThreadLoad], t: float
+) -> Problem:
     """Make the problem of friction that depends on indeterminate reactions of redundant joints."""
     load_names = ", ".join(mechanism.describe_friction(load) for load in loads)
     message = f"at t = {t:.9g} s friction depends on indeterminate reactions of redundant joints: {load_names}"

@@ -89,14 +89,14 @@ def find_fast_motion(scene: Evaluator, t: float, state: Array, holding: Array | 
     scale = turn[i] if turns else shift[i]
     body = layout.spanning.links[i].body
     spin, speed = (float(np.sqrt(np.sum(poses[i][name] ** 2))) for name in ("omega", "v"))
-    inertia = twice_kinetic_energy(layout, poses, spins, speeds) / float(scale) ** 2
+    inertia = compute_twice_kinetic_energy(layout, poses, spins, speeds) / float(scale) ** 2
     return FastMotion(
         abs(complex(values[k])), body, turns, spin, speed, inertia,
         find_opposed_pins(layout, eigenvector, rates, poses),
     )  # fmt: skip
 
 
-def twice_kinetic_energy(layout: Layout, poses: Table, spins: Array, speeds: Array) -> float:
+def compute_twice_kinetic_energy(layout: Layout, poses: Table, spins: Array, speeds: Array) -> float:
     """Return twice the kinetic energy of angular velocities and velocities of the centres, (n_b, 3) each."""
     total = 0.0
     for i, link in enumerate(layout.spanning.links):
@@ -200,7 +200,7 @@ def find_growing(
     return find_grown(scene.layout.mechanism, (t, coordinates[1]), (earlier, coordinates[0]))
 
 
-def stalled_error(problems: Sequence[Problem], done_text: str, needed_steps: float, cause: str = "") -> HeunError:
+def make_stalled_error(problems: Sequence[Problem], done_text: str, needed_steps: float, cause: str = "") -> HeunError:
     """Explain why a run does not advance: what grows, else how many steps it would need, and for which cause (a
     sentence).
     """

@@ -99,12 +99,12 @@ def require_progress(progress: RunProgress, most_steps: int) -> None:
         from heuncli.motion.integration.diagnosis.fast_motions import (
             explain_short_steps,  # only on the way to an error
             find_growing,
-            stalled_error,
+            make_stalled_error,
         )
 
         problems = find_growing(progress.scene, progress.t, progress.state, progress.passed_states)
         cause = "" if problems else explain_short_steps(progress.scene, progress.t, progress.state, *progress.pace)
-        raise stalled_error(problems, f"{steps.count} {done_text}", projected, cause)
+        raise make_stalled_error(problems, f"{steps.count} {done_text}", projected, cause)
 
 
 # Slow runs

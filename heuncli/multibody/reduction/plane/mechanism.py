@@ -171,7 +171,7 @@ def cosine_and_sine(A: Array) -> tuple[float, float]:
 
 
 def rotation_about_z(turn: tuple[float, float]) -> Array:
-    """The rotation about z with this cosine and sine."""
+    """Return the rotation about z with this cosine and sine."""
     c, s = turn
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
@@ -373,5 +373,5 @@ def _unit(x: Array) -> Array:
 
 
 def _flat_inertia(moment: float) -> Array:
-    """The inertia of a flat body with this moment about z."""
+    """Return the inertia of a flat body with this moment about z."""
     return np.diag([0.5 * moment, 0.5 * moment, moment])

@@ -144,7 +144,7 @@ class PlaneStateMap:
 
 
 def angles_about(n: Array, attitudes: Array, starts: Array) -> list[float]:
-    """The angles about n, within two turns, that take quaternions (b, 4) to others, including their signs."""
+    """Return the angles about n, within two turns, that take quaternions (b, 4) to others, including their signs."""
     turns = quaternion_product(attitudes, starts * np.array([1.0, -1.0, -1.0, -1.0]))
     sines = np.array([n @ turn for turn in turns[:, 1:]])
     return [2.0 * angle for angle in np.arctan2(sines, turns[:, 0]).tolist()]
@@ -175,7 +175,7 @@ def _find_turns(small: Layout) -> list[PlaneTurn]:
 
 
 def _freedom_directions(scene: PreparedScene) -> Array:
-    """The directions of a scene's scalar freedoms at the start, (n, 3)."""
+    """Return the directions of a scene's scalar freedoms at the start, (n, 3)."""
     layout, R = scene.layout, scene.start.rotation
     directions = vector_array(layout.tables["freedoms"]["direction"])
     for body, link in zip(layout.bodies, layout.spanning.links, strict=True):

@@ -66,8 +66,8 @@ def _severity(leaving: list[Departure]) -> tuple[int, float]:
 
 
 def _is_nearly_flat(leaving: list[Departure]) -> bool:
-    """Whether a reader might expect the scene to be flat: one load or drive leaves the plane, or all departures are
-    small.
+    """Return whether a reader might expect the scene to be flat: one load or drive leaves the plane, or all departures
+    are small.
     """
     return (len(leaving) == 1 and leaving[0].acts) or all(
         departure.size < tolerances.NEARLY_FLAT for departure in leaving
