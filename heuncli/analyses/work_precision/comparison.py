@@ -17,8 +17,8 @@ from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.motion.integration.check.estimate import evaluate_run, evaluate_together
 from heuncli.motion.integration.check.run_comparison import (
     find_angle_difference,
+    find_point_distance,
     is_between_impulses,
-    point_distance,
     replace_nan_errors,
 )
 from heuncli.motion.integration.check.runs import Runs
@@ -87,7 +87,7 @@ class ReferenceComparison:
         layout, places, angles, largest = self.setup.scene.layout, 0.0, 0.0, 1.0
         with np.errstate(all="ignore"):  # a diverged run may have any values
             for part, bodies_pair in evaluate_together(self.runs, self.reference, self.times, states):
-                distances = point_distance(self.runs.motion_points, bodies_pair.bodies, 2, layout.size)
+                distances = find_point_distance(self.runs.motion_points, bodies_pair.bodies, 2, layout.size)
                 turn_angles, angle = find_angle_difference(layout, bodies_pair, 2)
                 places, angles = max(places, _largest(distances)), max(angles, _largest(turn_angles))
                 largest = max(largest, float(angle.max(initial=1.0)))

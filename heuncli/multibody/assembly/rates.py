@@ -35,9 +35,8 @@ from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Directed, Mechanism
 from heuncli.results.results import Array
 
-MAX_CHECKED_JOINTS = (
-    2000  # joints of an island up to which this is checked here; in larger ones the motion will show it
-)
+# joints of an island up to which this is checked here; in larger ones the motion will show it
+MAX_CHECKED_JOINTS = 2000
 
 
 @record

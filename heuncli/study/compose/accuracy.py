@@ -64,9 +64,9 @@ class Balance:
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
         if self.of_energy:
             self.add_energy(recovery)
-        self.gap = larger(self.gap, float(recovery.solutions.gap.max(initial=0.0)))
+        self.gap = take_larger(self.gap, float(recovery.solutions.gap.max(initial=0.0)))
         residual = balance_residual(mechanism, recovery.states, recovery.inertia, recovery.actions, size)
-        self.residual = larger(self.residual, residual)
+        self.residual = take_larger(self.residual, residual)
         return self
 
     def add_energy(self, recovery: Recovery) -> None:
@@ -76,15 +76,17 @@ class Balance:
             power_error = power_imbalance(
                 layout, recovery.states, recovery.loads, joints, recovery.couplings, self.span
             )
-            self.imbalance = larger(self.imbalance, power_error)
+            self.imbalance = take_larger(self.imbalance, power_error)
             acting = [(largest_magnitude(x.force), largest_magnitude(x.moment)) for x in recovery.law_actions]
             largest_so_far = self.loads or [(0.0, 0.0)] * len(acting)
-            self.loads = [(larger(F, f), larger(M, m)) for (F, M), (f, m) in zip(largest_so_far, acting, strict=True)]
+            self.loads = [
+                (take_larger(F, f), take_larger(M, m)) for (F, M), (f, m) in zip(largest_so_far, acting, strict=True)
+            ]
         energy = recovery.energy
         total = energy["kinetic"] + energy["potential"] - energy["work"]
         self.start = float(total[0]) if self.start is None else self.start
-        self.change = larger(self.change, largest_magnitude(total - self.start))
-        self.kinetic = larger(self.kinetic, float(energy["kinetic"].max(initial=0.0)))
+        self.change = take_larger(self.change, largest_magnitude(total - self.start))
+        self.kinetic = take_larger(self.kinetic, float(energy["kinetic"].max(initial=0.0)))
 
     def to_accuracy(self, kinetic: float = 0.0, impulse_energy: float = 0.0) -> Accuracy:
         """Return the part of the block `accuracy` that instants decide.
@@ -105,8 +107,8 @@ class Balance:
         return found | {"constraint_gap": self.gap, "balance_residual": self.residual}
 
 
-def larger(so_far: float, value: float) -> float:
-    """Return the larger of the two; nan stays nan."""
+def take_larger(so_far: float, value: float) -> float:
+    """Return the take_larger of the two; nan stays nan."""
     return float(np.maximum(so_far, value))
 
 

@@ -266,7 +266,7 @@ def estimate_errors(impulses_of_run: Impulses, others: Sequence[Impulses]) -> di
         for kind, block, units in ERROR_KINDS:
             for unit, names in units.items():
                 differences = [
-                    largest_difference(values, check_values, matched_pairs)
+                    find_largest_difference(values, check_values, matched_pairs)
                     for other, matched_pairs in zip(others, matches, strict=True)
                     for values, check_values in find_array_pairs(
                         select_part(impulses_of_run.all_blocks.get(block, {})),
@@ -294,7 +294,7 @@ def are_shares(name: str, value: Any) -> bool:
     return name == SHARES and isinstance(value, dict) and all(isinstance(own, dict) for own in value.values())
 
 
-def largest_difference(values: Array, check_values: Array, matched_pairs: Sequence[tuple[int, int]]) -> float:
+def find_largest_difference(values: Array, check_values: Array, matched_pairs: Sequence[tuple[int, int]]) -> float:
     """Return the largest difference of numbers over the impulses that both runs have; of others the number itself."""
     reference = np.zeros_like(values)
     for i, k in matched_pairs:

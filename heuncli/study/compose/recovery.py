@@ -193,7 +193,7 @@ class Recovery:
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
         # hardly any scene needs it
-        from heuncli.motion.integration.diagnosis.ambiguous_laws import separation_velocity
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import find_separation_velocity
 
         layout, recovered = self.setup.scene.layout, self.solutions
         return [
@@ -201,7 +201,7 @@ class Recovery:
                 own,
                 rate=np.where(
                     own.length == 0.0,
-                    compute_vector_magnitudes(separation_velocity(layout, own.load, recovered)),
+                    compute_vector_magnitudes(find_separation_velocity(layout, own.load, recovered)),
                     own.rate,
                 ),
             )

@@ -20,9 +20,8 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Indices, Mask
 
-THIRD_DERIVATIVE_SHARE = (
-    0.5  # of the difference of the two bends, added to the larger: for third derivatives that change sign
-)
+# of the difference of the two bends, added to the larger: for third derivatives that change sign
+THIRD_DERIVATIVE_SHARE = 0.5
 FOURTH_DERIVATIVE_SHARE = 0.5  # of the bend: possible effect of the fourth derivative where four instants span a summit
 MIN_END_DISTANCE = 0.02  # of an interval: how near to its ends it is divided: a summit's neighbourhood shrinks so fast
 MAX_RISE_PER_BEND = 0.26  # of a bend: a quarter, and more than rounding adds to it

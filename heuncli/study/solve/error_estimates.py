@@ -72,8 +72,8 @@ class Extent:
             return
         count, last = len(values) // len(is_requested), instants_last(values)
         first_run = last[..., 0::count]
-        size = _lengths(first_run)
-        difference = reduce(np.maximum, [_lengths(first_run - last[..., k::count]) for k in range(1, count)])
+        size = _compute_lengths(first_run)
+        difference = reduce(np.maximum, [_compute_lengths(first_run - last[..., k::count]) for k in range(1, count)])
         self.add_difference(difference if extra_difference is None else difference + extra_difference, is_claimed)
         self.rounding = _larger(self.rounding, rounding)
         self.terms = _larger(self.terms, terms)
@@ -111,12 +111,12 @@ def compute_norms(vectors: Array) -> Array:
     return np.asarray(np.sqrt(np.einsum("tni,tni->tn", vectors, vectors)))
 
 
-def lengths(values: Array) -> Array:
+def compute_lengths(values: Array) -> Array:
     """Return the largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
-    return _lengths(instants_last(values))
+    return _compute_lengths(instants_last(values))
 
 
-def _lengths(values: Array) -> Array:
+def _compute_lengths(values: Array) -> Array:
     """Return the same for values with the instants last, (..., 3, n) or (n,)."""
     if values.ndim == 1:
         return np.abs(values)
@@ -367,6 +367,6 @@ class ErrorEstimates:
         shown_energy = max(kinetic.largest_requested, potential.range_or_largest, work.range_or_largest)
         return relative_error(error, kinetic.largest, shown_energy, kinetic.largest)
 
-    def largest_kinetic_energy(self) -> float:
+    def find_largest_kinetic_energy(self) -> float:
         """Return the largest kinetic energy over the run [J]."""
         return self.find_extent("energy", "kinetic").largest

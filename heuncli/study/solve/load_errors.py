@@ -51,9 +51,9 @@ from heuncli.study.solve.error_estimates import (
     ErrorEstimates,
     Weights,
     compare_attitudes,
+    compute_lengths,
     compute_norms,
     iter_momentum_quantities,
-    lengths,
 )
 
 
@@ -362,7 +362,7 @@ class LoadErrors(ErrorEstimates):
                 ("force", force, F, terms.force), ("moment", moment, M, terms.moment),
             ):  # fmt: skip
                 instants_first = values.transpose(1, 2, 0)
-                turn_difference = turned * lengths(instants_first[0::count])
+                turn_difference = turned * compute_lengths(instants_first[0::count])
                 self.add_values(("sections", quantity), instants_first, rounding, magnitude, turn_difference)
 
     def add_energy(self, recovered: Evaluation, states: BodyStates) -> None:

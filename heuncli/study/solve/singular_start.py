@@ -48,9 +48,8 @@ def require_motion(layout: Layout, start_solution: Evaluation) -> None:
     bare = Runner(remove_weight_and_loads(layout))
     rates = rate_places[rate_places >= 0]
     all_motions, is_kept = solve_with_rates(bare, start_solution, rates, list(resting.values()))
-    if (
-        is_kept and all_motions.residual[0] <= all_motions.allowed_residual[0]
-    ):  # the usual case: one check of all islands together
+    if is_kept and all_motions.residual[0] <= all_motions.allowed_residual[0]:
+        # the usual case: one check of all islands together
         return
     for k, motion in resting.items():
         motion_solution, is_kept = solve_with_rates(bare, start_solution, rates, [motion])

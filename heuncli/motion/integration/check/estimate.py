@@ -76,7 +76,7 @@ class LoadDifferences(Protocol):
     def errors(self) -> Mapping[tuple[str, str], float]:
         """Return the estimated errors by kind and unit, at instants before the horizon."""
 
-    def largest_kinetic_energy(self) -> float:
+    def find_largest_kinetic_energy(self) -> float:
         """Return the largest kinetic energy over the run [J]."""
 
     @property
@@ -176,7 +176,7 @@ def make_checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> Ch
             )
     evaluate = make_evaluate(runs, best, loads.by_cause)
     seconds = best.seconds + time.perf_counter() - clock_start
-    error_results = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.largest_kinetic_energy()
+    error_results = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.find_largest_kinetic_energy()
     check_impulses = tuple(run.impulse_events for run in best.runs[1:])
     return CheckedRun(
         a, evaluate, *error_results, check_impulses, seconds, discarded_seconds, find_condition_changes(runs, best)

@@ -35,9 +35,8 @@ MIN_RATIO = 4.0  # smallest such ratio: errors scale with tolerances, so 2 |A - 
 MIN_STEP_RATIO = 2.0  # for a fixed step: at order 1, 2 |A - B| still equals the error of A
 AUTOMATIC_TOLERANCE = 1e-6  # tolerance of a run with automatic steps, where fixed ones fail
 COLLAPSE_CODES = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
-MAX_STEP_GROWTH = (
-    20  # a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
-)
+# a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
+MAX_STEP_GROWTH = 20
 
 
 class Runs:
@@ -106,8 +105,6 @@ class Runs:
         try:
             return self.run(step)
         except SolveError as error:
-            # only on the way to an error
-
             raise explain_fixed_step_error(
                 error, self.runner, self.method, step, self.run_with_automatic_steps
             ) from None
@@ -127,7 +124,7 @@ class Runs:
             else:
                 return None
 
-    def attempt(
+    def try_run(
         self,
         local: float,
         reference: Trajectory,
@@ -152,7 +149,7 @@ class Runs:
         collapses.
         """
         for ratio in (factor, RATIO) if factor > RATIO else (RATIO,):
-            run = self.attempt(max(a.local / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
+            run = self.try_run(max(a.local / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
             if run is not None:
                 return run
         return None
@@ -169,7 +166,7 @@ class Runs:
         )
         attempts = [(a.local / ratio, self.perturbed_start) for ratio in (most, least, 1.0 / most)]
         for local, start in (*attempts, (a.local / most, None)):
-            run = self.attempt(local, a, check_times, start, a.method.check)
+            run = self.try_run(local, a, check_times, start, a.method.check)
             if run is not None:
                 return self.add_finest(a, run, check_times, start)
         return (self.run(a.local * most, check_times, check_method=a.method.check),)
@@ -187,14 +184,14 @@ class Runs:
             return (b,)
         if b.local <= tolerances.LEAST_TOLERANCE:
             return (b,)
-        finest = self.attempt(tolerances.LEAST_TOLERANCE, a, check_times, start)
+        finest = self.try_run(tolerances.LEAST_TOLERANCE, a, check_times, start)
         return (b,) if finest is None else (finest, b)
 
     def run_from_moved_start(self, a: Trajectory, check_times: Array) -> Trajectory | None:
         """Make the run M: like A from the moved start, where rounding may matter; else None."""
         if a.method.is_determined or (not a.method.has_fixed_step and a.local >= tolerances.ROUNDING_MATTERS):
             return None
-        return self.attempt(a.local, a, check_times, self.perturbed_start)
+        return self.try_run(a.local, a, check_times, self.perturbed_start)
 
 
 def has_shared_steps(a: Array, b: Array) -> bool:
@@ -239,9 +236,8 @@ def perturb_start(layout: Layout) -> Array:
 
 # Given steps
 
-STABILITY_LIMIT = (
-    2.0  # stable h |lambda| of explicit fixed-step methods: 2 for Euler's and Heun's, 2.5 for Heun3, 2.8 for RK4
-)
+# stable h |lambda| of explicit fixed-step methods: 2 for Euler's and Heun's, 2.5 for Heun3, 2.8 for RK4
+STABILITY_LIMIT = 2.0
 STEP_MESSAGES = {
     "not-a-number": "a motion in steps of {step:g} s has no finite acceleration after this instant",
     "closure-lost": "with steps of {step:g} s closed loops cannot be assembled after this instant",
@@ -300,7 +296,7 @@ def find_fastest_rate(runner: Runner) -> float:
 
 # Fewer stages
 
-MESSAGE = (
+FEWER_STAGES_MESSAGE = (
     "events (contact, condition, jump, table point) end {cut} of the first {steps} steps; up to t = {t:.3g} s "
     "{name} takes {few} evaluations, {method} {many}"
 )
@@ -318,7 +314,7 @@ def try_fewer_stages(runs: Runs, eventful: EventfulRun) -> bool:
         )
         trial = runs.runner.run(request, StoppingRules())
         if trial.evaluations < eventful.evaluations:
-            eventful.reason = MESSAGE.format(
+            eventful.reason = FEWER_STAGES_MESSAGE.format(
                 cut=eventful.cut, steps=eventful.steps, t=eventful.end_time, name=method.name, few=trial.evaluations,
                 method=runs.method.name, many=eventful.evaluations,
             )  # fmt: skip

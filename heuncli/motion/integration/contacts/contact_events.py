@@ -109,7 +109,7 @@ class Contacts:
         latch_conditions: the conditions of latches there; by default evaluated at the state
         """
         latches = self.latches
-        is_closed = (self.holding > 0.0) & ~self.find_left(row)
+        is_closed = (self.holding > 0.0) & ~self.find_opening_redundant(row)
         require_smooth(self.layout, given_impulse, is_closed)
         latch_conditions = latch_conditions or latches.evaluate_conditions(given_impulse.before_time, state)
         released = latches.release(latch_conditions)
@@ -168,7 +168,7 @@ class Contacts:
         """
         self.friction.begin_event()
         for _ in range(MAX_FRICTION_CHANGES):
-            outcome = self.solve(given_impulse, sides, units, problem, catches)
+            outcome = self.solve_event(given_impulse, sides, units, problem, catches)
             self.holding = self.friction.add_to(self.latches.holding())
             self.holding[problem.touching.indices] = outcome.holding
             self.holding[unwatched] = UNWATCHED
@@ -182,8 +182,8 @@ class Contacts:
                 return outcome
         raise self.friction.unsettled_error(given_impulse.after_time)
 
-    def find_left(self, row: int | None) -> Mask:
-        """Mark the contact (contacts,) that others kept closed and whose gap left its rounding there: it has a rate."""
+    def find_opening_redundant(self, row: int | None) -> Mask:
+        """Mark the contact (contacts,) that redundant others held closed and whose gap, now beyond rounding, opens."""
         is_left = np.zeros(len(self.holding), dtype=bool)
         for k, contact in enumerate(self.layout.contacts):
             is_left[k] = contact.row == row and self.holding[k] == CLOSED_BY_OTHERS
@@ -206,7 +206,7 @@ class Contacts:
             contacts_touching, A, can_move_bodies(self.layout, contacts_touching, A), rates[:, :n].sum(axis=1)
         )
 
-    def solve(
+    def solve_event(
         self,
         given_impulse: GivenImpulse,
         sides: RightSides,
@@ -299,9 +299,8 @@ class Contacts:
         ]
         contacts += select_loaded(list_bilateral_contacts(self.layout), outcome.columns.multipliers)
         is_coupled = np.zeros((len(contacts), len(contacts)), dtype=bool)
-        for group in find_coupled_groups(
-            problem.A
-        ):  # also through contacts that bear nothing, which depends on the model, too
+        # also through contacts that bear nothing, which depends on the model, too
+        for group in find_coupled_groups(problem.A):
             members = np.isin(taking_part, group)
             is_coupled[: len(taking_part), : len(taking_part)] |= members[:, None] & members
         return tuple(find_shared_impulses(contacts, is_coupled, outcome.columns.multipliers))
@@ -329,11 +328,8 @@ class Contacts:
         With the rates after the impulse known, the bearing contacts are held and solved by the factors of the closures,
         in one column. What the contacts' columns lack of it is added to the last of them.
         """
-        contacts_touching, impulse_solution, n = (
-            unrefined_impulses.touching,
-            unrefined_impulses.impulses,
-            len(sides.loads),
-        )
+        contacts_touching, impulse_solution = unrefined_impulses.touching, unrefined_impulses.impulses
+        n = len(sides.loads)
         basis, others = unrefined_impulses.basis, unrefined_impulses.others
         contacts = [self.layout.contacts[i] for i in contacts_touching.indices[basis].tolist()]
         rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])

@@ -258,7 +258,10 @@ def make_impulse_event(
         sides.still, causes=solution.columns.select(None), residual=np.array([solution.unmet.max()]),
         massless_count=np.array([float(solution.massless_count)]),
     )  # fmt: skip
-    kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, after_evaluation.bodies[0])
+    kinetic = (
+        compute_kinetic_energy(layout, still.bodies[0]),
+        compute_kinetic_energy(layout, after_evaluation.bodies[0]),
+    )
     names = tuple(dict.fromkeys((*given_impulse.list_names(layout.mechanism), *result.struck_names)))
     return ImpulseEvent(
         result.time,
@@ -351,7 +354,7 @@ def compute_drive_work(layout: Layout, given_impulse: GivenImpulse, jump: Column
     return work
 
 
-def kinetic_energy(layout: Layout, bodies: Table) -> float:
+def compute_kinetic_energy(layout: Layout, bodies: Table) -> float:
     """Return the kinetic energy of all bodies [J]; bodies in tree order."""
     energy = 0.0
     for place, link in enumerate(layout.spanning.links):

@@ -52,7 +52,7 @@ def find_undirected_loads(layout: Layout, evaluation: Evaluation, is_motion_star
         if not is_coincident.any():
             continue
         if not load.needs_direction:
-            separation_speed = np.sqrt(np.sum(separation_velocity(layout, load, evaluation) ** 2, axis=1))
+            separation_speed = np.sqrt(np.sum(find_separation_velocity(layout, load, evaluation) ** 2, axis=1))
             is_coincident &= (load_rows["span"] == 0.0) & (load.damping * separation_speed > 0.0)
         elif load.value is not None:
             is_coincident &= is_motion_start | (load_rows["value"] != 0.0)
@@ -61,7 +61,7 @@ def find_undirected_loads(layout: Layout, evaluation: Evaluation, is_motion_star
     return problems
 
 
-def separation_velocity(layout: Layout, load: PairLoad, evaluation: Evaluation) -> Array:
+def find_separation_velocity(layout: Layout, load: PairLoad, evaluation: Evaluation) -> Array:
     """Return the velocity of the second point relative to the first, (n_t, 3) [m/s]."""
     speeds = []
     for body, end in ((load.a, "from_at"), (load.b, "at")):

@@ -113,7 +113,7 @@ def find_loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[in
     poses = TreePoses(bodies["R"], bodies["r"])
     motions = find_massless_motions(scene, find_missing_inertia(scene), poses)
     return {
-        i: span_vectors(turning)
+        i: find_span_vectors(turning)
         for i, turning in find_loose_motions(scene.layout, motions, poses, rows).find_axes(poses).items()
     }
 
@@ -137,7 +137,7 @@ def is_unloaded_spin(scene: PreparedScene, evaluation: Evaluation, k: int) -> bo
     power, scale = np.zeros(free.count), 0.0
     for load, rows in scene.mechanism.iter_load_rows():
         if isinstance(load, RopeLoad):
-            rope_part_power, size = rope_power(scene, evaluation, k, load, free, poses)
+            rope_part_power, size = compute_rope_power(scene, evaluation, k, load, free, poses)
             power, scale = power + rope_part_power, scale + size
             continue
         for row, load_result in zip(layout.tables["loads"][rows], evaluation.loads[k, rows], strict=True):
@@ -150,7 +150,7 @@ def is_unloaded_spin(scene: PreparedScene, evaluation: Evaluation, k: int) -> bo
     return bool(np.all(np.abs(power) <= tolerances.NO_MOMENT * scale))
 
 
-def rope_power(
+def compute_rope_power(
     scene: PreparedScene, evaluation: Evaluation, k: int, load: RopeLoad, free: MasslessMotions, poses: TreePoses
 ) -> tuple[Array, float]:
     """Return the power of a stretching rope along the motions at an instant, (count,), and the magnitude of its
@@ -289,7 +289,7 @@ def find_loose_motions(layout: Layout, motions: MasslessMotions, poses: TreePose
     """
     number = {body: n for n, body in enumerate(motions.bodies)}
     closures = layout.tables["closures"]
-    measure = layout.size / mean_lever(layout)
+    measure = layout.size / find_mean_lever(layout)
     resisted = np.zeros((len(closures), motions.count))
     for k, closure in enumerate(closures):
         f, m, b = rows["f"][k], rows["m"][k], int(closure["b"])
@@ -303,7 +303,7 @@ def find_loose_motions(layout: Layout, motions: MasslessMotions, poses: TreePose
     return motions.combine(free if free.shape[1] else np.linalg.svd(resisted)[2][-1:].T)
 
 
-def mean_lever(layout: Layout) -> float:
+def find_mean_lever(layout: Layout) -> float:
     """Return the mean distance of the cut joints' points from the centres of their bodies [m]; without any, the scene's
     size.
     """
@@ -333,7 +333,7 @@ def find_axes_in_any_pose(scene: PreparedScene, lacking: Mapping[int, Array]) ->
         pose = TreePoses(pose_bodies["R"], pose_bodies["r"])
         for body, turning in find_massless_motions(scene, lacking, pose).find_axes(pose).items():
             turnings.setdefault(body, []).append(turning)
-    return {body: span_vectors(np.concatenate(turning)) for body, turning in turnings.items()}
+    return {body: find_span_vectors(np.concatenate(turning)) for body, turning in turnings.items()}
 
 
 def make_artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> list[kernel.ArtificialInertia]:
@@ -355,7 +355,7 @@ def independent_rows(rows: Array) -> Array:
     return np.asarray(sigma[:rank, None] * Vt[:rank])
 
 
-def span_vectors(rows: Array) -> Array:
+def find_span_vectors(rows: Array) -> Array:
     """Return unit vectors that span the rows, (k, 3); the largest component of a single axis is positive."""
     _, S, Vt = np.linalg.svd(rows, full_matrices=False)
     vectors = Vt[S > tolerances.RANK * float(S[0])]

@@ -192,9 +192,8 @@ class EventWatch:
 TRIAL_STEPS = (8, 8)  # steps of the implicit method: those to reach its pace, and those that are measured
 MAX_TRIAL_SHARE = 0.125  # fraction of the remaining work that the trial may take
 CORRECTIONS = 8  # iterations of the stages in a step, rarely more
-START_COST = (
-    4.0  # cost of the part done with the implicit method, over its explicit evaluations: that part was not stiff
-)
+# cost of the part done with the implicit method, over its explicit evaluations: that part was not stiff
+START_COST = 4.0
 RECENT_STEPS = 8  # steps of the run whose mean is its pace
 FACTOR_COST = 0.02  # times n^2 per stage: cost of its factors, in evaluations of n numbers of state
 
