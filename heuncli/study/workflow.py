@@ -69,20 +69,20 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
 
     Raises what `solve` does; SolveError also where a motion fails after the event that was to end it.
     """
-    begun = time.perf_counter()
+    start_clock = time.perf_counter()
     conditions = spec.analysis.conditions
     spec = apply_options(spec, options)
     setup = set_up_requested(spec, options, stages)
     if options.memory_budget is not None:
         require_memory(setup, options.memory_budget, in_parts=options.in_parts)
-    built = time.perf_counter()
+    built_clock = time.perf_counter()
     by_cause = SHARES in options.reports
     history = integrate(
         setup, spec.analysis.tolerance, deadline, by_cause=by_cause, memory_budget=options.memory_budget
     )
     # conditions may need more results than are shown: `whole` has all of them, `setup` the requested ones
     whole, setup = setup, replace(setup, selection=options.selection) if conditions else setup
-    moved = time.perf_counter()
+    moved_clock = time.perf_counter()
     parts = None
     if options.in_parts:
         from heuncli.study.compose.results import compose_in_parts  # only for exports
@@ -95,9 +95,9 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
     )
     impulses = find_impulses(setup, history, options.least_norm, by_cause)
     results = compose(setup, history, recovery, options.reports, impulses, parts)
-    looked_for = setup.rest.seconds if setup.rest is not None else 0.0  # counted as integration by the history
-    seconds = {"load": options.load_seconds, "build": built - begun - looked_for, **history.seconds}
-    results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
+    rest_seconds = setup.rest.seconds if setup.rest is not None else 0.0  # counted as integration by the history
+    seconds = {"load": options.load_seconds, "build": built_clock - start_clock - rest_seconds, **history.seconds}
+    results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved_clock}
     study = Study(spec, options, setup, history, recovery if parts is None else None, results, impulses)
     if not (conditions or spec.latches):
         return study

@@ -155,7 +155,7 @@ def make_rounded_state(layout: Layout, state: Array, number: int) -> Array:
     place = rate_indices(layout)
     weights = layout.weights[place[place >= 0]]
     scale = np.ones(len(weights))
-    order = {at: k for k, at in enumerate(place[place >= 0].tolist())}
+    order = {index: k for k, index in enumerate(place[place >= 0].tolist())}
     for freedom in layout.tables["freedoms"]:
         if not freedom["driven"]:
             k = order[int(freedom["u_at"])]

@@ -154,7 +154,7 @@ def find_ball_rates(layout: Layout, linear: LinearisedEquations) -> Array:
 def list_balls(layout: Layout, linear: LinearisedEquations) -> list[tuple[int, Array, Array]]:
     """Return for each body on a ball joint its first rotation, and the angular velocities of it and of its parent."""
     place = rate_indices(layout)
-    order = {at: k for k, at in enumerate(place[place >= 0].tolist())}
+    order = {index: k for k, index in enumerate(place[place >= 0].tolist())}
     no_rate = np.zeros(3)
     return [
         (order[int(body["rate_at"])], linear.omega[k], linear.omega[body["parent"]] if body["parent"] >= 0 else no_rate)

@@ -56,11 +56,11 @@ def find_placement_tree(
     links: list[list[tuple[int, int, bool]]] = [[] for _ in range(n + 1)]
     is_to = [False] * (n + 1)
     for k in sorted(range(len(constraints)), key=names.__getitem__):
-        a, b, ask = constraints[k]
-        if ask.hold == "none":
+        a, b, condition = constraints[k]
+        if condition.hold == "none":
             continue
-        links[a].append((k, b, ask.is_strong))
-        links[b].append((k, a, ask.is_strong))
+        links[a].append((k, b, condition.is_strong))
+        links[b].append((k, a, condition.is_strong))
         is_to[b] = True
 
     order: list[int] = []

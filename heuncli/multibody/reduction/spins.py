@@ -117,7 +117,7 @@ def transfer_spins(layout: Layout, spins: Mapping[int, Spin], sense: float, time
     out = np.array(states, dtype=float)
     for i, spin in spins.items():
         row = layout.bodies[layout.place[i]]
-        q, omega = (out[:, row[at] : row[at] + n] for at, n in (("attitude_at", 4), ("rate_at", 3)))
+        q, omega = (out[:, row[name] : row[name] + n] for name, n in (("attitude_at", 4), ("rate_at", 3)))
         n = rotate_vector(q, spin.axis)
         rate = spin.rate if sense > 0.0 else spin.rate - spin.rate_reduction
         omega += (rate - np.sum(omega * n, axis=1, keepdims=True)) * n

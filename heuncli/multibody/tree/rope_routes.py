@@ -246,13 +246,13 @@ def find_route(mechanism: Mechanism, name: str, points: list[RopePoint]) -> Rope
         sides = list(known)
         for k, side in zip(unnamed, trial, strict=True):
             sides[k] = side
-        way = make_route(points, tuple(sides))
-        if way is not None and all(matches_side(points, way, k, vertical) for k in unnamed):
-            routes.append(way)
+        route = make_route(points, tuple(sides))
+        if route is not None and all(matches_side(points, route, k, vertical) for k in unnamed):
+            routes.append(route)
     if not routes:
         message = "no route exists for the given sides: one of the sheaves blocks a strand"
         raise rope_error(name, None, "rope-side", message, f"side: {SIDES}")
-    routes.sort(key=lambda way: way.length)
+    routes.sort(key=lambda route: route.length)
     if len(routes) > 1 and routes[1].length - routes[0].length <= tolerances.OPEN_GAP * routes[0].length:
         k = next(k for k in unnamed if routes[0].sides[k] != routes[1].sides[k])
         message = "no side is given for this sheave, and both routes are equally short"

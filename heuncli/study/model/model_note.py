@@ -142,8 +142,6 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     if coupled:
         sentences.append(f"coupled: {list_some(coupled)}")
     if any(isinstance(load, ThreadLoad) for load in mechanism.loads):
-        from heuncli.study.model.model_note import describe_threads  # few scenes have them
-
         sentences += describe_threads(mechanism)
     driven = [mechanism.owner_path(law.owner).partition(".")[2] for law in mechanism.laws]
     if driven:

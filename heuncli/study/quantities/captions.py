@@ -359,5 +359,5 @@ def iter_label_paths(spec: Spec) -> Iterator[tuple[str, str]]:
     for owner, points in names.points.items():
         prefix = GROUND if owner == GROUND else f"bodies.{owner}"
         for point in points:
-            kept = f"{POINTS}.{owner}.{point}"
-            yield from ((kept, kept), (f"{prefix}.{POINTS}.{point}", kept))
+            label_path = f"{POINTS}.{owner}.{point}"
+            yield from ((label_path, label_path), (f"{prefix}.{POINTS}.{point}", label_path))

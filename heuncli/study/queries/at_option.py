@@ -132,10 +132,10 @@ def _find_extreme_time(request: InstantRequest, study: Study) -> float:
         (problem,) = error.problems
         raise NotOneNumber(f"--at {request.word}: {problem.message}", problem.hint) from None
     if found.time is None or math.isnan(found.value) or found.open_at is not None:
-        at = "" if found.open_at is None else f" at t = {found.open_at:.6g} s"
+        time_text = "" if found.open_at is None else f" at t = {found.open_at:.6g} s"
         hint = "release what the real machine leaves free (heun explain open), or use --least-norm"
         raise SolveError(
-            Problem("open-load-case", f"--at {request.word}: it is open{at}, so it has no peak", hint=hint)
+            Problem("open-load-case", f"--at {request.word}: it is open{time_text}, so it has no peak", hint=hint)
         )
     return found.time
 

@@ -209,7 +209,7 @@ def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
         refuse(f"{what}{path} goes from {q[0]:.6g} to {q[-1]:.6g}, and never reaches {x[i]:.6g}", curve, i)
     require_one_instant(curve, path, times, highest, targets, error)
     k = np.searchsorted(highest, targets, side="right")
-    at = np.where(k == 0, times[0], times[-1])
+    crossing_times = np.where(k == 0, times[0], times[-1])
     inside = (k > 0) & (k < len(times))
     right = k[inside]
     left = right - 1
@@ -218,8 +218,8 @@ def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
         j = int(np.flatnonzero(inside)[jumps.argmax()])
         refuse(f"{path} jumps past {x[j]:.6g} at t = {times[k[j]]:.6g} s", curve, j)
     bracket = Bracket(times[left], times[right], h[left], h[right])
-    at[inside] = find_roots(lambda t: sign * sample_numbers(study, path, t), bracket, targets[inside])
-    return np.asarray(at)
+    crossing_times[inside] = find_roots(lambda t: sign * sample_numbers(study, path, t), bracket, targets[inside])
+    return np.asarray(crossing_times)
 
 
 def estimate_error(study: Study, path: str, values: Array) -> float:

@@ -340,8 +340,8 @@ def add_ending(results: Results, condition: WatchedCondition, changes: Condition
     became = np.flatnonzero(changes.values)
     if len(became):
         k = int(became[0])
-        at = format_instant(float(changes.times[k]), float(changes.error[k]))
-        message = f"end condition {condition.text} met at t = {at} s{began}"
+        time_text = format_instant(float(changes.times[k]), float(changes.error[k]))
+        message = f"end condition {condition.text} met at t = {time_text} s{began}"
         status: Status = {"code": results.status["code"], "message": message}
     else:
         message = f"the end condition, {condition.text}, did not become true{began}"

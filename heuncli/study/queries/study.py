@@ -123,7 +123,7 @@ class Study:
 
             if has_moving_joints(self.setup):
                 times = extremes.sort_distinct(
-                    np.concatenate([times, find_passages(lambda at: self._recover(at, NO_REPORTS), times)])
+                    np.concatenate([times, find_passages(lambda instants: self._recover(instants, NO_REPORTS), times)])
                 )
         return extremes.fill_short_stretches(times), is_enough
 

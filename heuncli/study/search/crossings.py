@@ -108,14 +108,16 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
             return merge_samples(more_t, more_h, complete=True)
         if probes > MAX_PROBES:
             break
-        at = pool.choose_probes(shape)
-        instants = sort_distinct(at)
+        probe_times = pool.choose_probes(shape)
+        instants = sort_distinct(probe_times)
         values = sample(instants)
         side = np.where(pool.target < 1, -1.0, 1.0)
         more_t.append(instants)
         more_h.append(values)
         probes += len(instants)
-        pool = select_hidden(pool.divide(shape, at, side * (values[np.searchsorted(instants, at)] - error)))
+        pool = select_hidden(
+            pool.divide(shape, probe_times, side * (values[np.searchsorted(instants, probe_times)] - error))
+        )
     return merge_samples(more_t, more_h, complete=False)
 
 

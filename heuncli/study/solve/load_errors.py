@@ -190,8 +190,6 @@ class LoadErrors(ErrorEstimates):
         if "reactions" in self.compared:
             coupling_results: Sequence[Quantity] = ()
             if couplings:
-                from heuncli.study.solve.load_errors import iter_coupling_results  # few scenes have them
-
                 coupling_results = [
                     *iter_coupling_results(couplings, applied, self.setup.scene.mechanism.joints, states)
                 ]
@@ -289,14 +287,19 @@ class LoadErrors(ErrorEstimates):
         zeros = np.zeros(len(F))
         if joints and (coupling_results or any(JOINTS[load.joint.kind].follows_path for load in joints)):
             self.add_values(("reactions", "place"), np.stack([x.point for x in joints], axis=1), zeros, zeros)
-        of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (zeros, zeros), "angle": (zeros, zeros)}
+        terms_by_name = {
+            "force": (F, terms.force),
+            "moment": (M, terms.moment),
+            "place": (zeros, zeros),
+            "angle": (zeros, zeros),
+        }
         for name, values in coupling_results:
-            self.add_values(("reactions", name), values, *of[name])
+            self.add_values(("reactions", name), values, *terms_by_name[name])
         for load in joints:
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"
-                rounding, of = (M, terms.moment) if turns else (F, terms.force)
-                self.add_values(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
+                rounding, largest_term = (M, terms.moment) if turns else (F, terms.force)
+                self.add_values(("drives", "torque" if turns else "thrust"), load.drive, rounding, largest_term)
 
     def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the total of the foundation, its elements and the mass effects.

@@ -140,7 +140,7 @@ def locate_meeting(
         middle = 0.5 * (low + high)
         is_approaching = runner.evaluate_run(run, middle).loads[:, load[1].start]["rate"] < 0.0
         low, high = np.where(is_approaching, middle, low), np.where(is_approaching, high, middle)
-    sides = [runner.evaluate_run(run, at).loads[:, load[1].start] for at in (low, high)]
+    sides = [runner.evaluate_run(run, times).loads[:, load[1].start] for times in (low, high)]
     close = np.minimum(sides[0]["span"], sides[1]["span"]) <= tolerances.NO_LENGTH * runner.layout.size
     close &= (sides[0]["value"] != 0.0) | (sides[1]["value"] != 0.0)
     return (float(high[close][0]), load[0].name) if close.any() else None

@@ -67,8 +67,8 @@ class PlaneStateMap:
         self.balls = _find_free_rotations(full)
         self.body_count = len(full.bodies)
         pairs = [*_coordinate_pairs(plane_view, flat), *_other_pairs(full, self.small)]
-        self.full_indices = np.array([own for own, _, _ in pairs], dtype=int)
-        self.flat_indices = np.array([of for _, of, _ in pairs], dtype=int)
+        self.full_indices = np.array([full_index for full_index, _, _ in pairs], dtype=int)
+        self.flat_indices = np.array([flat_index for _, flat_index, _ in pairs], dtype=int)
         self.factor = np.array([factor for _, _, factor in pairs])
         self.constant = _constant_part(full, self.small, pairs)
 
