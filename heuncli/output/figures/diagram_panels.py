@@ -204,7 +204,7 @@ def _mark_extremes(bar_curves: BarCurves, quantity: str, scales: DisplayScales) 
     number_style = scales.quantity._replace(error=scales.value * error)
     load_range = bar_curves.ranges.get(quantity)
     is_constant = high.value - low.value <= error
-    rounding = bar.certain.rounding_of(bar.find_unit(quantity))
+    rounding = bar.stated_errors.rounding_of(bar.find_unit(quantity))
     least = max(error, rounding, MIN_MARKED * bar_curves.find_magnitude(quantity))
     for extreme in (high,) if is_constant else (high, low):
         if not abs(extreme.value) > least:

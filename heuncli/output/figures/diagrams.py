@@ -173,7 +173,7 @@ def _classify(curves: BarCurves, quantity: str) -> str:
     bar, magnitude = curves.bar, curves.find_magnitude(quantity)
     if curves.is_partly_open(quantity):
         return "some"
-    if magnitude <= bar.certain.rounding_of(bar.find_unit(quantity)) or magnitude == 0.0:
+    if magnitude <= bar.stated_errors.rounding_of(bar.find_unit(quantity)) or magnitude == 0.0:
         return "zero"
     if not curves.is_zero(quantity):
         return "some"

@@ -172,20 +172,22 @@ def _find_wrench_errors(kind: str, relative: float, scales: Scales, size: float)
     return errors
 
 
-def add_axis_errors(certain: StatedErrors, results: Results, magnitudes: Magnitudes, unit: str = "N") -> StatedErrors:
+def add_axis_errors(
+    stated_errors: StatedErrors, results: Results, magnitudes: Magnitudes, unit: str = "N"
+) -> StatedErrors:
     """Add the errors of the central axis at the shown instants: it is no more accurate than its force.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
     """
     if "axis" not in results.foundation:
-        return certain
+        return stated_errors
     axis = results.foundation["axis"]
     force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
-    relative = certain.error_of("foundation", unit) / float(force.min()) if force.size else 0.0
+    relative = stated_errors.error_of("foundation", unit) / float(force.min()) if force.size else 0.0
     lever = magnitudes.size + largest_magnitude(axis["point"]) + largest_magnitude(axis["pitch"])
     bounds = {("axis", "1"): relative, ("axis", "m"): relative * lever}
-    axis_errors = {key: max(bound, certain.errors.get(key, 0.0)) for key, bound in bounds.items()}
-    return certain._replace(errors={**certain.errors, **axis_errors})
+    axis_errors = {key: max(bound, stated_errors.errors.get(key, 0.0)) for key, bound in bounds.items()}
+    return stated_errors._replace(errors={**stated_errors.errors, **axis_errors})
 
 
 def largest_magnitude(values: Array) -> float:
@@ -225,11 +227,11 @@ def trim_zeros(texts: Sequence[str]) -> list[str]:
     return [text[: len(text) - cut] if cut and "." in text and "e" not in text else text for text in texts]
 
 
-def format_unclaimed(value: float, unit: str, certain: StatedErrors, text: str) -> str:
+def format_unclaimed(value: float, unit: str, stated_errors: StatedErrors, text: str) -> str:
     """Format a number after the horizon: `?`, unless it is indeterminate or only rounding."""
     if text == OPEN:
         return OPEN
-    return "0" if abs(value) <= certain.rounding_of(unit) else UNKNOWN
+    return "0" if abs(value) <= stated_errors.rounding_of(unit) else UNKNOWN
 
 
 def write_times(times: Sequence[float], span: float) -> list[str]:
