@@ -28,13 +28,13 @@ from heuncli.base.records import record, replace
 from heuncli.loads.equilibrium.steady_states import has_constant_rate
 from heuncli.loads.redundancy.self_stress import find_neighbour_poses
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
-from heuncli.motion.linearisation.linearise import coordinate_rows
+from heuncli.motion.linearisation.linearise import make_coordinate_rows
 from heuncli.motion.linearisation.oscillations import Mode, SceneModes, find_largest_coordinates, find_modes, make_shape
 from heuncli.motion.linearisation.smoothness import iter_without_slope
 from heuncli.motion.linearisation.steady_motion import (
     LinearisedState,
     continues_unchanged,
-    distance_from_rest,
+    find_distance_from_rest,
     find_fastest_rate,
     linearise_scene,
 )
@@ -46,7 +46,7 @@ from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format.models import Drive, Spec
 from heuncli.study.model.setup import Setup, attach_locations, set_up
 
-DIFFERENCE_FACTOR = 2.0  # times the difference of two poses, as for errors of loads (study/solve/error_extents.py)
+DIFFERENCE_FACTOR = 2.0  # times the difference of two poses, as for errors of loads (study/solve/error_estimates.py)
 
 
 def widen_errors(
@@ -138,7 +138,7 @@ def solve_modes(spec: Spec) -> SpecModes:
 def to_results(spec: Spec, spec_modes: SpecModes) -> SceneModes:
     """Return the modes in terms of the joint coordinates."""
     linearised_state = spec_modes.linearised_state
-    rows = coordinate_rows(linearised_state.layout, linearised_state.linear)
+    rows = make_coordinate_rows(linearised_state.layout, linearised_state.linear)
     shapes = [make_shape(mode.shape, rows) for mode in spec_modes.modes]
     return SceneModes(
         title=spec.title,
@@ -253,7 +253,7 @@ def find_unsteadiness(linearised_state: LinearisedState, is_equilibrium: bool) -
     """
     if not linearised_state.system.count:
         return None
-    imbalance = distance_from_rest(linearised_state)
+    imbalance = find_distance_from_rest(linearised_state)
     if not imbalance <= max(
         tolerances.OFF_BALANCE, tolerances.HELD * linearised_state.reach if is_equilibrium else 0.0
     ):
@@ -283,7 +283,7 @@ def is_singular(linearised_state: LinearisedState) -> bool:
 
 def find_most_accelerated(linearised_state: LinearisedState) -> str:
     """Return the coordinate with the largest acceleration; lengths are divided by the scene's size."""
-    rows = coordinate_rows(linearised_state.layout, linearised_state.linear)
+    rows = make_coordinate_rows(linearised_state.layout, linearised_state.linear)
     return find_largest_coordinates(
         make_shape(linearised_state.system.tangent @ linearised_state.system.remaining_acceleration, rows),
         linearised_state.layout.size,

@@ -51,7 +51,7 @@ METHODS = (
     ),
     MethodRow(
         "DOP853", 8, "explicit", "adaptive", "quaternion",
-        "the default: smooth motions, six or more digits", "dop853.DOP853",
+        "the default: smooth motions, six or more digits", "explicit.DOP853",
     ),
     MethodRow(
         "Verner98", 9, "explicit", "adaptive", "quaternion",
@@ -59,11 +59,11 @@ METHODS = (
     ),
     MethodRow(
         "DOP853-rodrigues", 8, "explicit", "adaptive", "rodrigues",
-        "Heun's section 20: rotation from the start; fails at 180 deg", "dop853.DOP853_GLOBAL",
+        "Heun's section 20: rotation from the start; fails at 180 deg", "explicit.DOP853_GLOBAL",
     ),
     MethodRow(
         "DOP853-recentred", 8, "explicit", "adaptive", "recentred",
-        "rotation from the step's start: as accurate as quaternions", "dop853.DOP853_RECENTRED",
+        "rotation from the step's start: as accurate as quaternions", "explicit.DOP853_RECENTRED",
     ),
     MethodRow(
         "Gauss4", 4, "implicit", "fixed", "quaternion",

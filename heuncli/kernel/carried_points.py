@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from heuncli.kernel.declarations import *
+from heuncli.kernel.tangent_motion import omega_tangent
 
 
 def point_motion(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> PointKinematics:
@@ -13,6 +14,13 @@ def point_motion(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Poi
     carrier: cython.pointer[Body] = cython.address(scene.bodies[body])
     arm: Vec3 = sub(x, carrier.r)
     return PointKinematics(add_cross(carrier.v, carrier.omega, arm), centripetal(carrier.omega, arm), carrier.omega)
+
+
+def relative_centripetal(a: PointKinematics, b: PointKinematics, v: Vec3) -> Vec3:
+    """Return cen_b - cen_a - 2 omega_a x v, of the points of two bodies at one place, v = v_b - v_a: the acceleration
+    of b's as seen from a, less what the freedoms' accelerations contribute.
+    """
+    return add_scaled(sub(b.centripetal, a.centripetal), -2.0, cross(a.omega, v))
 
 
 def world_place(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> Vec3:
@@ -58,6 +66,19 @@ def point_motion_tangent(scene: cython.pointer[Scene], body: cython.int, x: Vec3
     a: Vec3 = add_cross(add_cross(d.a, d.alpha, arm), scene.state_values[body].alpha, displacement)
     a = add_cross(add_cross(a, d.omega, cross(carrier.omega, arm)), carrier.omega, swept)
     return MotionTangent(add(d.v, swept), a)
+
+
+def find_relative_motion(scene: cython.pointer[Scene], row: cython.pointer[Closure], dQ: Vec3) -> RelativeMotion:
+    """Find how b's point at Q of a row moves as seen from a, A = A_b - A_a - 2 omega_a x v; dQ: the change of Q."""
+    b: MotionTangent = point_motion_tangent(scene, row.b, row.Q, dQ)
+    a: MotionTangent = point_motion_tangent(scene, row.a, row.Q, dQ)
+    omega: Vec3 = body_omega(scene, row.a)
+    v: Vec3 = sub(point_motion(scene, row.b, row.Q).v, point_motion(scene, row.a, row.Q).v)
+    dv: Vec3 = sub(b.v, a.v)
+    A: Vec3 = sub(point_acceleration(scene, row.b, row.Q), point_acceleration(scene, row.a, row.Q))
+    A = add_scaled(A, -2.0, cross(omega, v))
+    dA: Vec3 = add_scaled(sub(b.a, a.a), -2.0, add_cross(cross(omega_tangent(scene, row.a), v), omega, dv))
+    return RelativeMotion(v, A, dv, dA)
 
 
 def body_alpha(scene: cython.pointer[Scene], body: cython.int) -> Vec3:

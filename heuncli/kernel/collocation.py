@@ -18,10 +18,10 @@ from math import fabs, pow
 
 from heuncli.kernel.declarations import *
 from heuncli.kernel.dense import clip_time
-from heuncli.kernel.jacobian import find_jacobian
 from heuncli.kernel.landing import begin_step_extremes, record_stage
 from heuncli.kernel.linear import factor_complex, factor_real, solve_complex, solve_real
 from heuncli.kernel.response import evaluate, project_state
+from heuncli.kernel.tangent import find_jacobian
 
 MAX_NEWTON_ITERATIONS = 25
 

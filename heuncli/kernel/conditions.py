@@ -4,7 +4,7 @@ change along a direction of the state.
 A row is one condition, or, for a coupling, a sum of several: callers go through its conditions one by one.
 
 The kinds of joints that were cut stand here: GUIDE, DOT, TURN, ROD; those of couplings and paths in a file each (cams,
-meshing, rolling, sheaves, tracks). The change of a kind is written line by line, its rate and acceleration from the
+rolling, sheaves, tracks). The change of a kind is written line by line, its rate and acceleration from the
 motion of the two bodies' points at Q.
 """
 
@@ -15,15 +15,16 @@ from heuncli.kernel.carried_points import (
     alpha_tangent,
     body_alpha,
     body_omega,
+    find_relative_motion,
     point_acceleration,
     point_motion,
     point_motion_tangent,
+    relative_centripetal,
     world_place,
 )
 from heuncli.kernel.declarations import *
-from heuncli.kernel.meshing import measure_mesh, mesh_tangent
 from heuncli.kernel.plane_rows import measure_in_plane
-from heuncli.kernel.rolling import measure_rolling, rolling_tangent
+from heuncli.kernel.rolling import measure_mesh, measure_rolling, mesh_tangent, rolling_tangent
 from heuncli.kernel.sheaves import measure_arc, measure_strand, measure_wound, strand_tangent
 from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
 from heuncli.kernel.tracks import measure_track, track_row_tangent
@@ -95,7 +96,7 @@ def measure_guide(scene: cython.pointer[Scene], row: cython.pointer[Closure]) ->
     row.m = Vec3(0.0, 0.0, 0.0)
     row.gap = dot(e, sub(row.Q, world_place(scene, row.a, row.p))) - row.length
     row.rate = dot(e, v)
-    row.gamma = dot(e, add_scaled(sub(b.centripetal, a.centripetal), -2.0, cross(a.omega, v)))
+    row.gamma = dot(e, relative_centripetal(a, b, v))
 
 
 def measure_dot(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -173,16 +174,9 @@ def condition_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]
 def guide_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:
     """e . (A_b - A_a - 2 omega_a x (v_b - v_a)), e fixed in a."""
     e: Vec3 = vector_tangent(scene, row.a, row.f)
-    omega: Vec3 = body_omega(scene, row.a)
-    b: MotionTangent = point_motion_tangent(scene, row.b, row.Q, Q)
-    a: MotionTangent = point_motion_tangent(scene, row.a, row.Q, Q)
-    v: Vec3 = sub(point_motion(scene, row.b, row.Q).v, point_motion(scene, row.a, row.Q).v)
-    dv: Vec3 = sub(b.v, a.v)
-    A: Vec3 = sub(point_acceleration(scene, row.b, row.Q), point_acceleration(scene, row.a, row.Q))
-    A = add_scaled(A, -2.0, cross(omega, v))
-    dA: Vec3 = add_scaled(sub(b.a, a.a), -2.0, add_cross(cross(omega_tangent(scene, row.a), v), omega, dv))
+    d: RelativeMotion = find_relative_motion(scene, row, Q)
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-    return RowTangent(Q, e, zero, dot(e, v) + dot(row.f, dv), dot(e, A) + dot(row.f, dA))
+    return RowTangent(Q, e, zero, dot(e, d.v) + dot(row.f, d.dv), dot(e, d.A) + dot(row.f, d.dA))
 
 
 def rod_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:

@@ -131,7 +131,7 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
         contact.level = 1e300  # no doubt
-        if contact.friction and may_turn(scene, contact, run):
+        if contact.friction and may_change_state(scene, contact, run):
             contact.level = friction_threshold(scene, contact)
             doubt = 2 if row.mode == CARRIES or doubt == 2 else 1
         if contact.sense == 0:
@@ -165,10 +165,10 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
     return doubt
 
 
-def may_turn(scene: cython.pointer[Scene], contact: cython.pointer[Contact], run: cython.pointer[Run]) -> cython.bint:
-    """Return whether the margin of a friction may become positive within the step, or an attempt to find where goes
-    on.
-    """
+def may_change_state(
+    scene: cython.pointer[Scene], contact: cython.pointer[Contact], run: cython.pointer[Run]
+) -> cython.bint:
+    """Return whether a friction may begin to stick or to slip within the step, or an attempt to find where goes on."""
     if contact.friction > scene.load_count:
         return False
     return contact.most + 0.5 * (contact.most - contact.least) > 0.0 or run.landing.contact_attempts > 0

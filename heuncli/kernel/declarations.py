@@ -12,4 +12,3 @@ from heuncli.kernel.scene import *
 from heuncli.kernel.shadow import cython as cython
 from heuncli.kernel.stepping import *
 from heuncli.kernel.values import *
-from heuncli.kernel.vectors import *

@@ -15,8 +15,7 @@ import os
 from importlib.machinery import EXTENSION_SUFFIXES
 
 from heuncli.base.errors import HeunError, Problem
-from heuncli.kernel.modules import NAME
-from heuncli.kernel.sources import digest_code, digest_texts, find_newer_modules
+from heuncli.kernel.modules import NAME, digest_code, digest_texts, find_newer_modules
 
 TYPE_CHECKING = False  # `heun --version` does without typing and pathlib
 if TYPE_CHECKING:

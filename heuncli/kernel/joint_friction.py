@@ -155,8 +155,8 @@ def force_part(scene: cython.pointer[Scene], column: cython.Py_ssize_t, j: cytho
 
 
 def find_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
-    """Find N of all joints, NaN if there is not exactly one solution; `jammed` then says why, `jammed_load` at which
-    load.
+    """Find N of all joints, NaN if there is not exactly one solution; `friction_outcome` then says why, and
+    `friction_outcome_load` at which load.
     """
     k: cython.Py_ssize_t
     n: cython.Py_ssize_t = scene.friction_count
@@ -284,7 +284,7 @@ def iterate_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
 
 
 def solve_friction_newton(scene: cython.pointer[Scene], offset: cython.Py_ssize_t) -> cython.void:
-    """Solve `newton` x = the part of `trial` from an offset on, in place; `newton` is lost.
+    """Solve S x = the part of `friction_trial` from an offset on, in place; S is `friction_slope`, which is lost.
 
     No rows are exchanged: 1 - B bounds the matrix, so that no pivot is less than that of 1 - B (an H-matrix).
     """
@@ -313,7 +313,7 @@ def solve_single_friction(scene: cython.pointer[Scene]) -> cython.int:
     """
     i: cython.int
     residual: cython.double
-    if scene.friction_bound[0] > 0.0 and excess_at_infinity(scene) > 0.0:
+    if scene.friction_bound[0] > 0.0 and find_excess_at_infinity(scene) > 0.0:
         return JAMS
     scene.friction_trial[NORMAL_FORCE] = 0.0
     scene.friction_trial[WEIGHT] = 1.0
@@ -327,7 +327,7 @@ def solve_single_friction(scene: cython.pointer[Scene]) -> cython.int:
     return TWO
 
 
-def excess_at_infinity(scene: cython.pointer[Scene]) -> cython.double:
+def find_excess_at_infinity(scene: cython.pointer[Scene]) -> cython.double:
     """Return by how much |E(N)| exceeds B N for large N: if positive, N grows without limit at the bound."""
     end: cython.int
     total: cython.double = 0.0
@@ -344,7 +344,7 @@ def excess_at_infinity(scene: cython.pointer[Scene]) -> cython.double:
 
 
 def find_normal_force_tangent(scene: cython.pointer[Scene]) -> cython.void:
-    """Write the change of N to its row of `trial`, from the change of E at the same N: column n + 1."""
+    """Write the change of N to its row of `friction_trial`, from the change of E at the same N: column n + 1."""
     n: cython.Py_ssize_t = scene.friction_count
     j: cython.Py_ssize_t
     k: cython.Py_ssize_t

@@ -17,8 +17,7 @@ from pathlib import Path
 
 from heuncli.kernel import headers
 from heuncli.kernel.headers import PACKAGE
-from heuncli.kernel.modules import DECLARED, MODULES, NAME
-from heuncli.kernel.sources import digest_code, digest_texts, read_module
+from heuncli.kernel.modules import DECLARED, MODULES, NAME, digest_code, digest_texts, read_module
 
 HEADER = """\
 # Made of heuncli/kernel/*.py by one_module.py.

@@ -129,7 +129,7 @@ def planar_omega(scene: cython.pointer[Scene], body: cython.int) -> cython.doubl
 
 
 def measure_mesh_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """Measure a load fixed in the carrier c: gamma as in meshing.py; its couple, about z, keeps its direction.
+    """Measure a load fixed in the carrier c: gamma as in rolling.py; its couple, about z, keeps its direction.
 
     gamma = f . (w_b - w_a) + (omega_c x f) . (v_b - v_a),  w = cen + omega x (v_c - v)
     """

@@ -32,8 +32,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.enclosure import enclose
 from heuncli.kernel.intervals import all_numbers, magnitude
 from heuncli.kernel.kinematics import locate_point, set_coordinates, update_kinematics
-from heuncli.kernel.load_ranges import bound_load_variable, bounds_between, evaluate_load_end
-from heuncli.kernel.motion_bounds import bound_acceleration
+from heuncli.kernel.load_ranges import bound_acceleration, bound_load_variable, bounds_between, evaluate_load_end
 
 # At an instant
 

@@ -261,7 +261,7 @@ class Contact(Record):
     sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
     mode_index: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
     freedom: int  # which it limits or holds; -1: no single one
-    latch_index: int = ZERO  # for a latch 1 + the index, behind these, of the length at which it holds; 0: of others
+    latch_index: int = ZERO  # of a latch 1 + the place of the length at which it holds, among the modes; 0: no latch
     friction: int = ZERO  # 1 + the load whose friction sticks while it is closed; 0: of others
 
     _: Computed

@@ -22,9 +22,9 @@ from heuncli.kernel.carried_points import (
     alpha_tangent,
     body_alpha,
     body_omega,
-    point_acceleration,
+    find_relative_motion,
     point_motion,
-    point_motion_tangent,
+    relative_centripetal,
     world_place,
 )
 from heuncli.kernel.declarations import *
@@ -93,7 +93,7 @@ def measure_strand(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
     row.on_a = add_scaled(world_place(scene, row.a, row.p), row.g.x, strand.w)
     row.on_b = add_scaled(row.Q, row.g.y, strand.w)
     row.rate = dot(row.f, v) + dot(row.m, turn)
-    row.gamma = dot(row.f, add_scaled(sub(b.centripetal, a.centripetal), -2.0, cross(a.omega, v)))
+    row.gamma = dot(row.f, relative_centripetal(a, b, v))
     row.gamma += find_strand_rate(strand, v).bend + dot(cross(a.omega, row.m), turn)
 
 
@@ -147,21 +147,14 @@ def strand_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
     strand: Strand = find_strand(scene, row)
     dQ: Vec3 = point_tangent(scene, row.b, row.q).x
     turn: Vec3 = body_rotation(scene, row.a)
-    omega: Vec3 = body_omega(scene, row.a)
-    b: MotionTangent = point_motion_tangent(scene, row.b, row.Q, dQ)
-    a: MotionTangent = point_motion_tangent(scene, row.a, row.Q, dQ)
-    v: Vec3 = sub(point_motion(scene, row.b, row.Q).v, point_motion(scene, row.a, row.Q).v)
-    dv: Vec3 = sub(b.v, a.v)
+    d: RelativeMotion = find_relative_motion(scene, row, dQ)
     displacement: Vec3 = sub(dQ, point_displacement(scene, row.a, row.Q))
-    velocity_change: Vec3 = sub(dv, cross(turn, v))
+    velocity_change: Vec3 = sub(d.dv, cross(turn, d.v))
     dg: Vec3 = add(cross(turn, row.f), strand_slope_tangent(strand, displacement))
-    A: Vec3 = sub(point_acceleration(scene, row.b, row.Q), point_acceleration(scene, row.a, row.Q))
-    A = add_scaled(A, -2.0, cross(omega, v))
-    dA: Vec3 = add_scaled(sub(b.a, a.a), -2.0, add_cross(cross(omega_tangent(scene, row.a), v), omega, dv))
     couple: RowTangent = strand_couple_tangent(scene, row, dQ, cross(turn, row.m))
-    rate: cython.double = dot(dg, v) + dot(row.f, dv) + couple.rate
+    rate: cython.double = dot(dg, d.v) + dot(row.f, d.dv) + couple.rate
     acceleration: cython.double = (
-        dot(dg, A) + dot(row.f, dA) + strand_bend_tangent(strand, displacement, v, velocity_change)
+        dot(dg, d.A) + dot(row.f, d.dA) + strand_bend_tangent(strand, displacement, d.v, velocity_change)
     )
     return RowTangent(dQ, dg, couple.m, rate, acceleration + couple.acceleration)
 

@@ -22,7 +22,7 @@ def write_matrix(buffer: cython.p_double, offset: cython.Py_ssize_t, R: Mat3) ->
 
 
 def write_body(buffer: cython.p_double, offset: cython.Py_ssize_t, body: cython.pointer[Body]) -> cython.Py_ssize_t:
-    """Write a body's motion and joint load in the order of tables.BODY_SOLUTION; return the offset behind them."""
+    """Write a body's motion and joint load in the order of tables.SOLUTION_PARTS; return the offset behind them."""
     offset = write_matrix(buffer, offset, body.R)
     offset = write_vector(buffer, offset, body.r)
     offset = write_vector(buffer, offset, body.omega)
@@ -36,7 +36,7 @@ def write_body(buffer: cython.p_double, offset: cython.Py_ssize_t, body: cython.
 def write_load(
     scene: cython.pointer[Scene], buffer: cython.p_double, offset: cython.Py_ssize_t, load: cython.pointer[Load]
 ) -> cython.Py_ssize_t:
-    """Write an applied load in the order of tables.LOAD_SOLUTION; return the offset behind it."""
+    """Write an applied load in the order of tables.SOLUTION_PARTS; return the offset behind it."""
     offset = write_vector(buffer, offset, load.force)
     offset = write_vector(buffer, offset, load.moment)
     offset = write_vector(buffer, offset, load.place)
@@ -53,7 +53,7 @@ def write_load(
 def write_row(
     scene: cython.pointer[Scene], buffer: cython.p_double, offset: cython.Py_ssize_t, row: cython.pointer[Closure]
 ) -> cython.Py_ssize_t:
-    """Write a closure row's unit load, multiplier and motion in the order of tables.CLOSURE_SOLUTION; return the offset
+    """Write a closure row's unit load, multiplier and motion in the order of tables.SOLUTION_PARTS; return the offset
     behind.
     """
     offset = write_vector(buffer, offset, row.f)

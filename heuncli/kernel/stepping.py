@@ -170,7 +170,7 @@ class Controller(Struct):
 
 
 class Stiffness(Struct):
-    """Whether stability, not accuracy, limits the steps (stiffness.py)."""
+    """Whether stability, not accuracy, limits the steps (stages.py)."""
 
     short_limit: int  # steps held short after which the loop is left; 0: not looked at
     easy_limit: int  # steps on end that were not, after which their count begins anew

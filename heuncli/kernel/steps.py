@@ -20,9 +20,8 @@ from heuncli.kernel.judging import assess_step, weighted_norm
 from heuncli.kernel.landing import begin_step_extremes, find_events_of_step, is_in_flurry, record_stage
 from heuncli.kernel.response import evaluate, project_state
 from heuncli.kernel.row_choice import choose_rows_again
-from heuncli.kernel.stages import evaluate_explicit_stages
+from heuncli.kernel.stages import estimate_stiffness, evaluate_explicit_stages, is_stability_limited
 from heuncli.kernel.step_ends import accept_step, leave_chart_of_step, sample_reached
-from heuncli.kernel.stiffness import estimate_stiffness, is_stability_limited
 
 CODES = {
     "reached": REACHED,

@@ -4,9 +4,13 @@
     M dV' - J' dlambda = -d(M V' - J' lambda - k),   J dV' = -d(J V' + gamma)
 
 The right sides are the changes of Newton's and Euler's balance of every branch, and of every closure row, along the
-direction at the accelerations and multipliers of the state (tangent_motion, tangent_loads, tangent_closures); the map
-on the left is that of the state, factored once for all directions. A freedom's equation s . F = 0 changes by s . dF +
-ds . F, because its direction turns. A ball's equation is M = 0 of its own body, in absolute angular velocities.
+direction at the accelerations and multipliers of the state (tangent_motion, tangent_loads); the map on the left is that
+of the state, factored once for all directions. A freedom's equation s . F = 0 changes by s . dF + ds . F, because its
+direction turns. A ball's equation is M = 0 of its own body, in absolute angular velocities.
+
+The Jacobian J = d(ydot)/dy has one direction of the state after the other. ydot is that of `evaluate`: the chosen
+closure rows stay chosen, held branches of expressions stay held, and the four numbers of a ball joint's attitude are
+varied one by one as they are.
 """
 
 from __future__ import annotations
@@ -17,9 +21,8 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.orthogonal import solve_closures
 from heuncli.kernel.response import evaluate, find_artificial_loads
 from heuncli.kernel.strains import set_variable_slopes
-from heuncli.kernel.tangent_closures import add_closure_tangents
 from heuncli.kernel.tangent_friction import add_friction_tangent, find_joint_load_tangents
-from heuncli.kernel.tangent_loads import add_load_tangents
+from heuncli.kernel.tangent_loads import add_closure_tangents, add_load_tangents, row_tangent
 from heuncli.kernel.tangent_motion import differentiate_motion, omega_tangent, vector_tangent
 from heuncli.kernel.tracks import track_speed_tangent
 from heuncli.kernel.tree import balance_joints, project_on_freedom, push_artificial_load, sweep_down
@@ -222,3 +225,51 @@ def write_rate_tangents(
         change: Vec3 = sub(omega_tangent(scene, counter.b), omega_tangent(scene, counter.a))
         turn: Vec3 = sub(body_omega(scene, counter.b), body_omega(scene, counter.a))
         result[counter.state_at] = dot(n, change) + dot(vector_tangent(scene, counter.a, n), turn)
+
+
+def find_jacobian(
+    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, tangent: cython.pointer[Tangent]
+) -> cython.void:
+    """Write J to tangent.J and the derivative at the state to tangent.at; the accelerations are lost."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    n: cython.Py_ssize_t = tangent.n
+    evaluate_base_state(scene, t, y, tangent.derivative)
+    for j in range(n):
+        scene.direction[j] = 0.0
+        tangent.change[j] = 0.0
+    for j in range(n):
+        scene.direction[j] = 1.0
+        differentiate_state(scene, y, scene.direction, tangent.change)
+        scene.direction[j] = 0.0
+        for i in range(n):
+            tangent.J[n * i + j] = tangent.change[i]
+
+
+def find_motions(
+    scene: cython.pointer[Scene], y: cython.p_double, n: cython.Py_ssize_t, buffer: cython.p_double
+) -> cython.void:
+    """Write the changes of bodies and of the rates of closure rows, one direction of the base state after the other.
+
+    Of each body turn, r, omega and v (of the joint point); then of each row its rate, 0 if it is not chosen.
+    """
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    offset: cython.Py_ssize_t = 0
+    for j in range(n):
+        scene.direction[j] = 0.0
+    for j in range(n):
+        scene.direction[j] = 1.0
+        differentiate_motion(scene, y, scene.direction)
+        scene.direction[j] = 0.0
+        for i in range(scene.body_count):
+            d: cython.pointer[BodyTangent] = cython.address(scene.tangents[i])
+            offset = write_vector(buffer, write_vector(buffer, offset, d.turn), d.r)
+            offset = write_vector(buffer, write_vector(buffer, offset, d.omega), d.v)
+        for i in range(scene.closure_count):
+            buffer[offset + i] = 0.0
+        for i in range(scene.selected_count):
+            buffer[offset + scene.selected[i]] = row_tangent(
+                scene, cython.address(scene.closures[scene.selected[i]])
+            ).rate
+        offset += scene.closure_count

@@ -22,8 +22,7 @@ from heuncli.kernel.joint_friction import (
 )
 from heuncli.kernel.kinematics import locate_point
 from heuncli.kernel.loads import sliding_velocity
-from heuncli.kernel.tangent_closures import row_tangent
-from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent
+from heuncli.kernel.tangent_loads import opposite_load, push_load_tangent, row_tangent
 from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
 from heuncli.kernel.tree import balance_joints
 

@@ -18,16 +18,16 @@ from __future__ import annotations
 from math import fabs
 
 from heuncli.kernel.carried_points import (
-    body_omega,
-    point_acceleration,
+    find_relative_motion,
     point_motion,
     point_motion_tangent,
+    relative_centripetal,
     world_place,
 )
 from heuncli.kernel.declarations import *
 from heuncli.kernel.libm import NAN
 from heuncli.kernel.paths import evaluate_path, offset_path
-from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, rotation_tangent, vector_tangent
+from heuncli.kernel.tangent_motion import point_tangent, rotation_tangent, vector_tangent
 
 MAX_PLACE_ITERATIONS = 24  # Newton's steps to a place
 
@@ -37,7 +37,7 @@ def measure_track(scene: cython.pointer[Scene], row: cython.pointer[Closure]) ->
     b: PointKinematics = point_motion(scene, row.b, row.Q)
     a: PointKinematics = point_motion(scene, row.a, row.Q)
     v: Vec3 = sub(b.v, a.v)
-    A: Vec3 = add_scaled(sub(b.centripetal, a.centripetal), -2.0, cross(a.omega, v))
+    A: Vec3 = relative_centripetal(a, b, v)
     row.m = Vec3(0.0, 0.0, 0.0)
     if row.kind == TRACK:
         measure_across_track(scene, row, v, A)
@@ -179,25 +179,19 @@ def across_track_tangent(scene: cython.pointer[Scene], row: cython.pointer[Closu
     track_place: PathPoint = find_world_track_place(scene, row)
     d: PlaceTangent = track_place_tangent(scene, row, track_place, Q)
     frame: TrackFrame = find_track_frame(scene, row, track_place)
-    omega: Vec3 = body_omega(scene, row.a)
-    b: MotionTangent = point_motion_tangent(scene, row.b, row.Q, Q)
-    a: MotionTangent = point_motion_tangent(scene, row.a, row.Q, Q)
-    v: Vec3 = sub(point_motion(scene, row.b, row.Q).v, point_motion(scene, row.a, row.Q).v)
-    dv: Vec3 = sub(b.v, a.v)
-    A: Vec3 = sub(point_acceleration(scene, row.b, row.Q), point_acceleration(scene, row.a, row.Q))
-    A = add_scaled(A, -2.0, cross(omega, v))
-    dA: Vec3 = add_scaled(sub(b.a, a.a), -2.0, add_cross(cross(omega_tangent(scene, row.a), v), omega, dv))
+    relative: RelativeMotion = find_relative_motion(scene, row, Q)
+    v: Vec3 = relative.v
     N: Vec3 = add_scaled(vector_tangent(scene, row.a, frame.N), d.s, frame.change)
     square: cython.double = dot(track_place.slope, track_place.slope)
     u: cython.double = dot(track_place.slope, v) / d.square
     w: cython.double = dot(track_place.slope, v) / square
-    change: cython.double = dot(d.slope, v) + dot(track_place.slope, dv)
+    change: cython.double = dot(d.slope, v) + dot(track_place.slope, relative.dv)
     du: cython.double = (change - u * d.squared) / d.square
     dw: cython.double = (change - 2.0 * w * dot(track_place.slope, d.slope)) / square
     curved: cython.double = dot(frame.N, track_place.bend)
     bent: cython.double = (dot(N, track_place.bend) + dot(frame.N, d.bend)) * u * w + curved * (du * w + u * dw)
-    acceleration: cython.double = dot(N, A) + dot(frame.N, dA) - bent
-    return RowTangent(Q, N, Vec3(0.0, 0.0, 0.0), dot(N, v) + dot(frame.N, dv), acceleration)
+    acceleration: cython.double = dot(N, relative.A) + dot(frame.N, relative.dA) - bent
+    return RowTangent(Q, N, Vec3(0.0, 0.0, 0.0), dot(N, v) + dot(frame.N, relative.dv), acceleration)
 
 
 def track_place_tangent(

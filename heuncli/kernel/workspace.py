@@ -16,14 +16,12 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
-from heuncli.kernel.allocation import allocate_work, copy_tables, set_numbers
 from heuncli.kernel.closures import measure_rows
 from heuncli.kernel.columns import measure_row_responses, solve_column, solve_impulse
 from heuncli.kernel.declarations import *
 from heuncli.kernel.expressions import Expressions
-from heuncli.kernel.jacobian import find_jacobian, find_motions
 from heuncli.kernel.kinematics import update_kinematics
-from heuncli.kernel.memory import Memory
+from heuncli.kernel.memory import Memory, allocate_work, copy_tables, set_numbers
 from heuncli.kernel.response import configure, evaluate, must_choose_rows, project_state
 from heuncli.kernel.row_choice import choose_rows_again, set_row_threshold
 from heuncli.kernel.selection import select_independent_rows
@@ -34,6 +32,7 @@ from heuncli.kernel.solutions import (
     write_jacobian,
     write_measured_state,
 )
+from heuncli.kernel.tangent import find_jacobian, find_motions
 from heuncli.kernel.tree import factor_tree
 
 

@@ -16,18 +16,7 @@ from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.kernel.choose import expressions, workspace
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.tables import (
-    BODY_SOLUTION,
-    CLOSURE_SOLUTION,
-    COLUMN_BODY,
-    COLUMN_FREEDOM,
-    FREEDOM_SOLUTION,
-    LOAD_SOLUTION,
-    PART_SOLUTION,
-    STATE_SOLUTION,
-    Table,
-    split_parts,
-)
+from heuncli.multibody.tree.tables import COLUMN_PARTS, SOLUTION_PARTS, Table, split_parts
 from heuncli.results.results import Array, Indices, Mask
 
 Workspace = workspace.Workspace
@@ -71,14 +60,11 @@ def kernel_numbers(layout: Layout) -> dict[str, Any]:
 
 def solution_parts(layout: Layout) -> dict[str, tuple[Any, int]]:
     """Return the parts of the kernel's solution at a state: the type and the count of each."""
-    return {
-        "bodies": (BODY_SOLUTION, len(layout.place)),
-        "freedoms": (FREEDOM_SOLUTION, len(layout.freedoms)),
-        "loads": (LOAD_SOLUTION, len(layout.tables["loads"])),
-        "rows": (CLOSURE_SOLUTION, len(layout.rows)),
-        "parts": (PART_SOLUTION, len(layout.tables["parts"])),
-        "whole": (STATE_SOLUTION, 1),
-    }
+    counts = {
+        "bodies": len(layout.place), "freedoms": len(layout.freedoms), "loads": len(layout.tables["loads"]),
+        "rows": len(layout.rows), "parts": len(layout.tables["parts"]), "whole": 1,
+    }  # fmt: skip
+    return {name: (kind, counts[name]) for name, kind in SOLUTION_PARTS.items()}
 
 
 def allocate_solutions(kinds: Mapping[str, tuple[Any, int]], n_t: int) -> dict[str, Table]:
@@ -106,7 +92,7 @@ def settle_state(kernel: workspace.Workspace, layout: Layout, t: float, state: A
 
 @record
 class MeasuredState:
-    """Position and motion of the bodies (tree order, tables.BODY_SOLUTION; R, r, omega, v of it) and closure rows at a
+    """Position and motion of the bodies (tree order, tables.SOLUTION_PARTS; R, r, omega, v of it) and closure rows at a
     state.
 
     gaps, rates (rows,): as computed by the kernel, less the prescribed values
@@ -130,7 +116,7 @@ def make_unsettled_workspace(layout: Layout) -> workspace.Workspace:
 
 def measure_state(kernel: workspace.Workspace, layout: Layout, t: float, state: Array) -> MeasuredState:
     """Measure the bodies and the closure rows at a state as it is, even where its closures are open."""
-    bodies = np.empty((1, len(layout.place)), BODY_SOLUTION)
+    bodies = np.empty((1, len(layout.place)), SOLUTION_PARTS["bodies"])
     gaps, rates = np.zeros(len(layout.rows)), np.zeros(len(layout.rows))
     kernel.measure(t, np.ascontiguousarray(state, dtype=float), as_numbers(bodies).reshape(-1), gaps, rates)
     return MeasuredState(bodies[0], gaps, rates)
@@ -181,9 +167,10 @@ def solve_columns(kernel: workspace.Workspace, t: float, state: Array, loads: Ar
 def unpack_columns(rows: Array, n_b: int, n_f: int) -> Columns:
     """Unpack the kernel's numbers, (..., width), into columns."""
     flat, n = rows.reshape(-1, rows.shape[-1]), rows.shape[:-1]
-    bodies, freedoms = split_parts(flat, [(COLUMN_BODY, n_b), (COLUMN_FREEDOM, n_f)])
-    first = 12 * n_b + 2 * n_f
-    return Columns(bodies.reshape(*n, n_b), freedoms.reshape(*n, n_f), rows[..., first:])
+    parts = [(COLUMN_PARTS["bodies"], n_b), (COLUMN_PARTS["freedoms"], n_f)]
+    bodies, freedoms = split_parts(flat, parts)
+    width = sum(kind.itemsize // 8 * count for kind, count in parts)
+    return Columns(bodies.reshape(*n, n_b), freedoms.reshape(*n, n_f), rows[..., width:])
 
 
 @record

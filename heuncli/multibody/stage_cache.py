@@ -47,7 +47,7 @@ class CachedStage(NamedTuple):
     traces: tuple[InputTrace, ...]
 
     def is_valid_for(self, inputs: tuple[Any, ...]) -> bool:
-        """Whether the stage would read the same values from this input."""
+        """Return whether the stage would read the same values from this input."""
         for trace, new in zip(self.traces, inputs, strict=True):
             if new is not trace.value and not trace.matches(new):
                 return False
@@ -109,7 +109,7 @@ class InputTrace:
             self.parts = {place: InputTrace(member) for place, member in enumerate(value)}
 
     def matches(self, new: Any) -> bool:
-        """Whether another value is equal in all parts that were read."""
+        """Return whether another value is equal in all parts that were read."""
         old = self.value
         if new is old:
             return True
@@ -180,7 +180,7 @@ def _make_proxy_class(kind: Any) -> Any:
 
 
 def holds_no_input(value: Any) -> bool:
-    """Whether a result consists of numbers, words and records of its own, and contains no proxy of the input."""
+    """Return whether a result consists of numbers, words and records of its own, and contains no proxy of the input."""
     if isinstance(value, Mapping):
         return all(map(holds_no_input, value.values()))
     if isinstance(value, list | tuple | set | frozenset):

@@ -64,8 +64,8 @@ def equivalent_range(ranges: Array, counts: Array, slope: float, cycles: float) 
     return float(largest * (total / cycles) ** (1.0 / slope))
 
 
-def damage_shares(ranges: Array, counts: Array, slope: float) -> Array:
-    """The share of each cycle in the total damage, (n,)."""
+def find_damage_shares(ranges: Array, counts: Array, slope: float) -> Array:
+    """Return the share of each cycle in the total damage, (n,)."""
     largest = float(ranges.max(initial=0.0))
     damages = counts * (ranges / largest) ** slope if largest > 0.0 else np.zeros(len(ranges))
     return np.asarray(damages / (damages.sum() or 1.0))
@@ -181,7 +181,7 @@ def make_collective(history: LoadHistory, counting: Counting) -> Collective:
     ranges = rainflow.make_class_limits(0.0, float(cycles.ranges.max(initial=0.0)), counting.bins)
     lowest, highest = float(history.values.min()), float(history.values.max())
     levels = rainflow.make_class_limits(lowest, highest, counting.bins)[1:-1] if len(cycles.counts) else np.zeros(0)
-    damages = [damage_shares(cycles.ranges, cycles.counts, slope) for slope in counting.slopes]
+    damages = [find_damage_shares(cycles.ranges, cycles.counts, slope) for slope in counting.slopes]
     return Collective(
         history=history,
         counting=counting,

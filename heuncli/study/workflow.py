@@ -85,7 +85,7 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
     motion_end = time.perf_counter()
     parts = None
     if options.in_parts:
-        from heuncli.study.compose.parts import compose_in_parts  # only for exports
+        from heuncli.study.compose.results import compose_in_parts  # only for exports
 
         parts = compose_in_parts(setup, history, options.reports, options.least_norm)
     recovery = (

@@ -19,7 +19,7 @@ import numpy as np
 from heuncli.base.errors import HeunError
 from heuncli.base.method_rows import DEFAULT, METHODS
 from heuncli.motion.integration.check.estimate import evaluate_run
-from heuncli.motion.integration.check.run_comparison import MotionPoints, interleave, motion_error
+from heuncli.motion.integration.check.run_comparison import MotionPoints, find_motion_error, interleave
 from heuncli.motion.integration.integrated_scene import find_discontinuities
 from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.request import MotionTask
@@ -68,7 +68,7 @@ class Scene(NamedTuple):
         both = interleave(self.exact.times[:n], [run.states[:n], self.exact.states[:n]])
         layout = self.runner.layout
         found = evaluate_run(self.runner, self.exact, *both, self.jumps)
-        twice = motion_error(MotionPoints(layout), found.bodies, 2, layout.size)
+        twice = find_motion_error(MotionPoints(layout), found.bodies, 2, layout.size)
         return 0.5 * float(twice.max())
 
 

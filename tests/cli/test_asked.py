@@ -22,9 +22,8 @@ from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose import blocks, recovery, results
 from heuncli.study.compose.recovery import Recovery
-from heuncli.study.model.needed_parts import restrict_spec
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import select_paths
+from heuncli.study.model.selection import restrict_spec, select_paths
 from heuncli.study.queries.measure import MeasureRequest, measure_value
 from heuncli.study.queries.study import Study
 from heuncli.study.solve import load_errors

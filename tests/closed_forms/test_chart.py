@@ -18,7 +18,7 @@ from heuncli.analyses.work_precision.reference import find_reference
 from heuncli.analyses.work_precision.results import ChartResults, ChartRow, ChartRun
 from heuncli.analyses.work_precision.study import ChartRunner, chart
 from heuncli.motion.integration.check.runs import Runs
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.scene.file_format.load import load

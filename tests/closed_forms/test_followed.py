@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.results.results import Array, Results
 from tests.shared.gear_trains import pair

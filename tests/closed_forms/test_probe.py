@@ -11,7 +11,7 @@ import pytest
 from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
 from heuncli.analyses.motion_diagnostics.stiffness import find_stable_distance, stability_polynomial
 from heuncli.analyses.motion_diagnostics.study import probe
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.kernel_loop import KernelLoop
 from heuncli.scene.file_format.load import load

@@ -11,7 +11,7 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.study import rainflow
-from heuncli.study.load_collectives import damage_shares, equivalent_range
+from heuncli.study.load_collectives import equivalent_range, find_damage_shares
 from heuncli.study.rainflow import Cycles, count_endless, count_once, count_repeated, find_turning_points
 
 pytestmark = pytest.mark.heavy  # no kernel in it
@@ -201,6 +201,6 @@ def test_equivalent_range() -> None:
     ranges, counts = np.array([1.0, 2.0]), np.array([8.0, 1.0])
     assert equivalent_range(ranges, counts, 3.0, 16.0) == pytest.approx(1.0, rel=1e-15)
     assert equivalent_range(ranges, counts, 3.0, 2.0) == pytest.approx(2.0, rel=1e-15)
-    assert damage_shares(ranges, counts, 3.0).tolist() == pytest.approx([0.5, 0.5])
+    assert find_damage_shares(ranges, counts, 3.0).tolist() == pytest.approx([0.5, 0.5])
     assert equivalent_range(1e200 * ranges, counts, 9.0, 1.0) == pytest.approx(1e200 * (8 + 2**9) ** (1 / 9), rel=1e-14)
     assert equivalent_range(np.zeros(0), np.zeros(0), 3.0, 1.0) == 0.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.check.run_comparison import MotionPoints, bounded_motion_error, motion_error
+from heuncli.motion.integration.check.run_comparison import MotionPoints, bound_motion_error, find_motion_error
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array
@@ -30,8 +30,8 @@ def test_never_too_small_and_the_same_at_most(name: str, count: int) -> None:
     setup = set_up(load(SPECS / f"{name}.yaml"))
     runs = [setup.runner.run(MotionTask(AT, local)).states for local in (1e-4, 1e-7, 1e-10)[:count]]
     several, marks, size = together(setup, runs), MotionPoints(setup.scene.layout), setup.scene.layout.size
-    error = motion_error(marks, several.bodies, count, size)
-    bound = bounded_motion_error(marks, several, count, size)
+    error = find_motion_error(marks, several.bodies, count, size)
+    bound = bound_motion_error(marks, several, count, size)
     assert (bound >= error).all()
     assert bound.max() == error.max()
     assert error.max() > 1e-9  # there is something to bound
@@ -43,8 +43,8 @@ def test_what_may_not_be_claimed_is_told_by_itself() -> None:
     own = setup.runner.run(MotionTask(AT, 1e-9)).states
     growing = own + 1e-6 * np.exp(20.0 * AT)[:, None] * np.sin(np.arange(own.shape[1]))
     several, marks, size = together(setup, [own, growing]), MotionPoints(setup.scene.layout), setup.scene.layout.size
-    error = motion_error(marks, several.bodies, 2, size)
-    bound = bounded_motion_error(marks, several, 2, size)
+    error = find_motion_error(marks, several.bodies, 2, size)
+    bound = bound_motion_error(marks, several, 2, size)
     late = error > tolerances.CLAIMED
     assert late.any() and not late.all()
     assert np.array_equal(bound > tolerances.CLAIMED, late)
@@ -57,5 +57,5 @@ def test_what_is_no_number_is_unknown() -> None:
     other = own.copy()
     other[-1] = np.inf
     with np.errstate(invalid="ignore"):
-        bound = bounded_motion_error(MotionPoints(setup.scene.layout), together(setup, [own, other]), 2, 1.0)
+        bound = bound_motion_error(MotionPoints(setup.scene.layout), together(setup, [own, other]), 2, 1.0)
     assert bound[-1] == tolerances.UNKNOWN

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.study.compose.warnings import full_friction_rate
+from heuncli.study.compose.warnings import compute_full_friction_rate
 from tests.shared.command import Heun
 
 SLEDGE = """
@@ -55,10 +55,11 @@ def test_either_side_of_the_rate_from_which_on_friction_is_full(
     heun: Heun, folder: Path, share: float, marked: bool
 ) -> None:
     (folder / "s.yaml").write_text(
-        SLEDGE.replace("FORCE", SIZES[0]).replace("BEGIN", repr(share * 0.001 * full_friction_rate()))
+        SLEDGE.replace("FORCE", SIZES[0]).replace("BEGIN", repr(share * 0.001 * compute_full_friction_rate()))
     )
     done = heun("run", "s.yaml", "--measure", MEASURE)
     assert ("smoothed friction" in done.stderr) is marked
-    assert float(done.stdout) == pytest.approx((8.35 - 2.95 * math.tanh(share * full_friction_rate())) / 2.0, rel=1e-12)
+    friction = 2.95 * math.tanh(share * compute_full_friction_rate())
+    assert float(done.stdout) == pytest.approx((8.35 - friction) / 2.0, rel=1e-12)
     assert ("†" in heun("run", "s.yaml", "--only", "motion").stdout) is marked
     assert heun("run", "s.yaml", "--measure", "max coordinates.guide.speed").stderr == "unit: m/s\n"

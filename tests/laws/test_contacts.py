@@ -9,8 +9,12 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.contacts.resting import solve_complementarity
-from heuncli.motion.integration.contacts.restitution import MAX_ROUNDS, ContactImpulses, solve_contact_impulses
+from heuncli.motion.integration.contacts.restitution import (
+    MAX_ROUNDS,
+    ContactImpulses,
+    solve_complementarity,
+    solve_contact_impulses,
+)
 from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.motion.integration.run.request import MotionTask

@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.analyses.modes import find_state, require_time_independent
 from heuncli.base.errors import SolveError
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.motion.linearisation.displacements import displace
 from heuncli.motion.linearisation.oscillations import Mode, find_modes

@@ -158,7 +158,7 @@ def test_searches_of_one_run_share_their_instants(monkeypatch: pytest.MonkeyPatc
     found = solve(load(str(SPECS / "four_bar.yaml")), Options())
     columns_of(found)
     asked: list[int] = []
-    own = found._recovery
-    monkeypatch.setitem(found.__dict__, "_recovery", lambda at, wanted: asked.append(len(at)) or own(at, wanted))
+    own = found._recover
+    monkeypatch.setitem(found.__dict__, "_recover", lambda at, wanted: asked.append(len(at)) or own(at, wanted))
     columns_of(found)
     assert not asked

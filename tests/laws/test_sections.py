@@ -337,6 +337,32 @@ def test_degenerate_lines_are_flagged(gravity: list[float], none: set[str], kind
     assert line["kind"].tolist() == [kind]
 
 
+BARE_END = """
+bodies:
+  bar: {shapes: [MATTER], points: {a: [0, 0, 0], b: [2, 0, 0]}}
+joints: {wall: {type: weld, from: ground.O, to: bar.a}}
+forces: {tip: {type: force, on: bar.b, vector: FORCE}}
+sections: {cut: {body: bar, at: [1.5, 0, 0], normal: NORMAL, reduce_to: line}}
+"""
+BAR = "{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}"
+BALL = "{type: point, at: [0, 0, 0], mass: 2}"
+
+
+@pytest.mark.parametrize(("matter", "normal"), [(BAR, "[1, 0, 0]"), (BALL, "[1, 0, 0]"), (BALL, "[-1, 0, 0]")])
+@pytest.mark.parametrize(("force", "kind"), [("[3, 4, 5]", 0.0), ("[0, 4, 5]", 1.0), ("[3, 0, 0]", 2.0)])
+def test_a_line_without_mass_beyond_the_cut(matter: str, normal: str, force: str, kind: float) -> None:
+    """No mass there, or all of it in the body's origin, gives no length: the body's own decides what counts as 0."""
+    head = HEAD.replace("[0, 0, -9.81]", "[0, 0, 0]")
+    text = (head + BARE_END).replace("MATTER", matter).replace("NORMAL", normal).replace("FORCE", force)
+    cut = solved(text).sections["cut"]
+    line = cut["line"]
+    assert line["kind"].tolist() == [kind]
+    assert bool(np.isnan(line["point"]).all()) is (kind != 0.0)
+    assert bool(np.isnan(line["pressure_centre"]).all()) is (kind == 1.0)
+    if kind == 0.0:  # the force pulls along the bar through (2, 0, 0): its line meets the plane where F x (p - b) = 0
+        near(np.cross(line["pressure_centre"][0] - [2.0, 0.0, 0.0], [3.0, 4.0, 5.0]), 0.0, 10.0, 1e-14)
+
+
 @pytest.mark.parametrize(("normal", "axis"), [
     ([1, 0, 0], [0, 1, 0]), ([0, 1, 0], [1, 0, 0]), ([0, 0, 1], [1, 0, 0]), ([-1, 0, 0], [0, 1, 0]),
     ([1, 1, 0], None), ([1, 0.5, 0.5], None), ([1, 1, 1], None), ([1, 1e-12, 0], [0, 1, 0]),

@@ -13,7 +13,7 @@ from heuncli.output.figures.courses import NumberCourse
 from heuncli.output.figures.curves import N_INTERVALS, PanelCourse, choose_number_style, find_visible_points
 from heuncli.output.figures.histories import _make_y_axis
 from heuncli.results.results import Array
-from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.quantities.digits import ReaderStyle
 from heuncli.study.quantities.table_units import read_display_units
 from heuncli.study.queries.measure import Peak
 from tests.shared.command import Heun

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.study.queries.curve_sampling import MAX_ADDED, find_bounds, halve_steps
+from heuncli.study.queries.curves import MAX_ADDED, find_bounds, halve_steps
 from heuncli.study.search.extremes import find_jump_sides
 
 

@@ -21,7 +21,7 @@ from heuncli.results import stored_arrays
 from heuncli.results.stored_arrays import ArrayStore
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.compose import parts, recovery
+from heuncli.study.compose import recovery, results
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
@@ -53,7 +53,7 @@ def swinging(samples: int, cuts: int = 3) -> Spec:
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of eight instants, and texts of a few numbers."""
     for module, name, value in (
-        (parts, "FEW", 0), (parts, "AT_ONCE", 1), (export, "AT_ONCE", 11), (as_data, "AT_ONCE", 11),
+        (results, "FEW", 0), (results, "AT_ONCE", 1), (export, "AT_ONCE", 11), (as_data, "AT_ONCE", 11),
         (export, "READ", 23),
         (stored_arrays, "TOGETHER", 5), (stored_arrays, "AT_ONCE", 7),
     ):  # fmt: skip
@@ -90,10 +90,10 @@ def test_parts_of_many_sizes() -> None:
     """Whole blocks but for the last, which has no row alone."""
     for count in range(2, 70):
         for at_once in range(40):
-            found = parts.divide_instants(count, at_once)
+            found = results.divide_instants(count, at_once)
             assert [k for part in found for k in range(count)[part]] == list(range(count))
-            assert all(part.start % parts.BLOCK == 0 and part.stop - part.start >= min(count, 8) for part in found)
-            assert max(part.stop - part.start for part in found) < 2 * max(at_once, parts.BLOCK) + parts.BLOCK
+            assert all(part.start % results.BLOCK == 0 and part.stop - part.start >= min(count, 8) for part in found)
+            assert max(part.stop - part.start for part in found) < 2 * max(at_once, results.BLOCK) + results.BLOCK
 
 
 PULLED = """\
@@ -137,8 +137,8 @@ def test_a_command_writes_the_parts(heun: Heun, folder: Path, form: str, monkeyp
     (folder / "s.yaml").write_text(SWINGING.format(samples=31, cuts=4))
     words = ("run", "s.yaml", "--format", form, "--strict")
     whole = heun(*words)
-    monkeypatch.setattr(parts, "FEW", 0)
-    monkeypatch.setattr(parts, "AT_ONCE", 1000)
+    monkeypatch.setattr(results, "FEW", 0)
+    monkeypatch.setattr(results, "AT_ONCE", 1000)
     stores: list[ArrayStore] = []
     made = ArrayStore.__init__
 
@@ -160,7 +160,7 @@ def without_times(text: str) -> list[str]:
 
 def test_a_disk_that_is_full_is_5(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is written then, and no half of anything is left."""
-    monkeypatch.setattr(parts, "FEW", 0)
+    monkeypatch.setattr(results, "FEW", 0)
 
     class Full(io.BytesIO):
         def write(self, _: Any) -> int:
@@ -220,7 +220,7 @@ def pieces(form: str, spec: Spec) -> Any:
 def little(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As little at a time as memory shows it: the parts themselves would hide how it grows."""
     for module, name, value in (
-        (parts, "FEW", 0), (parts, "AT_ONCE", 20_000), (export, "AT_ONCE", 2_000), (as_data, "AT_ONCE", 2_000),
+        (results, "FEW", 0), (results, "AT_ONCE", 20_000), (export, "AT_ONCE", 2_000), (as_data, "AT_ONCE", 2_000),
         (export, "READ", 20_000),
         (load_errors, "CUTS_AT_ONCE", 2_000),
     ):  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.motion.integration.check.changes import impulse_time_differences
+from heuncli.motion.integration.check.changes import find_impulse_time_differences
 from heuncli.results.path_words import TREE, Node, error_kind_of_path, find_child
 from heuncli.results.results import Array
 from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND, SPACE, Quantity
@@ -134,7 +134,7 @@ STRUCK = ("bodies", "foundation", "joints", "stops", "sections")
 def errors_of_blows(run: Study) -> list[float]:
     """What is stated of the instants of a run's blows, as of events at them: by when its other runs have them."""
     history = run.history
-    apart = [impulse_time_differences(history.impulses, other) for other in history.check_impulses]
+    apart = [find_impulse_time_differences(history.impulses, other) for other in history.check_impulses]
     missed = 0.5 * history.estimate["motion"] * float(run.results.time[-1])
     found = [2.0 * max((a.get(jump.time, missed) for a in apart), default=missed) for jump in history.impulses]
     return [math.inf if math.isnan(error) else error for error in found]  # not a number: another run has none there

@@ -10,7 +10,7 @@ import pytest
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError
 from heuncli.motion.integration.integrated_scene import find_one_sided_limits
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import load_method_by_name
 from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.discontinuities import (

@@ -34,7 +34,7 @@ from heuncli.base.errors import SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.base.tolerances import ORDERS_SETTLED, SUM_ROUNDING
-from heuncli.loads.kinetostatics.energy import rope_power
+from heuncli.loads.kinetostatics.balance import rope_power
 from heuncli.loads.kinetostatics.foundation import inertia_loads
 from heuncli.loads.redundancy.count import count_redundancy
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED

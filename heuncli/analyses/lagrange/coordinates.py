@@ -24,8 +24,8 @@ from heuncli.base.records import record
 from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.linearisation.linearise import LinearisedEquations, point_twist
-from heuncli.motion.linearisation.linearise import coordinate_rows as rows_of_scene
-from heuncli.motion.linearisation.reduced_equations import find_massless_spins, orthogonal_complement
+from heuncli.motion.linearisation.linearise import make_coordinate_rows as rows_of_scene
+from heuncli.motion.linearisation.reduced_equations import find_massless_spins, find_orthogonal_complement
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.layout import Layout
@@ -164,7 +164,7 @@ def compute_admitted_motions(
     Such a spin w . n stays as it is, whatever else moves.
     """
     massless_spins = find_massless_spins(scene, linear_equations)
-    T = linear_equations.tangent @ orthogonal_complement(
+    T = linear_equations.tangent @ find_orthogonal_complement(
         np.array([spin.tangent for spin in massless_spins]), linear_equations.tangent.shape[1]
     )
     for spin in massless_spins:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base.records import record
-from heuncli.motion.linearisation.linearise import LinearisedEquations, velocity_derivatives
+from heuncli.motion.linearisation.linearise import LinearisedEquations, find_velocity_derivatives
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.layout import Layout
@@ -123,7 +123,7 @@ def compute_rate_slopes(
 
     drift (n, f): changes of the rates of the tree that these require
     """
-    spins, speeds = velocity_derivatives(layout, t, linear_equations, holding)
+    spins, speeds = find_velocity_derivatives(layout, t, linear_equations, holding)
     twists, drift_twists = linear_equations.twists @ partials, linear_equations.twists @ drift
     return RateSlopes(
         layout,

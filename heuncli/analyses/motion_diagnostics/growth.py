@@ -12,7 +12,7 @@ from heuncli.analyses.motion_diagnostics.results import GrowthResults
 from heuncli.analyses.motion_diagnostics.twists import compute_twists
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import null_space
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import QUATERNION, Method
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.run.supervision import choose_implicit_method

@@ -18,7 +18,7 @@ from heuncli.base import tolerances
 from heuncli.base.linear_algebra import null_space
 from heuncli.base.method_rows import find_method
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.response import jacobian, tangent

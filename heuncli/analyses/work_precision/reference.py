@@ -26,9 +26,9 @@ from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.motion.integration.check.estimate import estimate_errors, evaluate_run, evaluate_together
 from heuncli.motion.integration.check.run_comparison import (
-    angle_difference,
+    find_angle_difference,
+    find_point_distance,
     is_between_impulses,
-    point_distance,
     replace_nan_errors,
 )
 from heuncli.motion.integration.check.runs import Runs
@@ -39,7 +39,7 @@ from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.selection import Selection
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_extents import DIFFERENCE_ONLY, ESTIMATED, BalanceTerms, Weights
+from heuncli.study.solve.error_estimates import DIFFERENCE_ONLY, ESTIMATED, BalanceTerms, Weights
 from heuncli.study.solve.history import require_followed
 from heuncli.study.solve.load_errors import LoadErrors, Quantity
 
@@ -99,8 +99,8 @@ class ReferenceComparison:
         layout, places, angles, largest = self.setup.scene.layout, 0.0, 0.0, 1.0
         with np.errstate(all="ignore"):  # a diverged run may have any values
             for part, bodies_pair in evaluate_together(self.runs, self.reference, self.times, states):
-                distances = point_distance(self.runs.motion_points, bodies_pair.bodies, 2, layout.size)
-                turn_angles, angle = angle_difference(layout, bodies_pair, 2)
+                distances = find_point_distance(self.runs.motion_points, bodies_pair.bodies, 2, layout.size)
+                turn_angles, angle = find_angle_difference(layout, bodies_pair, 2)
                 places, angles = max(places, _largest(distances)), max(angles, _largest(turn_angles))
                 largest = max(largest, float(angle.max(initial=1.0)))
                 mask = is_compared[part]

@@ -17,7 +17,7 @@ from heuncli.study.model.options import collect_results as collect_results  # re
 from heuncli.study.model.options import require_choice as require_choice
 from heuncli.study.model.options import require_positive as require_positive
 from heuncli.study.model.options import require_tolerance as require_tolerance
-from heuncli.study.quantities.given_captions import OPTIONS, set_captions
+from heuncli.study.quantities.captions import OPTIONS, set_captions
 
 if TYPE_CHECKING:
     from heuncli.study.queries.study import Study

@@ -19,7 +19,7 @@ from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.parameters import Setting
 from heuncli.scene.file_format.source import read_text
 from heuncli.study.model.options import Options, require_choice
-from heuncli.study.quantities.given_captions import set_captions
+from heuncli.study.quantities.captions import set_captions
 from heuncli.study.quantities.table_units import read_display_units
 from heuncli.study.queries.study import Study
 

@@ -31,7 +31,7 @@ from heuncli.output.tables.summary_document import RunParts, make_run_parts
 from heuncli.results.results import Array
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.model.selection import Selection
-from heuncli.study.quantities.given_captions import set_captions
+from heuncli.study.quantities.captions import set_captions
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units, read_display_units
 from heuncli.study.queries.measure import MeasureRequest

@@ -25,7 +25,7 @@ from heuncli.loads.equilibrium.slopes import RestLaw
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.linearisation.indifference import Indifference, reduce_indifference
 from heuncli.motion.linearisation.linearise import LinearisedEquations
-from heuncli.motion.linearisation.oscillations import find_modes, find_stiffnesses, nilpotent_shapes
+from heuncli.motion.linearisation.oscillations import find_modes, find_nilpotent_shapes, find_stiffnesses
 from heuncli.motion.linearisation.reduced_equations import reduce_equations
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.layout import Layout
@@ -224,7 +224,7 @@ def find_stability(
         indifferent=name_motions(coordinates, free_motions[:, is_massive & ~is_bending]),
         flat=name_motions(coordinates, free_motions[:, is_massive & is_bending]),
         edge=name_motions(
-            coordinates, system.tangent @ nilpotent_shapes(indifferent)[:, indifferent.right_null.shape[1] :]
+            coordinates, system.tangent @ find_nilpotent_shapes(indifferent)[:, indifferent.right_null.shape[1] :]
         ),
     )
 

@@ -170,7 +170,7 @@ class CouplingLoads:
         # of sheaves their centres come first
         parts = sorted(loading_parts, key=lambda body_force: not body_force.part.lies_on_sheave)
         friction_actions = () if self.friction is None else (self.friction,)
-        part_loads = (on for part in parts for on in part.both_loads)
+        part_loads = (body_load for part in parts for body_load in part.both_loads)
         action_loads = (
             (end.body, end.position, F, M)
             for action in (*extra_actions, *friction_actions)

@@ -202,7 +202,12 @@ def _make_section_cuts(
         if jumps[0] and section.side is None:
             raise SpecError(
                 _missing_side_problem(
-                    [attachment.label for attachment, on in zip(attachments, in_plane[0], strict=True) if on], location
+                    [
+                        attachment.label
+                        for attachment, is_in_plane in zip(attachments, in_plane[0], strict=True)
+                        if is_in_plane
+                    ],
+                    location,
                 )
             )
         # kept also where nothing lies in the plane: joints may move into it during the run

@@ -23,7 +23,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses
 from heuncli.results.results import SIDE_WORDS, Array, Block, Mask
-from heuncli.scene.shapes.rotations import cross_rows
+from heuncli.scene.shapes.rotations import cross_first_axis, cross_rows
 
 
 @record
@@ -214,24 +214,19 @@ def find_moving_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attac
     inertia = -np.einsum("i...tj,tkjl->il...tk", A, cuts.pieces)
     force = inertia[:, 3].copy()
     moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
-    moment -= cross_by_axis(p, force)
+    moment -= cross_first_axis(p, force)
     for a in attached_loads:
         fraction, first = a.fraction_on_pieces(cuts)
         F, M = (np.moveaxis(x, -1, 0)[..., None] for x in (a.force, a.moment))
         force += F * fraction
-        moment += cross_by_axis(np.moveaxis(first, -1, 0) - p * fraction, F)
+        moment += cross_first_axis(np.moveaxis(first, -1, 0) - p * fraction, F)
         moment += M * fraction
     return force, moment
 
 
-def cross_by_axis(a: Array, b: Array) -> Array:
-    """Return a x b of vectors (3, ...)."""
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-
-
 def shift_moment(force: Array, moment: Array, offset: Array) -> Array:
     """Return moments about points at an `offset` from the old one, (3, n_t, k): M - offset x s."""
-    return moment - cross_by_axis(offset, force)
+    return moment - cross_first_axis(offset, force)
 
 
 @record
@@ -401,6 +396,18 @@ def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
     return compute_stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
 
 
+def find_moment_arm(cuts: Cuts) -> float:
+    """Return a length [m] that compares moments with forces: of the run of cuts; of a single one how far the mass
+    beyond it reaches from the body's origin, or, without such mass, how far the body reaches.
+    """
+    points = cuts.points.reshape(-1, 3)
+    length = float(np.abs(points - points.mean(axis=0)).max())
+    mass = float(cuts.pieces[..., 3, 3].max())
+    if length == 0.0 and mass > 0.0:
+        length = float(np.sqrt(np.abs(cuts.pieces[..., :3, :3]).max() / mass))
+    return length or cuts.plane_tolerance / tolerances.IN_PLANE
+
+
 def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
     """Find the points of the plane where force and moment in it are parallel: Q.p = -n.(Q x M_t)/N, direction n x Q.
 
@@ -412,19 +419,17 @@ def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
     n = cuts.n[:, None, None]
     N, T = axis_component(cuts.n, force), axis_component(cuts.n, moment)
     Q, M_t = force - n * N, moment - n * T
-    points = cuts.points.reshape(-1, 3)
-    reach = float(np.abs(points - points.mean(axis=0)).max())
-    reach = reach or float(np.sqrt(np.abs(cuts.pieces[..., :3, :3]).max() / cuts.pieces[..., 3, 3].max()))
+    reach = find_moment_arm(cuts)
     size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
     q = np.sqrt(np.sum(Q**2, axis=0))
     no_N, no_Q = np.abs(N) <= tolerances.NO_FORCE * size, q <= tolerances.NO_FORCE * size
-    twist = axis_component(cuts.n, cross_by_axis(Q, M_t))
+    twist = axis_component(cuts.n, cross_first_axis(Q, M_t))
     free_N = np.where(no_N, np.nan, N)
     free_Q = np.where(no_Q | no_N, np.nan, q)
     n = np.broadcast_to(n, Q.shape)
     point = cut_points - twist / (free_N * free_Q**2) * Q
-    direction = cross_by_axis(n, Q) / free_Q
-    pressure = cut_points + cross_by_axis(n, M_t) / free_N
+    direction = cross_first_axis(n, Q) / free_Q
+    pressure = cut_points + cross_first_axis(n, M_t) / free_N
     parallel = np.abs(twist) <= tolerances.NO_FORCE * size * size * reach
     kind = np.where(no_N, np.where(parallel, 2.0, 1.0), np.where(no_Q, 2.0, 0.0))
     return {

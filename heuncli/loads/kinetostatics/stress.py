@@ -244,9 +244,8 @@ def rectangle_moduli(v: Sizes) -> SectionModuli:
 
 
 ODD = range(1, 40, 2)
-ODD_FIFTH_POWERS = (
-    1.0045237627951382  # sum of 1/n^5 over odd n, 31/32 zeta(5): the rest of the series converges exponentially
-)
+# sum of 1/n^5 over odd n, 31/32 zeta(5): the rest of the series converges exponentially
+ODD_FIFTH_POWERS = 1.0045237627951382
 
 
 def torsion_modulus(b: float, h: float) -> float:

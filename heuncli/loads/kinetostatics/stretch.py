@@ -33,12 +33,10 @@ SIDES = np.array([BEYOND, *[0.0] * (DEGREE - 1), BEFORE])
 FINE = -np.cos(np.pi * np.arange(4 * DEGREE + 1) / (4 * DEGREE))  # where the polynomial is sampled first
 HALVINGS = 4
 SHORT_PIECE = 64.0  # times the plane tolerance: the first node of a longer piece is 0.038 of its length from the corner
-CORNER_DISTANCE = (
-    0.25  # times the plane tolerance: closer corners are one, because all there lies in the plane of the first
-)
-NEWTON_STEPS = (
-    3  # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
-)
+# times the plane tolerance: closer corners are one, because all there lies in the plane of the first
+CORNER_DISTANCE = 0.25
+# steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
+NEWTON_STEPS = 3
 
 MAX_RISE_PER_BEND = 0.25  # of a bend, from a sample to its summit: twice what a parabola rises
 

@@ -253,10 +253,10 @@ def require_determinate_friction(layout: Layout, stress: SelfStress | None, stat
     instants = np.flatnonzero(np.any(is_open, axis=0))
     if len(instants):
         # only on the way to an error
-        from heuncli.motion.integration.diagnosis.ambiguous_laws import indeterminate_friction_problem
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import make_indeterminate_friction_problem
 
         loads = [load for load, mask in zip(friction_loads, is_open, strict=True) if mask[instants[0]]]
-        raise SolveError(indeterminate_friction_problem(layout.mechanism, loads, float(times[instants[0]])))
+        raise SolveError(make_indeterminate_friction_problem(layout.mechanism, loads, float(times[instants[0]])))
 
 
 def require_determinate_friction_at_start(scene: PreparedScene, runner: Runner, t: float) -> None:

@@ -117,17 +117,17 @@ def make_rounded_scene(layout: Layout, number: int) -> Layout:
 def perturb_table(table: Table, name: str, layout: Layout, source: RoundingSource) -> None:
     """Perturb the numbers of a table in place."""
     for field in BY_OWN_SIZE[name]:
-        perturb_field(table, field, field_magnitude(table, field), layout.flat, source)
+        perturb_field(table, field, find_field_magnitude(table, field), layout.flat, source)
     for field in BY_SCENE_SIZE[name]:
         perturb_field(table, field, np.full(len(table), layout.size), layout.flat, source)
     for field in BY_ONE[name]:
         if not (layout.flat and field == "frame"):
-            perturb_field(table, field, field_magnitude(table, field), layout.flat, source)
+            perturb_field(table, field, find_field_magnitude(table, field), layout.flat, source)
     if name == "bodies":
         perturb_field(table, "first_moment", table["mass"] * layout.size, layout.flat, source)
 
 
-def field_magnitude(table: Table, field: str) -> Array:
+def find_field_magnitude(table: Table, field: str) -> Array:
     """Return the magnitude of the numbers of a field, (rows,)."""
     column = table[field]
     parts = [column[part] for part in column.dtype.names] if column.dtype.names else [column]
@@ -155,7 +155,7 @@ def make_rounded_state(layout: Layout, state: Array, number: int) -> Array:
     place = rate_indices(layout)
     weights = layout.weights[place[place >= 0]]
     scale = np.ones(len(weights))
-    order = {at: k for k, at in enumerate(place[place >= 0].tolist())}
+    order = {index: k for k, index in enumerate(place[place >= 0].tolist())}
     for freedom in layout.tables["freedoms"]:
         if not freedom["driven"]:
             k = order[int(freedom["u_at"])]

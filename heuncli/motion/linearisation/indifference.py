@@ -20,10 +20,10 @@ from heuncli.motion.linearisation.displacements import displace, make_rounded_sc
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.motion.linearisation.reduced_equations import (
     ReducedEquations,
-    ball_rates,
-    ball_rotations,
+    find_ball_rates,
+    find_ball_rotations,
     find_massless_spins,
-    orthogonal_complement,
+    find_orthogonal_complement,
 )
 from heuncli.multibody.tree.layout import Layout, rate_indices
 from heuncli.multibody.tree.prepare import PreparedScene
@@ -94,12 +94,12 @@ class IndifferentMotions:
     K: Array
     entry_errors: Array
 
-    def mutual_stiffness(self, X: Array) -> Array:
+    def find_mutual_stiffness(self, X: Array) -> Array:
         """Return the stiffness of motions (f, k) among each other, (k, k) [1/s^2]."""
         displacements = self.to_pivots @ X
         return np.asarray(displacements.T @ self.K @ displacements)
 
-    def stiffness_error(self, X: Array) -> Array:
+    def estimate_stiffness_error(self, X: Array) -> Array:
         """Return the rounding error of the stiffness of motions (f, k), (k,) [1/s^2]."""
         size = np.abs(self.to_pivots @ X)
         return np.asarray(np.sum(size * (self.entry_errors @ size), axis=0))
@@ -114,15 +114,15 @@ def find_indifference(
     none
     """
     layout = scene.layout
-    weights = freedom_weights(layout)
-    tangent, drift = massive_displacements(scene, law)
+    weights = find_freedom_weights(layout)
+    tangent, drift = find_massive_displacements(scene, law)
     T, pivots = find_pivots(tangent, weights)
     if not T.shape[1]:
         return Indifference(T, eliminate(np.zeros((0, 0)), np.zeros((0, 0, 0))), 0.0)
     K, _ = find_stiffness(layout, law, T, drift)
     scenes = [replace(scene, layout=make_rounded_scene(layout, number)) for number in range(ROUNDED_SCENES)]
     states = [make_rounded_state(layout, law.state, number) for number in range(ROUNDED_SCENES)]
-    perturbed_K, pushes = perturbed_stiffness(scenes, t, states, holding, weights, pivots)
+    perturbed_K, pushes = find_perturbed_stiffness(scenes, t, states, holding, weights, pivots)
     elimination, reach = eliminate(K, perturbed_K - K), 0.0
     if is_at_rest and len(elimination.rows):
         displacements = [T @ elimination.solve(push[:, None])[:, 0] for push in pushes]
@@ -131,7 +131,7 @@ def find_indifference(
             displace(layout, state, limit_displacement(rounding_motion, weights))
             for state, rounding_motion in zip(states, displacements, strict=True)
         ]
-        perturbed_K, _ = perturbed_stiffness(scenes, t, states, holding, weights, pivots)
+        perturbed_K, _ = find_perturbed_stiffness(scenes, t, states, holding, weights, pivots)
         elimination = eliminate(K, perturbed_K - K)
     return Indifference(T, elimination, reach)
 
@@ -171,7 +171,7 @@ def orthonormalise(columns: Array) -> Array:
     return np.asarray(np.linalg.qr(columns / np.sqrt(np.sum(columns**2, axis=0)))[0])
 
 
-def perturbed_stiffness(
+def find_perturbed_stiffness(
     scenes: list[PreparedScene], t: float, states: list[Array], holding: Array, weights: Array, pivots: Indices
 ) -> tuple[Array, Array]:
     """Return K of perturbed scenes, (s, f, f), and their remaining forces, (s, f)."""
@@ -181,7 +181,7 @@ def perturbed_stiffness(
         law = linearise(scene.layout, t, state, holding)
         if not np.isfinite(law.by_place).all():
             continue
-        tangent, drift = massive_displacements(scene, law)
+        tangent, drift = find_massive_displacements(scene, law)
         if tangent.shape[1] == f:
             K[k], pushes[k] = find_stiffness(scene.layout, law, normalise_on_pivots(tangent, weights, pivots), drift)
     return K, pushes
@@ -195,18 +195,18 @@ def limit_displacement(displacement: Array, weights: Array) -> Array:
     return displacement * min(1.0, MAX_DISPLACEMENT / size) if size > 0.0 else displacement
 
 
-def massive_displacements(scene: PreparedScene, law: LinearisedEquations) -> tuple[Array, Array]:
+def find_massive_displacements(scene: PreparedScene, law: LinearisedEquations) -> tuple[Array, Array]:
     """Return the displacements of the law that move mass, (n, f), and the rates that any displacement needs, (n, n)."""
     massless_spins = find_massless_spins(scene, law)
     drift = law.drift @ np.linalg.pinv(law.tangent)
     for spin in massless_spins:
         drift = drift - np.outer(law.tangent @ spin.tangent, spin.rate_change(law, np.eye(len(drift))))
-    return law.tangent @ orthogonal_complement(
+    return law.tangent @ find_orthogonal_complement(
         np.array([spin.tangent for spin in massless_spins]), law.tangent.shape[1]
     ), drift
 
 
-def freedom_weights(layout: Layout) -> Array:
+def find_freedom_weights(layout: Layout) -> Array:
     """Return the weights of the undriven freedoms: 1 for rotations, 1 / size for shifts, (n,)."""
     place = rate_indices(layout)
     return np.asarray(layout.weights[place[place >= 0]])
@@ -219,14 +219,14 @@ def find_stiffness(layout: Layout, law: LinearisedEquations, T: Array, drift: Ar
 
     Seen from the frames of what moves steadily, as in reduced_equations.py: what stays there needs the rates `rates`.
     """
-    spin, frame = ball_rotations(layout, law)
+    spin, frame = find_ball_rotations(layout, law)
     P, change = T.T @ law.mass, law.by_place @ T
     if drift.any() or (spin != frame).any():
         S = drift @ T
         rates = S - T @ (np.linalg.pinv(T) @ (S + (spin - frame) @ T))
         change = change + (law.by_rate - frame) @ rates
     K = -P @ change
-    return K, P @ (law.accelerations - frame @ ball_rates(layout, law))
+    return K, P @ (law.accelerations - frame @ find_ball_rates(layout, law))
 
 
 def find_pivots(tangent: Array, weights: Array) -> tuple[Array, Indices]:
@@ -277,7 +277,7 @@ def eliminate(K: Array, changes: Array) -> Elimination:
         pairs_taken.append((rows.pop(int(i)), columns.pop(int(j))))
         right_null = remove_column(right_null, int(j), S[i] / S[i, j])
         left_null = remove_column(left_null, int(i), S[:, j] / S[i, j])
-        S, others = schur_complement(S[None], int(i), int(j))[0], schur_complement(others, int(i), int(j))
+        S, others = find_schur_complement(S[None], int(i), int(j))[0], find_schur_complement(others, int(i), int(j))
     errors = tolerances.HELD * np.abs(others - S).max(axis=0, initial=0.0)
     pairs = np.array(pairs_taken, dtype=int).reshape(-1, 2)
     return Elimination(K, pairs[:, 0], pairs[:, 1], right_null, left_null, errors, entry_errors)
@@ -288,7 +288,7 @@ def remove_column(basis: Array, k: int, shares: Array) -> Array:
     return np.asarray(np.delete(basis - np.outer(basis[:, k], shares), k, axis=1))
 
 
-def schur_complement(matrices: Array, i: int, j: int) -> Array:
+def find_schur_complement(matrices: Array, i: int, j: int) -> Array:
     """Return matrices (s, f, f) after one step of elimination by the entry i, j."""
     pivot = matrices[:, i, j][:, None, None]
     remainder = matrices - matrices[:, :, j][:, :, None] * (matrices[:, i, :][:, None, :] / pivot)

@@ -111,11 +111,11 @@ def linearise(layout: Layout, t: float, state: Array, holding: Array | None = No
             weights,
         ),
         opening_directions=opening_directions / layout.tables["closures"]["weight"][workspace.chosen_rows],
-        **body_motions(layout, poses, derivatives.omega[..., rates], derivatives.v[..., rates]),
+        **find_body_motions(layout, poses, derivatives.omega[..., rates], derivatives.v[..., rates]),
     )
 
 
-def velocity_derivatives(
+def find_velocity_derivatives(
     layout: Layout, t: float, law: LinearisedEquations, holding: Array | None = None
 ) -> tuple[Array, Array]:
     """Return the derivatives of the bodies' velocities by small displacements of the freedoms, at fixed rates.
@@ -187,7 +187,7 @@ def find_pose_directions(
     return PoseDirections(tangent, needed / weights[:, None])
 
 
-def body_motions(layout: Layout, poses: Table, turns: Array, shifts: Array) -> dict[str, Array]:
+def find_body_motions(layout: Layout, poses: Table, turns: Array, shifts: Array) -> dict[str, Array]:
     """Return the positions of the bodies, their motions with the freedoms, and the mass matrix.
 
     turns, shifts (n_b, 3, n): angular velocities, and velocities of the joint points, per rate
@@ -217,7 +217,7 @@ AXES = ("x", "y", "z")
 IN_PLANE = ("z", "dx", "dy")  # what is left in a scene that is declared planar
 
 
-def coordinate_rows(layout: Layout, linear: LinearisedEquations) -> dict[str, Array]:
+def make_coordinate_rows(layout: Layout, linear: LinearisedEquations) -> dict[str, Array]:
     """Return for each coordinate its row on the undriven freedoms, (n,)."""
     mechanism = layout.mechanism
     rows: dict[str, Array] = {}
@@ -248,7 +248,7 @@ def joint_rows(layout: Layout, linear: LinearisedEquations, joint: Joint) -> dic
     elif kind.is_ball_in_tree or kind.turns:
         rows |= dict(zip(AXES, turn, strict=True))
     if joint.path is not None:
-        rows["travel"] = path_row(layout, joint, linear, shift)
+        rows["travel"] = make_path_row(layout, joint, linear, shift)
     elif len(kind.shifts) == 1:
         rows["travel"] = axis @ shift
     elif kind.shifts:
@@ -256,7 +256,7 @@ def joint_rows(layout: Layout, linear: LinearisedEquations, joint: Joint) -> dic
     return rows
 
 
-def path_row(layout: Layout, joint: Joint, linear: LinearisedEquations, shift: Array) -> Array:
+def make_path_row(layout: Layout, joint: Joint, linear: LinearisedEquations, shift: Array) -> Array:
     """Return the row of a path's parameter: a freedom of the tree or, where it was cut, r' . shift / |r'|^2."""
     k = next(k for k, freedom in enumerate(layout.mechanism.joints) if freedom.name == joint.name)
     if k in layout.counters:

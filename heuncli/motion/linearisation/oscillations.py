@@ -77,14 +77,14 @@ def classify_mode(shape: Array, mass: Array, eigenvalue: complex, error: float, 
     """Make a mode from its eigenvalue and its displacement (n,) of the tree's freedoms; mass: their mass matrix."""
     if free:
         return Mode("free", 0j, error, shape)
-    error += 0.5 * abs(eigenvalue) * tolerances.EIGENVALUE * cancellation(mass, shape)
+    error += 0.5 * abs(eigenvalue) * tolerances.EIGENVALUE * measure_cancellation(mass, shape)
     growth = eigenvalue.real if abs(eigenvalue.real) > error else 0.0
     if eigenvalue.imag == 0.0:
         return Mode("divergence" if growth > 0.0 else "decay", complex(growth), error, shape)
     return Mode("flutter" if growth > 0.0 else "oscillation", complex(growth, eigenvalue.imag), error, shape)
 
 
-def cancellation(M: Array, v: Array) -> float:
+def measure_cancellation(M: Array, v: Array) -> float:
     """Return the ratio of the terms of v* M v to their sum: large where a light body moves on heavy ones."""
     size = np.abs(v)
     return float(size @ np.abs(M) @ size / abs(v.conj() @ M @ v))
@@ -96,8 +96,8 @@ EigenRow = tuple[complex, float, Array, bool]
 def solve_undamped(system: ReducedEquations, indifferent: IndifferentMotions) -> list[EigenRow]:
     """Solve x'' + K x = 0: l^2 = -k of the eigenvalues k of K."""
     K = -system.A21
-    rounding = tolerances.EIGENVALUE * len(K) * max(spectral_norm(K), system.stiffness_scale)
-    null_shapes = nilpotent_shapes(indifferent)
+    rounding = tolerances.EIGENVALUE * len(K) * max(find_spectral_norm(K), system.stiffness_scale)
+    null_shapes = find_nilpotent_shapes(indifferent)
     rows: list[EigenRow] = [(0j, float(np.sqrt(indifferent.error)), x, True) for x in null_shapes.T]
     null_basis, rest = complete_basis(null_shapes)
     if not rest.shape[1]:
@@ -105,9 +105,9 @@ def solve_undamped(system: ReducedEquations, indifferent: IndifferentMotions) ->
     B = rest.T @ K @ rest
     if np.abs(B - B.T).max() <= rounding:
         values, vectors = symmetric_eigenvalues(B, indifferent, rest)
-        errors = np.minimum(rounding, indifferent.stiffness_error(rest @ vectors))
+        errors = np.minimum(rounding, indifferent.estimate_stiffness_error(rest @ vectors))
     else:
-        values, vectors, condition = eigenvalues_with_condition(B)
+        values, vectors, condition = find_eigenvalues_with_condition(B)
         errors = condition * rounding
     for k, error, v in zip(
         values, errors, complete_eigenvectors(K, null_basis, rest, values, vectors, errors).T, strict=True
@@ -121,11 +121,11 @@ def find_stiffnesses(system: ReducedEquations, indifferent: IndifferentMotions) 
     m).
     """
     K = system.stiffness
-    _, rest = complete_basis(nilpotent_shapes(indifferent))
+    _, rest = complete_basis(find_nilpotent_shapes(indifferent))
     if not rest.shape[1]:
         return np.zeros(0), rest
     B = rest.T @ K @ rest
-    rounding = tolerances.EIGENVALUE * len(K) * max(spectral_norm(K), system.stiffness_scale)
+    rounding = tolerances.EIGENVALUE * len(K) * max(find_spectral_norm(K), system.stiffness_scale)
     values, vectors = (
         symmetric_eigenvalues(B, indifferent, rest) if np.abs(B - B.T).max() <= rounding else np.linalg.eig(B)
     )
@@ -139,7 +139,7 @@ def symmetric_eigenvalues(B: Array, indifferent: IndifferentMotions, rest: Array
         k = v' K v - sum (v' K w)^2 / (l - k)    over the other vectors w: removes their rounding, to second order
     """
     _, V = np.linalg.eigh(0.5 * (B + B.T))
-    stiffness = indifferent.mutual_stiffness(rest @ V)
+    stiffness = indifferent.find_mutual_stiffness(rest @ V)
     values = np.diag(stiffness).copy()
     differences = values[None, :] - values[:, None]
     coupled = 0.5 * (stiffness + stiffness.T) - np.diag(values)
@@ -147,7 +147,7 @@ def symmetric_eigenvalues(B: Array, indifferent: IndifferentMotions, rest: Array
     return values - np.where(is_separate, coupled**2 / np.where(is_separate, differences, 1.0), 0.0).sum(axis=1), V
 
 
-def nilpotent_shapes(indifferent: IndifferentMotions) -> Array:
+def find_nilpotent_shapes(indifferent: IndifferentMotions) -> Array:
     """Return what K maps to zero, and what it maps to that, (f, m): the other halves of a double eigenvalue 0."""
     shapes = [indifferent.right_null]
     while (
@@ -177,17 +177,17 @@ def solve_damped(system: ReducedEquations, indifferent: IndifferentMotions) -> l
     """Solve (x, z)' = A (x, z), with rates in units of the fastest motion and free motions removed first."""
     f, K = system.count, system.stiffness
     scale = max(
-        float(np.sqrt(max(spectral_norm(K), system.stiffness_scale))),
-        spectral_norm(system.A22),
-        spectral_norm(system.A11),
+        float(np.sqrt(max(find_spectral_norm(K), system.stiffness_scale))),
+        find_spectral_norm(system.A22),
+        find_spectral_norm(system.A11),
     )
     A = np.block([[system.A11, scale * np.eye(f)], [system.A21 / scale, system.A22]])
     rounding = tolerances.EIGENVALUE * len(A) * scale
     rows: list[EigenRow] = [(0j, float(np.sqrt(indifferent.error)), x, True) for x in indifferent.right_null.T]
-    null_basis, rest = complete_basis(generalised_null_space(system, indifferent, scale))
+    null_basis, rest = complete_basis(find_generalised_null_space(system, indifferent, scale))
     if not rest.shape[1]:
         return rows
-    values, vectors, condition = eigenvalues_with_condition(rest.T @ A @ rest)
+    values, vectors, condition = find_eigenvalues_with_condition(rest.T @ A @ rest)
     errors = condition * rounding
     shapes = complete_eigenvectors(A, null_basis, rest, values, vectors, errors)[:f]
     for value, error, x in zip(values, errors.tolist(), shapes.T, strict=True):
@@ -198,7 +198,7 @@ def solve_damped(system: ReducedEquations, indifferent: IndifferentMotions) -> l
     return rows
 
 
-def generalised_null_space(system: ReducedEquations, indifferent: IndifferentMotions, scale: float) -> Array:
+def find_generalised_null_space(system: ReducedEquations, indifferent: IndifferentMotions, scale: float) -> Array:
     """Return all (x, z / scale) that powers of A map to zero, (2 f, m), starting with what stays, x' = z' = 0.
 
     A w_k = w_(k-1):   K x_k = A22 x_(k-1) - z_(k-1),  z_k = x_(k-1) - A11 x_k,  if the left null space of K permits
@@ -210,7 +210,7 @@ def generalised_null_space(system: ReducedEquations, indifferent: IndifferentMot
     small = (
         tolerances.EIGENVALUE
         * system.count
-        * (spectral_norm(A11) + spectral_norm(A22) + float(np.sqrt(system.stiffness_scale)))
+        * (find_spectral_norm(A11) + find_spectral_norm(A22) + float(np.sqrt(system.stiffness_scale)))
     )
     while X.shape[1]:
         forces = A22 @ X - Z
@@ -218,7 +218,7 @@ def generalised_null_space(system: ReducedEquations, indifferent: IndifferentMot
         responses = indifferent.compliance @ forces @ combinations
         X, Z = responses, X @ combinations - A11 @ responses
         blocks.append(np.concatenate([X, Z / scale]))
-        small = tolerances.NEARLY_DEFECTIVE * spectral_norm(np.concatenate([X, Z, A22 @ X - Z]))
+        small = tolerances.NEARLY_DEFECTIVE * find_spectral_norm(np.concatenate([X, Z, A22 @ X - Z]))
     return normalise(np.concatenate(blocks, axis=1))
 
 
@@ -254,7 +254,7 @@ def complete_eigenvectors(
     return np.asarray(lifted + null_basis @ np.array(parts).T)
 
 
-def eigenvalues_with_condition(A: Array) -> tuple[Array, Array, Array]:
+def find_eigenvalues_with_condition(A: Array) -> tuple[Array, Array, Array]:
     """Return eigenvalues, right vectors, and the condition of each: |x| |y| / |y x| of the right and the left
     vector.
     """
@@ -264,7 +264,7 @@ def eigenvalues_with_condition(A: Array) -> tuple[Array, Array, Array]:
     return values, vectors, lengths * np.sqrt(np.sum(np.abs(vectors) ** 2, axis=0))
 
 
-def spectral_norm(A: Array) -> float:
+def find_spectral_norm(A: Array) -> float:
     """Return the largest singular value; 0 for an empty matrix."""
     return float(np.linalg.norm(A, 2)) if A.size else 0.0
 

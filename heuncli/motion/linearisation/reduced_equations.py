@@ -55,7 +55,7 @@ def reduce_equations(scene: PreparedScene, linear: LinearisedEquations, evaluati
     there.
     """
     massless_spins = find_massless_spins(scene, linear)
-    massive = orthogonal_complement(np.array([spin.tangent for spin in massless_spins]), linear.tangent.shape[1])
+    massive = find_orthogonal_complement(np.array([spin.tangent for spin in massless_spins]), linear.tangent.shape[1])
     T = linear.tangent @ massive
     try:
         normalisation = np.linalg.inv(np.linalg.cholesky(T.T @ linear.mass @ T)).T
@@ -66,16 +66,16 @@ def reduce_equations(scene: PreparedScene, linear: LinearisedEquations, evaluati
     T, S = T @ normalisation, linear.drift @ massive @ normalisation
     for spin in massless_spins:
         S = S - np.outer(linear.tangent @ spin.tangent, spin.rate_change(linear, T))
-    return equations_on_basis(scene.layout, linear, evaluation, T, S)
+    return project_equations(scene.layout, linear, evaluation, T, S)
 
 
-def equations_on_basis(
+def project_equations(
     layout: Layout, linear: LinearisedEquations, evaluation: Evaluation, T: Array, S: Array
 ) -> ReducedEquations:
     """Return the equations on displacements T that are orthonormal in the mass matrix, and the rates S that these
     need.
     """
-    spin, frame = ball_rotations(layout, linear)
+    spin, frame = find_ball_rotations(layout, linear)
     P = T.T @ linear.mass
     slow = linear.by_rate - frame
     A11 = P @ (S + (spin - frame) @ T)
@@ -87,7 +87,7 @@ def equations_on_basis(
         A11=A11,
         A21=P @ (linear.by_place @ T + slow @ S) - P @ S @ A11,
         A22=P @ slow @ T - P @ S,
-        remaining_acceleration=P @ (linear.accelerations - frame @ ball_rates(layout, linear)),
+        remaining_acceleration=P @ (linear.accelerations - frame @ find_ball_rates(layout, linear)),
         load_scale=loads,
         stiffness_scale=terms,
     )
@@ -134,7 +134,7 @@ def bound_inertia_loads(layout: Layout, linear: LinearisedEquations) -> tuple[Ar
     return mass * (parent_spin * speed + spin**2 * linear.arms), inertia * spin**2
 
 
-def ball_rotations(layout: Layout, linear: LinearisedEquations) -> tuple[Array, Array]:
+def find_ball_rotations(layout: Layout, linear: LinearisedEquations) -> tuple[Array, Array]:
     """Return w x and W x for the rotations of ball joints, (n, n): of the bodies themselves, and of their parents."""
     spin, frame = np.zeros(linear.mass.shape), np.zeros(linear.mass.shape)
     for first, body_rate, parent_rate in list_balls(layout, linear):
@@ -143,7 +143,7 @@ def ball_rotations(layout: Layout, linear: LinearisedEquations) -> tuple[Array, 
     return spin, frame
 
 
-def ball_rates(layout: Layout, linear: LinearisedEquations) -> Array:
+def find_ball_rates(layout: Layout, linear: LinearisedEquations) -> Array:
     """Return the angular velocities of bodies on ball joints at the places of their rotations, (n,)."""
     rates = np.zeros(len(linear.accelerations))
     for first, body_rate, _ in list_balls(layout, linear):
@@ -154,7 +154,7 @@ def ball_rates(layout: Layout, linear: LinearisedEquations) -> Array:
 def list_balls(layout: Layout, linear: LinearisedEquations) -> list[tuple[int, Array, Array]]:
     """Return for each body on a ball joint its first rotation, and the angular velocities of it and of its parent."""
     place = rate_indices(layout)
-    order = {at: k for k, at in enumerate(place[place >= 0].tolist())}
+    order = {index: k for k, index in enumerate(place[place >= 0].tolist())}
     no_rate = np.zeros(3)
     return [
         (order[int(body["rate_at"])], linear.omega[k], linear.omega[body["parent"]] if body["parent"] >= 0 else no_rate)
@@ -201,7 +201,7 @@ def find_massless_spins(scene: PreparedScene, linear: LinearisedEquations) -> li
     return spins
 
 
-def orthogonal_complement(rows: Array, f: int) -> Array:
+def find_orthogonal_complement(rows: Array, f: int) -> Array:
     """Return an orthonormal basis of the complement of some rows (k, f), (f, f - rank)."""
     if not len(rows):
         return np.eye(f)

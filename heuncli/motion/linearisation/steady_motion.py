@@ -30,15 +30,15 @@ from heuncli.motion.linearisation.oscillations import (
     Mode,
     classify_mode,
     complete_basis,
-    eigenvalues_with_condition,
-    spectral_norm,
+    find_eigenvalues_with_condition,
+    find_spectral_norm,
 )
 from heuncli.motion.linearisation.reduced_equations import (
     ReducedEquations,
-    ball_rates,
-    ball_rotations,
-    equations_on_basis,
+    find_ball_rates,
+    find_ball_rotations,
     list_balls,
+    project_equations,
     reduce_equations,
 )
 from heuncli.multibody.tree.layout import Layout, rate_indices
@@ -116,20 +116,20 @@ def find_fastest_rate(linear_state: LinearisedState) -> float:
     return float(max(turn, shift / linear_state.layout.size))
 
 
-def distance_from_rest(linear_state: LinearisedState) -> float:
+def find_distance_from_rest(linear_state: LinearisedState) -> float:
     """Return the distance to the rest pose by the linear equations: the largest rotation, or shift relative to the
     size.
 
     Infinite where a force acts on what nothing holds.
     """
     return (
-        rest_displacement(linear_state, linear_state.system.remaining_acceleration)
+        find_rest_displacement(linear_state, linear_state.system.remaining_acceleration)
         if linear_state.system.count
         else 0.0
     )
 
 
-def rest_displacement(linear_state: LinearisedState, push: Array) -> float:
+def find_rest_displacement(linear_state: LinearisedState, push: Array) -> float:
     """Return how far a push (f,) moves the rest pose by the linear equations: the largest rotation, or relative shift.
 
     Infinite where it acts on what nothing holds.
@@ -138,7 +138,7 @@ def rest_displacement(linear_state: LinearisedState, push: Array) -> float:
     K = system.stiffness
     _, rest = complete_basis(linear_state.indifferent.right_null)
     x = rest @ solve_least_squares(K @ rest, push)
-    if spectral_norm((push - K @ x)[:, None]) > tolerances.FREELY_PUSHED * system.load_scale:
+    if find_spectral_norm((push - K @ x)[:, None]) > tolerances.FREELY_PUSHED * system.load_scale:
         return np.inf
     return float(np.abs(linear_state.weights * (system.tangent @ x)).max(initial=0.0))
 
@@ -150,7 +150,7 @@ def continues_unchanged(linear_state: LinearisedState) -> bool:
     without any loads, every rounding would exceed a share of them.
     """
     system = linear_state.system
-    size = max(spectral_norm(system.stiffness), system.stiffness_scale)
+    size = max(find_spectral_norm(system.stiffness), system.stiffness_scale)
     rate = size**0.5
     parts = ((system.A11, rate), (system.A21, size), (system.A22, rate), (np.eye(system.count), 1.0))
     for phase in PHASES:
@@ -160,10 +160,10 @@ def continues_unchanged(linear_state: LinearisedState) -> bool:
         if np.abs(linear.state - y).max(initial=0.0) > tolerances.STEADY_CHANGE:
             return False  # it did not close
         T = turn @ system.tangent
-        later = equations_on_basis(linear_state.layout, linear, evaluation, T, turn @ system.drift)
+        later = project_equations(linear_state.layout, linear, evaluation, T, turn @ system.drift)
         push = later.remaining_acceleration - system.remaining_acceleration
         is_same_push = np.abs(push).max(initial=0.0) <= tolerances.STEADY_CHANGE * system.load_scale
-        if not is_same_push and not rest_displacement(linear_state, push) <= tolerances.OFF_BALANCE:
+        if not is_same_push and not find_rest_displacement(linear_state, push) <= tolerances.OFF_BALANCE:
             return False
         later_parts = (later.A11, later.A21, later.A22, T.T @ linear.mass @ T)
         for (a, scale), b in zip(parts, later_parts, strict=True):
@@ -213,17 +213,17 @@ def make_rolling_equations(
     layout: Layout, linear: LinearisedEquations, pose_directions: PoseDirections, T: Array, V: Array, S: Array
 ) -> RollingEquations:
     """Make the equations on poses T, whose rates are S, and speeds V, all orthonormal in the mass matrix."""
-    spin, frame = ball_rotations(layout, linear)
+    spin, frame = find_ball_rotations(layout, linear)
     P, Q = T.T @ linear.mass, V.T @ linear.mass
     slow = linear.by_rate - frame
     A11, A12 = P @ (S + (spin - frame) @ T), P @ V
     A21 = Q @ (linear.by_place @ T + slow @ S) - Q @ S @ A11
     A22 = Q @ slow @ V - Q @ S @ A12
-    remaining_acceleration = Q @ (linear.accelerations - frame @ ball_rates(layout, linear))
+    remaining_acceleration = Q @ (linear.accelerations - frame @ find_ball_rates(layout, linear))
     return RollingEquations(T, V, np.block([[A11, A12], [A21, A22]]), remaining_acceleration)
 
 
-def orthonormaliser(linear: LinearisedEquations, columns: Array) -> Array:
+def make_orthonormaliser(linear: LinearisedEquations, columns: Array) -> Array:
     """Return the matrix (f, f) that makes displacements orthonormal in the mass matrix."""
     try:
         return np.asarray(np.linalg.inv(np.linalg.cholesky(columns.T @ linear.mass @ columns)).T)
@@ -239,29 +239,31 @@ def make_steady_equations(linear_state: LinearisedState) -> RollingEquations:
     pose_directions = linear_state.linear.pose_directions
     assert pose_directions is not None
     to_T, to_V = (
-        orthonormaliser(linear_state.linear, pose_directions.tangent),
-        orthonormaliser(linear_state.linear, linear_state.linear.tangent),
+        make_orthonormaliser(linear_state.linear, pose_directions.tangent),
+        make_orthonormaliser(linear_state.linear, linear_state.linear.tangent),
     )
     T, V, S = pose_directions.tangent @ to_T, linear_state.linear.tangent @ to_V, pose_directions.drift @ to_T
     rolling = make_rolling_equations(linear_state.layout, linear_state.linear, pose_directions, T, V, S)
-    if spectral_norm(
+    if find_spectral_norm(
         rolling.remaining_acceleration[:, None]
-    ) > tolerances.FREELY_PUSHED * linear_state.system.load_scale + tolerances.OFF_BALANCE * spectral_norm(rolling.A):
-        raise unsteady_error("a load accelerates it")
+    ) > tolerances.FREELY_PUSHED * linear_state.system.load_scale + tolerances.OFF_BALANCE * find_spectral_norm(
+        rolling.A
+    ):
+        raise make_unsteady_error("a load accelerates it")
     for phase in PHASES:
         dt = phase / find_fastest_rate(linear_state)
         y, turn = continue_motion(linear_state, dt)
         linear, _ = linearise_and_evaluate(linear_state.runner, linear_state.t + dt, y, linear_state.holding)
         later_directions = linear.pose_directions
         if later_directions is None or np.abs(linear.state - y).max(initial=0.0) > tolerances.STEADY_CHANGE:
-            raise unsteady_error("its wheels do not keep rolling in the same way")
+            raise make_unsteady_error("its wheels do not keep rolling in the same way")
         later = make_rolling_equations(linear_state.layout, linear, later_directions, turn @ T, turn @ V, turn @ S)
-        if np.abs(later.A - rolling.A).max(initial=0.0) > tolerances.STEADY_CHANGE * spectral_norm(rolling.A):
-            raise unsteady_error("loads change along the motion")
+        if np.abs(later.A - rolling.A).max(initial=0.0) > tolerances.STEADY_CHANGE * find_spectral_norm(rolling.A):
+            raise make_unsteady_error("loads change along the motion")
     return rolling
 
 
-def unsteady_error(why: str) -> SolveError:
+def make_unsteady_error(why: str) -> SolveError:
     """Make the error of a motion that is not steady."""
     hint = "modes with rolling wheels need steady straight rolling, or rest: give velocities of such a motion"
     return SolveError(Problem("not-at-rest", f"the motion is not steady: {why}", hint=hint))
@@ -271,7 +273,7 @@ def find_rolling_modes(linear_state: LinearisedState) -> list[Mode]:
     """Find all motions about a steady one: free ones, one for each direction without effect, then the others."""
     rolling = make_steady_equations(linear_state)
     A, p = rolling.A, rolling.T.shape[1]
-    scale = spectral_norm(A) or 1.0
+    scale = find_spectral_norm(A) or 1.0
     rounding = tolerances.EIGENVALUE * len(A) * scale
     small = tolerances.RANK * scale
     free, rest = split_null_space(A, small)
@@ -283,7 +285,7 @@ def find_rolling_modes(linear_state: LinearisedState) -> list[Mode]:
         remaining = remaining @ rest_part
     mass = linear_state.linear.mass
     modes = [classify_mode(rolling.T @ x[:p], mass, 0j, float(np.sqrt(rounding) * scale**0.5), True) for x in free.T]
-    values, _, condition = eigenvalues_with_condition(remaining.T @ A @ remaining)
+    values, _, condition = find_eigenvalues_with_condition(remaining.T @ A @ remaining)
     for value, error in zip(values, condition * rounding, strict=True):
         if value.imag >= 0.0 or abs(value.imag) <= error:  # the conjugate gives the same motion
             eigenvalue = complex(value.real, value.imag if abs(value.imag) > error else 0.0)

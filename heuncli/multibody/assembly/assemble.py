@@ -83,7 +83,7 @@ def _format_displacement(name: str, distance: float, rotation: Array) -> str:
 def is_drawn_in_place(
     mechanism: Mechanism, conditions: Sequence[JointCondition], drawn_poses: AssemblyPoses, lever: float
 ) -> bool:
-    """Whether the scene is drawn in world coordinates, so that a body's place in the drawing is intended.
+    """Return whether the scene is drawn in world coordinates, so that a body's place in the drawing is intended.
 
     Bodies drawn each about its own origin fit at a joint or two by chance; in a scene drawn in place most joints do,
     apart from slips. A joint between two origins fits however the bodies are drawn and proves nothing; a robot may have

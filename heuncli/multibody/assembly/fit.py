@@ -95,7 +95,7 @@ class IslandFit:
         return math.sqrt(sum(float(r.hold @ r.hold) / self.size**2 + float(r.turn @ r.turn) for r in rows.values()))
 
     def is_near(self, drawn_poses: tuple[Array, Array], lever: float) -> bool:
-        """Whether no joint is far open, and no body far from its drawing; lengths by the lever."""
+        """Return whether no joint is far open, and no body far from its drawing; lengths by the lever."""
         rows = self.rows().values()
         gap = max(max(_norm(r.hold) / lever, _norm(r.turn)) for r in rows)
         displacement = float(
@@ -308,7 +308,7 @@ class IslandFit:
 
 
 def _is_lower(new: tuple[float, float], old: tuple[float, float]) -> bool:
-    """Whether the turns became less, or stayed and the shifts became less (to rounding)."""
+    """Return whether the turns became less, or stayed and the shifts became less (to rounding)."""
     slack = tolerances.SAME_SUM
     if new[0] < old[0] * (1.0 - slack):
         return True

@@ -130,7 +130,7 @@ class Islands:
         )
 
     def is_in_loop(self, body: int) -> bool:
-        """Whether a body is in a loop."""
+        """Return whether a body is in a loop."""
         return bool(self._closures[self.find_group(body)])
 
     def find_looped_groups(self) -> list[int]:

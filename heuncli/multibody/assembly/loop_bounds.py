@@ -48,7 +48,7 @@ class LoopPolygon:
         self.lengths.append(length)
         self.normals.append(normal)
 
-    def find_lack(self, directions: Sequence[Array]) -> float:
+    def find_least_gap(self, directions: Sequence[Array]) -> float:
         """Return by how much the longest side exceeds all others, with gaps along some directions; below 0: they
         close.
         """
@@ -101,7 +101,7 @@ class LoopSides:
         if directions is None:
             return 0.0
         rounding += sum(polygon.lengths) + _norm(polygon.fixed) + float(np.abs(self.poses.x).max(initial=0.0))
-        return max(polygon.find_lack(directions) - tolerances.SUM_ROUNDING * rounding, 0.0)
+        return max(polygon.find_least_gap(directions) - tolerances.SUM_ROUNDING * rounding, 0.0)
 
     def list_branch(self, body: int) -> list[int]:
         """List the members from a body inward."""
@@ -180,7 +180,7 @@ class LoopSides:
 
 
 def _is_along(normal: Array | None, direction: Array) -> bool:
-    """Whether a normal is known, and along a direction."""
+    """Return whether a normal is known, and along a direction."""
     return normal is not None and abs(float(normal @ direction)) >= 1.0 - tolerances.SUM_ROUNDING
 
 

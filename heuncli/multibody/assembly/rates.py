@@ -35,9 +35,8 @@ from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Directed, Mechanism
 from heuncli.results.results import Array
 
-MAX_CHECKED_JOINTS = (
-    2000  # joints of an island up to which this is checked here; in larger ones the motion will show it
-)
+# joints of an island up to which this is checked here; in larger ones the motion will show it
+MAX_CHECKED_JOINTS = 2000
 
 
 @record
@@ -124,7 +123,7 @@ class RateAssembly:
         return [rate_rows(d, self.poses.x, self.poses.R, self.rates.s) for d in self.conditions]
 
     def is_at_rest(self) -> bool:
-        """Whether no motion, and no acceleration from rest, is prescribed."""
+        """Return whether no motion, and no acceleration from rest, is prescribed."""
         is_prescribed = any(any(d.spin) or any(d.slip) or any(d.stretch) for d in self.conditions)
         return not is_prescribed and self.rates.are_zero
 

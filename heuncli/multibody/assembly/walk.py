@@ -56,11 +56,11 @@ def find_placement_tree(
     links: list[list[tuple[int, int, bool]]] = [[] for _ in range(n + 1)]
     is_to = [False] * (n + 1)
     for k in sorted(range(len(constraints)), key=names.__getitem__):
-        a, b, ask = constraints[k]
-        if ask.hold == "none":
+        a, b, condition = constraints[k]
+        if condition.hold == "none":
             continue
-        links[a].append((k, b, ask.is_strong))
-        links[b].append((k, a, ask.is_strong))
+        links[a].append((k, b, condition.is_strong))
+        links[b].append((k, a, condition.is_strong))
         is_to[b] = True
 
     order: list[int] = []
@@ -167,8 +167,8 @@ def place_body(poses: AssemblyPoses, d: JointCondition, body: int) -> None:
 
 
 def required_attitude(d: JointCondition, Ra: Array, Rb: Array, is_to: bool) -> Array:
-    """The attitude of `to` (or of `from`) that satisfies the joint's turn condition, nearest to the present one, (3,
-    3).
+    """Return the attitude of `to` (or of `from`) that satisfies the joint's turn condition, nearest to the present one,
+    (3, 3).
     """
     if d.pose.turn == "all":
         return Ra @ d.relative if is_to else Rb @ d.relative.T
@@ -181,7 +181,7 @@ def required_attitude(d: JointCondition, Ra: Array, Rb: Array, is_to: bool) -> A
 
 
 def _nearest_perpendicular(m: Array, n: Array) -> Array:
-    """The unit vector perpendicular to n nearest to m; where m is along n, toward a world axis."""
+    """Return the unit vector perpendicular to n nearest to m; where m is along n, toward a world axis."""
     s = m - (m @ n) * n
     size = float(np.sqrt(s @ s))
     if size < tolerances.PARALLEL:
@@ -193,7 +193,9 @@ def _nearest_perpendicular(m: Array, n: Array) -> Array:
 
 
 def closing_shift(d: JointCondition, n: Array, D: Array) -> Array:
-    """The least shift of the `to` point that closes the hold, (3,); n the axis, D from its place on `from`, world."""
+    """Return the least shift of the `to` point that closes the hold, (3,); n the axis, D from its place on `from`,
+    world.
+    """
     hold = d.pose.hold
     if hold in ("point", "curve"):
         return -D

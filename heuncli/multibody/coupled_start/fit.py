@@ -73,11 +73,11 @@ class CoupledFit:
         return np.asarray(self.weight[rows] * self.size)
 
     def largest_gap(self) -> float:
-        """The largest gap of all rows and held values, by the size, or rad."""
+        """Return the largest gap of all rows and held values, by the size, or rad."""
         return self._largest_gap(*self.measure_present())
 
     def scene_speed(self) -> float:
-        """The scene's speed [m/s], to which rates of joints are compared."""
+        """Return the scene's speed [m/s], to which rates of joints are compared."""
         _, start = self.measure_present()
         v = start.velocity + np.cross(start.angular_velocity, np.einsum("nij,nj->ni", start.rotation, self.centres))
         spin = float(np.max(np.abs(start.angular_velocity))) + tolerances.AT_REST
@@ -94,8 +94,8 @@ class CoupledFit:
         return np.asarray(self.freedoms.measure(self.state).rates[rows] * self.length_factors(rows))
 
     def could_stay(self, body: int) -> bool:
-        """Whether other rates that satisfy all rows leave a body (spec's order) unchanged; called before the rates are
-        fitted.
+        """Return whether other rates that satisfy all rows leave a body (spec's order) unchanged; called before the
+        rates are fitted.
         """
         spread, hard, soft = self._rate_conditions()
         k, half = self.bodies.index(body), len(spread) // 2
@@ -176,7 +176,7 @@ class CoupledFit:
         return step * min(1.0, TURN / turn) if turn > 0.0 else step
 
     def _largest_gap(self, measured: MeasuredState, start: Assembly) -> float:
-        """The largest gap of all rows and held values, by the size, or rad."""
+        """Return the largest gap of all rows and held values, by the size, or rad."""
         rows = np.concatenate([self.start_rows.joints, self.start_rows.poses])
         still = np.zeros((len(start.position), 3, 0))
         nothing = FreedomMotion(still, still, np.zeros((len(measured.gaps), 0)), start.position)

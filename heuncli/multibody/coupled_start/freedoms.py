@@ -19,9 +19,8 @@ import numpy as np
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.model import Assembly, Directed, Joint
 from heuncli.multibody.response import MeasuredState, make_unsettled_workspace, measure_state
-from heuncli.multibody.tree.idle_spins import IdleSpin
 from heuncli.multibody.tree.layout import Layout, rate_indices
-from heuncli.multibody.tree.prepare import PreparedScene
+from heuncli.multibody.tree.prepare import IdleSpin, PreparedScene
 from heuncli.multibody.tree.starts import axial_angle, body_state
 from heuncli.results.results import Array, Indices
 from heuncli.scene.shapes.rotations import cross_rows, quaternion_from_vector, quaternion_product, vector_from_rotation
@@ -243,7 +242,7 @@ def _turn_since_start(joint: Joint, start: Assembly, present: Assembly) -> float
 
 
 def _travel(joint: Joint, assembly: Assembly) -> float:
-    """The travel of a joint; along a path on the branch that is held."""
+    """Return the travel of a joint; along a path on the branch that is held."""
     xa, Ra, _, _ = body_state(assembly, joint.a)
     xb, Rb, _, _ = body_state(assembly, joint.b)
     place = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p

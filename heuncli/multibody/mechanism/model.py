@@ -8,16 +8,20 @@ use the classes of the spec (scene/file_format/models.py); its kinds of loads be
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
+from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.multibody.mechanism.couplings import Coupling
-from heuncli.multibody.mechanism.loads import JointLoad, Load, PairLoad, RopeLoad, ThreadLoad
+from heuncli.multibody.mechanism.loads import GROUND, JointLoad, Load, PairLoad, RopeLoad, ThreadLoad
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format import loads, models
@@ -34,13 +38,6 @@ else:  # such an alias would slow each of its records down by 3 us
     Directed, Body, Joint, Stop = models.FramedVector, models.Body, models.Joint, models.Stop
     Blow = models.AppliedImpulse
     Elastic = loads.Elastic
-import math
-
-import numpy as np
-
-from heuncli.base import tolerances
-from heuncli.multibody.mechanism.loads import GROUND
-from heuncli.results.results import Array
 
 
 class Law(NamedTuple):

@@ -80,7 +80,9 @@ class ReducedScene:
 
 
 def has_constant_velocity_joint(scene: PreparedScene) -> bool:
-    """Whether the scene has a constant-velocity joint, which may bend in any plane, so that the scene is not flat."""
+    """Return whether the scene has a constant-velocity joint, which may bend in any plane, so that the scene is not
+    flat.
+    """
     return any(JOINTS[joint.kind].is_constant_velocity for joint in scene.mechanism.joints)
 
 

@@ -143,7 +143,7 @@ def find_movable_bodies(layout: Layout) -> Mask:
 
 
 def is_moved_by_drive(joint: Joint) -> bool:
-    """Whether a joint has a drive whose value changes."""
+    """Return whether a joint has a drive whose value changes."""
     return joint.drive is not None and joint.drive.value.constant is None
 
 
@@ -219,7 +219,7 @@ def island_freedoms(layout: Layout, island: Island, i: int) -> list[int]:
 
 
 def is_permanent(layout: Layout, r: int, is_held: Mask) -> bool:
-    """Whether a closure row is between held bodies and the ground, and constrains them at all times.
+    """Return whether a closure row is between held bodies and the ground, and constrains them at all times.
 
     Rows of couplings do not count: they depend on coordinates, or roll.
     """

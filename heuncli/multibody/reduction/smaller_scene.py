@@ -72,11 +72,11 @@ class BodyParts:
         return GROUND_PLACEMENT if body == GROUND else self.placements[body]
 
     def is_internal(self, joint: Joint) -> bool:
-        """Whether both ends of a joint are points of one body."""
+        """Return whether both ends of a joint are points of one body."""
         return self.get_placement(joint.a).body == self.get_placement(joint.b).body
 
     def contains_coupling(self, coupling: Coupling) -> bool:
-        """Whether all bodies of a coupling are parts of one body."""
+        """Return whether all bodies of a coupling are parts of one body."""
         return len({self.get_placement(i).body for i in coupling.bodies_and_ground}) == 1
 
 

@@ -9,7 +9,7 @@ about the axis may replace it, with the spin that has the same angular momentum:
 
 A thin wire gets a moment of inertia large enough against the rounding of moments about its axis, and a fast top turns
 no faster than it nutates. Where there is no inertia about the axis at all there is no spin, which
-multibody/tree/idle_spins.py handles. Not reduced: bodies with loads that turn with them (a force in their axes),
+multibody/tree/prepare.py handles. Not reduced: bodies with loads that turn with them (a force in their axes),
 couples, pins, dampers in their balls.
 """
 
@@ -93,7 +93,7 @@ def format_explanation(body: Body, spin: Spin) -> str:
 
 
 def added_inertia(spin: Spin) -> Array:
-    """The inertia added to a body about its axis, body axes."""
+    """Return the inertia added to a body about its axis, body axes."""
     return np.asarray((spin.replacement_moment - spin.moment) * np.outer(spin.axis, spin.axis))
 
 
@@ -117,7 +117,7 @@ def transfer_spins(layout: Layout, spins: Mapping[int, Spin], sense: float, time
     out = np.array(states, dtype=float)
     for i, spin in spins.items():
         row = layout.bodies[layout.place[i]]
-        q, omega = (out[:, row[at] : row[at] + n] for at, n in (("attitude_at", 4), ("rate_at", 3)))
+        q, omega = (out[:, row[name] : row[name] + n] for name, n in (("attitude_at", 4), ("rate_at", 3)))
         n = rotate_vector(q, spin.axis)
         rate = spin.rate if sense > 0.0 else spin.rate - spin.rate_reduction
         omega += (rate - np.sum(omega * n, axis=1, keepdims=True)) * n
@@ -174,7 +174,7 @@ def spin_rate(layout: Layout, i: int, axis: Array) -> float:
 
 
 def is_axisymmetric(body: Body, arms: Array, axis: Array, size: float, rounding: float) -> bool:
-    """Whether a body is symmetric about an axis on which all points lie, arms (n, 3) from its centre; body axes."""
+    """Return whether a body is symmetric about an axis that has all points; arms (n, 3) from its centre, body axes."""
     moment = float(axis @ body.inertia @ axis)
     across = 0.5 * (float(np.trace(body.inertia)) - moment)
     symmetric_inertia = across * np.eye(3) + (moment - across) * np.outer(axis, axis)

@@ -130,7 +130,7 @@ def merge_parts(mechanism: Mechanism, parts: BodyParts, root: int) -> Body:
 
 
 def placed_pseudo_inertia(body: Body, part: BodyPlacement, reference_point: Array) -> Array:
-    """The pseudo-inertia of a part about a point of the merged body, in its axes."""
+    """Return the pseudo-inertia of a part about a point of the merged body, in its axes."""
     centre = part.transform_point(body.center) - reference_point
     return pseudo_inertia(body.mass, centre, part.R @ body.inertia @ part.R.T)
 

@@ -174,7 +174,7 @@ def find_fault(layout: Layout, cam: Coupling) -> Problem | None:
 
 
 def is_tilted(layout: Layout, cam: Coupling) -> bool:
-    """Whether a flat face is not parallel to its disc's axis."""
+    """Return whether a flat face is not parallel to its disc's axis."""
     part = cam.rows[0].parts[0]
     assert part.cam is not None
     if part.cam.face is None:

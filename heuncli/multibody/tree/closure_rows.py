@@ -297,11 +297,11 @@ class ClosureRows:
             kernel.Counter(
                 a=self.tree.in_tree(joints[k].a),
                 b=self.tree.in_tree(joints[k].b),
-                state_at=at,
+                state_at=state_index,
                 axis=joints[k].axis,
                 track=1 + owners.index(k) if joints[k].path is not None else 0,
             )
-            for k, at in self.counters.items()
+            for k, state_index in self.counters.items()
         ]
 
 

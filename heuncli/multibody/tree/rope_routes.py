@@ -163,7 +163,7 @@ def find_pins(mechanism: Mechanism, body: int, point: Array) -> list[tuple[int, 
 
 
 def is_parallel(a: Array, b: Array) -> bool:
-    """Whether two unit vectors are along one line."""
+    """Return whether two unit vectors are along one line."""
     off = np.cross(a, b)
     return bool(off @ off <= tolerances.ON_AXIS**2)
 
@@ -246,13 +246,13 @@ def find_route(mechanism: Mechanism, name: str, points: list[RopePoint]) -> Rope
         sides = list(known)
         for k, side in zip(unnamed, trial, strict=True):
             sides[k] = side
-        way = make_route(points, tuple(sides))
-        if way is not None and all(matches_side(points, way, k, vertical) for k in unnamed):
-            routes.append(way)
+        route = make_route(points, tuple(sides))
+        if route is not None and all(matches_side(points, route, k, vertical) for k in unnamed):
+            routes.append(route)
     if not routes:
         message = "no route exists for the given sides: one of the sheaves blocks a strand"
         raise rope_error(name, None, "rope-side", message, f"side: {SIDES}")
-    routes.sort(key=lambda way: way.length)
+    routes.sort(key=lambda route: route.length)
     if len(routes) > 1 and routes[1].length - routes[0].length <= tolerances.OPEN_GAP * routes[0].length:
         k = next(k for k in unnamed if routes[0].sides[k] != routes[1].sides[k])
         message = "no side is given for this sheave, and both routes are equally short"
@@ -294,7 +294,7 @@ def require_directions(name: str, points: Sequence[RopePoint]) -> None:
 
 
 def vertical_direction(mechanism: Mechanism) -> Array:
-    """The upward direction: against gravity; without it y in a planar scene, else z."""
+    """Return the upward direction: against gravity; without it y in a planar scene, else z."""
     g = mechanism.gravity
     if float(g @ g) > 0.0:
         return normalize(-g)
@@ -302,7 +302,7 @@ def vertical_direction(mechanism: Mechanism) -> Array:
 
 
 def matches_side(points: Sequence[RopePoint], route: RopeRoute, k: int, vertical: Array) -> bool:
-    """Whether the rope runs over, or under, a sheave as given."""
+    """Return whether the rope runs over, or under, a sheave as given."""
     side = points[k].passage.side
     if side not in ("over", "under"):
         return True

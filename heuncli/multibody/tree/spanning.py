@@ -163,7 +163,7 @@ def find_transmitting_bodies(mechanism: Mechanism, null: Mapping[int, Array]) ->
 
 
 def _leaves_spin_free(joint: Joint, is_to: bool, null: Array) -> bool:
-    """Whether a joint leaves one of its bodies free to turn about an axis without inertia."""
+    """Return whether a joint leaves one of its bodies free to turn about an axis without inertia."""
     kind = JOINTS[joint.kind]
     if kind.is_ball or len(null) > 1:
         return kind.is_ball

@@ -56,7 +56,7 @@ class PresetTree:
 
 
 def point_distance(start: Assembly, joint: Joint) -> float:
-    """The distance of a joint's two points at the start [m]."""
+    """Return the distance of a joint's two points at the start [m]."""
     xa, Ra, _, _ = body_state(start, joint.a)
     xb, Rb, _, _ = body_state(start, joint.b)
     D = xb + Rb @ joint.q - xa - Ra @ joint.p

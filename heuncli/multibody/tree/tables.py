@@ -75,21 +75,27 @@ def _solution_dtype(vectors: str, numbers: str = "") -> np.dtype[np.void]:
     return np.dtype([*parts, *((n, np.float64, ()) for n in numbers.split())])
 
 
-# World axes; r, v, a (less g), joint_moment: of and about the body's joint point; joint loads ON the body.
-BODY_SOLUTION = _solution_dtype("R r omega v alpha a joint_moment joint_force")
-FREEDOM_SOLUTION = _solution_dtype("", "q u udot drive")
-# force, moment: ON b, at the point `at` of b; `from_at`: its counterpart on a; strain: of a bushing, in its axes;
-# reserve: what a friction that sticks could take more.
-LOAD_SOLUTION = _solution_dtype("force moment at from_at strain", "value span rate power reserve potential")
-# f, m: ON b for a multiplier of 1, about the `to` point; closed: whether it takes part, as contacts do that are not
-# open; rate, acceleration: of its gap; terms: the size of those that its acceleration is the sum of.
-CLOSURE_SOLUTION = _solution_dtype("f m", "multiplier doubt gap chosen closed rate acceleration terms")
-# f, m: ON b for the row's multiplier of 1, about Q; on_a, on_b: where they enter the bodies.
-PART_SOLUTION = _solution_dtype("f m Q on_a on_b", "gap")
-STATE_SOLUTION = _solution_dtype("", "gap idle pivot residual")
-# Of one column: of loads, of a cause, or of a blow (jumps of velocities, impulses of the joints).
-COLUMN_BODY = _solution_dtype("alpha a joint_moment joint_force")
-COLUMN_FREEDOM = _solution_dtype("", "udot drive")
+# The parts of the solution at a state, in their order.
+#
+# bodies: world axes; r, v, a (less g), joint_moment: of and about the body's joint point; joint loads ON the body
+# loads: force, moment ON b, at the point `at` of b; `from_at`: its counterpart on a; strain: of a bushing, in its axes;
+#     reserve: what a friction that sticks could take more
+# rows: f, m ON b for a multiplier of 1, about the `to` point; closed: whether it takes part, as contacts do that are
+#     not open; rate, acceleration: of its gap; terms: the size of those that its acceleration is the sum of
+# parts: f, m ON b for the row's multiplier of 1, about Q; on_a, on_b: where they enter the bodies
+SOLUTION_PARTS = {
+    "bodies": _solution_dtype("R r omega v alpha a joint_moment joint_force"),
+    "freedoms": _solution_dtype("", "q u udot drive"),
+    "loads": _solution_dtype("force moment at from_at strain", "value span rate power reserve potential"),
+    "rows": _solution_dtype("f m", "multiplier doubt gap chosen closed rate acceleration terms"),
+    "parts": _solution_dtype("f m Q on_a on_b", "gap"),
+    "whole": _solution_dtype("", "gap idle pivot residual"),
+}
+# Of one column: of loads, of a cause, or of a blow (jumps of velocities, impulses of the joints); multipliers follow.
+COLUMN_PARTS = {
+    "bodies": _solution_dtype("alpha a joint_moment joint_force"),
+    "freedoms": _solution_dtype("", "udot drive"),
+}
 
 
 def split_parts(flat: Array, sizes: Iterable[tuple[np.dtype[np.void], int]]) -> list[Table]:
@@ -123,7 +129,7 @@ TILTS = {"xz": 0.0, "yz": 0.0, "zx": 0.0, "zy": 0.0, "zz": 1.0}  # of an attitud
 
 
 def moves_in_plane(bodies: Table, freedoms: Table) -> bool:
-    """Whether all bodies only turn about z and shift across it, exactly and at all times.
+    """Return whether all bodies only turn about z and shift across it, exactly and at all times.
 
     Then velocities have three numbers, and components normal to the plane do no work: heights of points, products of
     inertia with z and forces along z load joints and move nothing.

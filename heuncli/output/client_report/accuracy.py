@@ -32,8 +32,7 @@ from heuncli.output.tables.run_description import make_heading
 from heuncli.results.path_words import error_kind_of_path
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_path, parse_path
-from heuncli.study.quantities.digits import OPEN
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.quantities.digits import OPEN, ReaderStyle, choose_reader_style
 from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.version import VERSION
 

@@ -43,7 +43,7 @@ from heuncli.output.tables.event_tables import (
 )
 from heuncli.output.tables.nouns import format_count
 from heuncli.study.quantities.captions import describe_object, describe_path, describe_sentence
-from heuncli.study.quantities.reader_numbers import choose_reader_style
+from heuncli.study.quantities.digits import choose_reader_style
 
 ASSUMPTIONS = (
     "Bodies are rigid. Joints are ideal, without clearance, compliance or friction unless the model states otherwise; "

@@ -13,8 +13,7 @@ from heuncli.output.documents.document import append_unit
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot
 from heuncli.results.results import Array, CutPosition
-from heuncli.study.quantities.digits import OPEN, UNKNOWN
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.quantities.digits import OPEN, UNKNOWN, ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -37,8 +37,7 @@ from heuncli.results.results import Array
 from heuncli.results.results_schema import XYZ
 from heuncli.scene.file_format.loads import Bushing
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.digits import OPEN
-from heuncli.study.quantities.reader_numbers import choose_reader_style
+from heuncli.study.quantities.digits import OPEN, choose_reader_style
 
 MAX_CASES = 4  # with a row each for a point; if there are more, the governing one
 MAX_POINTS = 40

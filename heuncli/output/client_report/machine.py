@@ -29,7 +29,7 @@ from heuncli.results.results_schema import XYZ
 from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.file_format.couplings import End
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.reader_numbers import choose_reader_style
+from heuncli.study.quantities.digits import choose_reader_style
 
 SHEET_WIDTH = 672.0  # pixels: the width of an A4 sheet without its margins
 HALF_WIDTH = 330.0

@@ -26,7 +26,7 @@ from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.compose.recovery import Recovery
-from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.quantities.digits import ReaderStyle
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 

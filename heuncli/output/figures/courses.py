@@ -27,8 +27,7 @@ from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries import curves
-from heuncli.study.queries.curve_sampling import MAX_SEARCH_INSTANTS, choose_curve_instants
-from heuncli.study.queries.curves import sample_numbers
+from heuncli.study.queries.curves import MAX_SEARCH_INSTANTS, choose_curve_instants, sample_numbers
 from heuncli.study.queries.measure import NotOneNumber, Peak, find_peak, make_several_error
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study

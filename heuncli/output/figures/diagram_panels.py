@@ -13,8 +13,7 @@ from heuncli.output.drawing.figure import Band, Blank, Item, Panel, Scaling, Spo
 from heuncli.output.drawing.style import HATCH_WIDTH, LEFT, RIGHT, SIGN_SIZE, WIDTH
 from heuncli.output.figures.curves import choose_number_style, is_visible
 from heuncli.results.results import Array, Mask
-from heuncli.study.quantities.digits import OPEN
-from heuncli.study.quantities.reader_numbers import ReaderStyle
+from heuncli.study.quantities.digits import OPEN, ReaderStyle
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.bar_curves import BarLine, BarRange, Extreme
 from heuncli.study.queries.bars import WholeBar
@@ -205,7 +204,7 @@ def _mark_extremes(bar_curves: BarCurves, quantity: str, scales: DisplayScales) 
     number_style = scales.quantity._replace(error=scales.value * error)
     load_range = bar_curves.ranges.get(quantity)
     is_constant = high.value - low.value <= error
-    rounding = bar.certain.rounding_of(bar.find_unit(quantity))
+    rounding = bar.stated_errors.rounding_of(bar.find_unit(quantity))
     least = max(error, rounding, MIN_MARKED * bar_curves.find_magnitude(quantity))
     for extreme in (high,) if is_constant else (high, low):
         if not abs(extreme.value) > least:

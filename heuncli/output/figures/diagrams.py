@@ -37,9 +37,8 @@ from heuncli.output.figures.courses import FigureSource, make_title, require_cla
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
 from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.study.quantities.captions import WORDS, describe_object
-from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, format_error
+from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, choose_reader_style, format_error
 from heuncli.study.quantities.labels import make_labels
-from heuncli.study.quantities.reader_numbers import choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.bar_curves import BarAttachment, BarExtremes
 from heuncli.study.queries.bars import WholeBar
@@ -174,7 +173,7 @@ def _classify(curves: BarCurves, quantity: str) -> str:
     bar, magnitude = curves.bar, curves.find_magnitude(quantity)
     if curves.is_partly_open(quantity):
         return "some"
-    if magnitude <= bar.certain.rounding_of(bar.find_unit(quantity)) or magnitude == 0.0:
+    if magnitude <= bar.stated_errors.rounding_of(bar.find_unit(quantity)) or magnitude == 0.0:
         return "zero"
     if not curves.is_zero(quantity):
         return "some"

@@ -40,7 +40,7 @@ from heuncli.output.figures.curves import (
 )
 from heuncli.results.results import Array
 from heuncli.study.compose.warnings import has_smoothed_friction
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
+from heuncli.study.quantities.digits import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.study.queries.study import make_friction_warning

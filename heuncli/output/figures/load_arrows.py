@@ -25,8 +25,8 @@ from heuncli.output.figures.posed_machine import to_pair
 from heuncli.output.machine_geometry.views import SceneView
 from heuncli.results.results import Array
 from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.digits import choose_prefix
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import choose_prefix
 from heuncli.study.quantities.table_units import Units
 
 LONGEST_ARROW = 0.2  # share of the figure's larger side: largest force

@@ -27,9 +27,8 @@ from heuncli.output.figures.windows import clip_strokes
 from heuncli.results.results import Array
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.digits import UNKNOWN
+from heuncli.study.quantities.digits import UNKNOWN, ReaderStyle
 from heuncli.study.quantities.labels import make_labels
-from heuncli.study.quantities.reader_numbers import ReaderStyle
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.search.extremes import find_jump_sides
 

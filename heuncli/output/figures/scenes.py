@@ -32,8 +32,8 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.setup import build_with_cuts
 from heuncli.study.quantities.captions import describe_object
+from heuncli.study.quantities.digits import choose_prefix
 from heuncli.study.quantities.labels import Labels, make_labels
-from heuncli.study.quantities.reader_numbers import choose_prefix
 from heuncli.study.quantities.table_units import Units
 
 HEIGHT = 560.0  # pixels, maximum

@@ -43,8 +43,8 @@ from heuncli.output.figures.sweep_tables import (
 )
 from heuncli.results.results import Array, Indices
 from heuncli.study.quantities.captions import describe_path
+from heuncli.study.quantities.digits import ReaderStyle
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import ReaderStyle
 from heuncli.study.quantities.table_units import Units
 
 MAX_MARKED = 40  # points of a curve; with more they have no marks

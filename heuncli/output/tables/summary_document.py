@@ -21,8 +21,8 @@ from heuncli.output.tables.summary_rows import DIRECTION_DECIMALS, KINDS, Summar
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.cut_runs import collect_cut_series
+from heuncli.study.quantities.digits import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import ReaderStyle, choose_reader_style
 from heuncli.study.queries.study import Study
 from heuncli.version import VERSION
 

@@ -2,7 +2,7 @@
 
 A row is one quantity over the frames: a number, or a vector with its components, with its path, all digits, and the
 style to show them in. It is shown as a reader needs it, with four significant digits of the largest number of its
-object (study/quantities/reader_numbers.py), and fewer where the stated error of the run does not justify them. Values
+object (study/quantities/digits.py), and fewer where the stated error of the run does not justify them. Values
 are in SI; each row also has its display unit.
 """
 
@@ -30,9 +30,8 @@ from heuncli.study.quantities.channels import (
     iter_impulse_channels,
     make_section_channels,
 )
-from heuncli.study.quantities.digits import StatedErrors, Style, largest_magnitude
+from heuncli.study.quantities.digits import DIGITS, StatedErrors, Style, choose_reader_style, largest_magnitude
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.reader_numbers import DIGITS, choose_reader_style
 from heuncli.study.queries.study import Study
 
 ZERO_ROWS_PREFIX = "All values 0: "

@@ -200,6 +200,11 @@ def cross_components(a: Array, b: Array) -> Array:
     )
 
 
+def cross_first_axis(a: Array, b: Array) -> Array:
+    """Compute a x b, (3, ...)."""
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
 def rotate_components(R: Array, vectors: Array) -> Array:
     """Compute R v, (n, 3, n_t)."""
     products = R * vectors[:, None]

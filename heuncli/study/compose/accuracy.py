@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
-from heuncli.loads.kinetostatics.balance import balance_residual
-from heuncli.loads.kinetostatics.energy import energy_drift, power_imbalance, work_scale
+from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, power_imbalance, work_scale
 from heuncli.motion.integration.contacts.impulses import free_impulse_energy
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Accuracy, Array, Mask, Results
@@ -65,9 +64,9 @@ class Balance:
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
         if self.of_energy:
             self.add_energy(recovery)
-        self.gap = larger(self.gap, float(recovery.solutions.gap.max(initial=0.0)))
+        self.gap = take_larger(self.gap, float(recovery.solutions.gap.max(initial=0.0)))
         residual = balance_residual(mechanism, recovery.states, recovery.inertia, recovery.actions, size)
-        self.residual = larger(self.residual, residual)
+        self.residual = take_larger(self.residual, residual)
         return self
 
     def add_energy(self, recovery: Recovery) -> None:
@@ -77,15 +76,17 @@ class Balance:
             power_error = power_imbalance(
                 layout, recovery.states, recovery.loads, joints, recovery.couplings, self.span
             )
-            self.imbalance = larger(self.imbalance, power_error)
+            self.imbalance = take_larger(self.imbalance, power_error)
             acting = [(largest_magnitude(x.force), largest_magnitude(x.moment)) for x in recovery.law_actions]
             largest_so_far = self.loads or [(0.0, 0.0)] * len(acting)
-            self.loads = [(larger(F, f), larger(M, m)) for (F, M), (f, m) in zip(largest_so_far, acting, strict=True)]
+            self.loads = [
+                (take_larger(F, f), take_larger(M, m)) for (F, M), (f, m) in zip(largest_so_far, acting, strict=True)
+            ]
         energy = recovery.energy
         total = energy["kinetic"] + energy["potential"] - energy["work"]
         self.start = float(total[0]) if self.start is None else self.start
-        self.change = larger(self.change, largest_magnitude(total - self.start))
-        self.kinetic = larger(self.kinetic, float(energy["kinetic"].max(initial=0.0)))
+        self.change = take_larger(self.change, largest_magnitude(total - self.start))
+        self.kinetic = take_larger(self.kinetic, float(energy["kinetic"].max(initial=0.0)))
 
     def to_accuracy(self, kinetic: float = 0.0, impulse_energy: float = 0.0) -> Accuracy:
         """Return the part of the block `accuracy` that instants decide.
@@ -106,13 +107,13 @@ class Balance:
         return found | {"constraint_gap": self.gap, "balance_residual": self.residual}
 
 
-def larger(so_far: float, value: float) -> float:
-    """Return the larger of the two; nan stays nan."""
+def take_larger(so_far: float, value: float) -> float:
+    """Return the take_larger of the two; nan stays nan."""
     return float(np.maximum(so_far, value))
 
 
 def largest_magnitude(values: Array) -> float:
-    """The largest magnitude."""
+    """Return the largest magnitude."""
     return float(np.abs(values).max(initial=0.0))
 
 
@@ -150,7 +151,7 @@ def require_finite_blocks(blocks: Mapping[str, Any], times: Array, is_known: Mas
 
 
 def is_all_finite(node: Any) -> bool:
-    """Whether all numbers below a node of the results are finite, as they are where nothing is indeterminate."""
+    """Return whether all numbers below a node of the results are finite, as they are where nothing is indeterminate."""
     if isinstance(node, np.ndarray):
         return node.dtype.kind != "f" or bool(np.isfinite(node).all())
     if isinstance(node, float):
@@ -173,7 +174,7 @@ def iter_numbers(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> 
 
 
 def is_wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, Any], is_known: Mask) -> bool:
-    """Whether a number is neither finite nor indeterminate."""
+    """Return whether a number is neither finite nor indeterminate."""
     if isinstance(value, float) and math.isfinite(value):
         return False
     array = np.asarray(value)

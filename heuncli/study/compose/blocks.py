@@ -18,11 +18,11 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, list_whole_joint_actions
+from heuncli.loads.kinetostatics.balance import system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, point_motions
 from heuncli.loads.kinetostatics.coupling_numbers import make_coupling_block
 from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_actions
-from heuncli.loads.kinetostatics.energy import system_vector
 from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, foundation_block, make_element_keys
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_block
 from heuncli.multibody.mechanism.loads import GROUND, BushingLoad, JointLoad, PairLoad

@@ -51,8 +51,8 @@ ERROR_KINDS = (  # of estimated errors, the block they are of, and its numbers b
 )
 
 
-def make_unloaded_setup(setup: Setup) -> Setup:
-    """Return the setup without weight and loads, as an impulse is solved; its cuts have no stresses."""
+def make_impulse_setup(setup: Setup) -> Setup:
+    """Return the setup that an impulse is solved with: without weight and loads, and without stresses of its cuts."""
     scene = setup.scene
     joints = tuple(replace(joint, bearing=None) for joint in scene.mechanism.joints)
     mechanism = replace(scene.mechanism, gravity=np.zeros(3), loads=(), joints=joints)
@@ -148,7 +148,7 @@ class Impulses:
 
     def with_cuts(self, setup: Setup) -> Impulses:
         """Return the impulses with the cuts of another setup of the same scene."""
-        rest_setup = make_unloaded_setup(setup)
+        rest_setup = make_impulse_setup(setup)
         return replace(self, setup=rest_setup, recovery=replace(self.recovery, setup=rest_setup))
 
     def make_block(self, k: int) -> Block:
@@ -181,7 +181,7 @@ def make_impulses(setup: Setup, history: History, least_norm: bool, by_cause: bo
 
 def make_run_impulses(setup: Setup, jumps: tuple[ImpulseEvent, ...], least_norm: bool, by_cause: bool) -> Impulses:
     """Return the impulses of one run."""
-    rest_setup = make_unloaded_setup(setup)
+    rest_setup = make_impulse_setup(setup)
     solutions = concatenate_solutions([make_rest_solution(jump) for jump in jumps])
     given_actions = tuple(make_actions(setup.scene.mechanism, jumps))
     size = rest_setup.scene.layout.size
@@ -242,7 +242,7 @@ def select_causes(block: Block, causes: Sequence[str]) -> Block:
 
 
 def is_indeterminate(block: Block, path: str) -> bool:
-    """Whether a component named by its path within a block is indeterminate: nan."""
+    """Return whether a component named by its path within a block is indeterminate: nan."""
     *names, last = path.split(".")
     value: Any = block
     for name in names if last in {*"xyz"} else (*names, last):
@@ -266,7 +266,7 @@ def estimate_errors(impulses_of_run: Impulses, others: Sequence[Impulses]) -> di
         for kind, block, units in ERROR_KINDS:
             for unit, names in units.items():
                 differences = [
-                    largest_difference(values, check_values, matched_pairs)
+                    find_largest_difference(values, check_values, matched_pairs)
                     for other, matched_pairs in zip(others, matches, strict=True)
                     for values, check_values in find_array_pairs(
                         select_part(impulses_of_run.all_blocks.get(block, {})),
@@ -290,12 +290,12 @@ def select_shares(block: Block) -> Block:
 
 
 def are_shares(name: str, value: Any) -> bool:
-    """Whether these are blocks by cause, and not a joint of that name."""
+    """Return whether these are blocks by cause, and not a joint of that name."""
     return name == SHARES and isinstance(value, dict) and all(isinstance(own, dict) for own in value.values())
 
 
-def largest_difference(values: Array, check_values: Array, matched_pairs: Sequence[tuple[int, int]]) -> float:
-    """The largest difference of numbers over the impulses that both runs have; of others the number itself."""
+def find_largest_difference(values: Array, check_values: Array, matched_pairs: Sequence[tuple[int, int]]) -> float:
+    """Return the largest difference of numbers over the impulses that both runs have; of others the number itself."""
     reference = np.zeros_like(values)
     for i, k in matched_pairs:
         reference[i] = check_values[k]

@@ -19,7 +19,7 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
-from heuncli.loads.kinetostatics.balance import find_load_magnitudes, find_magnitudes, inertia_scale
+from heuncli.loads.kinetostatics.balance import energy_block, find_load_magnitudes, find_magnitudes, inertia_scale
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.couplings import (
     CouplingLoads,
@@ -27,7 +27,6 @@ from heuncli.loads.kinetostatics.couplings import (
     list_coupling_actions,
     list_rope_actions,
 )
-from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, select_instants
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
@@ -72,7 +71,7 @@ class Recovery:
 
     def with_cuts(self, setup: Setup) -> Recovery:
         """Return the same with the cuts of another setup; what was computed stays."""
-        return self._share_computed(replace(self, setup=setup), INDEPENDENT_OF_CUTS)
+        return self._use_computed(replace(self, setup=setup), INDEPENDENT_OF_CUTS)
 
     def compute_loads(self) -> None:
         """Compute the loads that all cuts need, so that recoveries with other cuts share them."""
@@ -85,9 +84,9 @@ class Recovery:
 
     def without_indeterminacy_search(self) -> Recovery:
         """Return the same without a search for indeterminate components; what was computed stays."""
-        return self._share_computed(replace(self, skips_indeterminacy_search=True), INDEPENDENT_OF_VERDICTS)
+        return self._use_computed(replace(self, skips_indeterminacy_search=True), INDEPENDENT_OF_VERDICTS)
 
-    def _share_computed(self, other: Recovery, names: frozenset[str]) -> Recovery:
+    def _use_computed(self, other: Recovery, names: frozenset[str]) -> Recovery:
         other.__dict__.update({name: value for name, value in self.__dict__.items() if name in names})
         return other
 
@@ -194,14 +193,16 @@ class Recovery:
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
         # hardly any scene needs it
-        from heuncli.motion.integration.diagnosis.ambiguous_laws import separation_velocity
+        from heuncli.motion.integration.diagnosis.ambiguous_laws import find_separation_velocity
 
         layout, recovered = self.setup.scene.layout, self.solutions
         return [
             replace(
                 own,
                 rate=np.where(
-                    own.length == 0.0, vector_magnitudes(separation_velocity(layout, own.load, recovered)), own.rate
+                    own.length == 0.0,
+                    compute_vector_magnitudes(find_separation_velocity(layout, own.load, recovered)),
+                    own.rate,
                 ),
             )
             if isinstance(own.load, PairLoad)
@@ -306,8 +307,8 @@ class Recovery:
         return self.decided.remaining_self_stress if self.decided is not None else None
 
 
-def vector_magnitudes(velocities: Array) -> Array:
-    """The magnitudes of vectors (n_t, 3)."""
+def compute_vector_magnitudes(velocities: Array) -> Array:
+    """Return the magnitudes of vectors (n_t, 3)."""
     return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
 
 

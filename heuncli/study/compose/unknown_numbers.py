@@ -93,7 +93,7 @@ def make_blocks_without_unknown(
     )
     unknown = np.zeros(len(close_instants), dtype=bool)
     groups = group_leaves(blocks, moved_blocks, close_instants)
-    scales = find_largest_by_kind(groups, typical_sizes(recovery, close_instants))
+    scales = find_largest_by_kind(groups, estimate_typical_sizes(recovery, close_instants))
     left_out = (
         find_left_out_rows(recovery, close_instants)
         if reports & RANK_REPORTS
@@ -191,24 +191,25 @@ def find_largest_by_kind(groups: Sequence[LeafGroup], minimum_by_unit: Mapping[s
     """
     found: dict[PathAndUnit, Array] = {}
     for group in groups:
-        most = largest_magnitudes(np.maximum(np.abs(group.values) - group.errors, 0.0))
+        most = find_largest_magnitudes(np.maximum(np.abs(group.values) - group.errors, 0.0))
         found[group.kind] = np.maximum(found.get(group.kind, minimum_by_unit.get(group.kind[1], 0.0)), most)
     return found
 
 
-def typical_sizes(recovery: Recovery, close_instants: Indices) -> dict[str, Array]:
-    """The typical size of numbers, by unit, at some instants of a motion under its weight, applied loads and speed,
-    (n,).
+def estimate_typical_sizes(recovery: Recovery, close_instants: Indices) -> dict[str, Array]:
+    """Return the typical size of numbers, by unit, at some instants of a motion under its weight, applied loads and
+    speed, (n,).
 
     Accelerations and reactions are not used: they may be noise there. Numbers far below these sizes count as 0.
     """
     mechanism, states, size = recovery.setup.scene.mechanism, recovery.states, recovery.setup.scene.layout.size
     mass, one = sum(body.mass for body in mechanism.bodies), np.ones(len(close_instants))
     v = np.maximum(
-        largest_magnitudes(states.v_centre[close_instants]), size * largest_magnitudes(states.omega[close_instants])
+        find_largest_magnitudes(states.v_centre[close_instants]),
+        size * find_largest_magnitudes(states.omega[close_instants]),
     )
     load_sizes = [
-        largest_magnitudes(a.force[close_instants]) + largest_magnitudes(a.moment[close_instants]) / size
+        find_largest_magnitudes(a.force[close_instants]) + find_largest_magnitudes(a.moment[close_instants]) / size
         for a in recovery.law_actions
     ]
     a = v * v / size + float(np.linalg.norm(mechanism.gravity)) + sum(load_sizes, 0.0 * one) / mass
@@ -220,8 +221,8 @@ def typical_sizes(recovery: Recovery, close_instants: Indices) -> dict[str, Arra
     }  # fmt: skip
 
 
-def largest_magnitudes(values: Array) -> Array:
-    """The largest magnitude at each instant, (n,); nan does not count."""
+def find_largest_magnitudes(values: Array) -> Array:
+    """Return the largest magnitude at each instant, (n,); nan does not count."""
     found = np.abs(values).reshape(len(values), -1)
     return np.asarray(np.where(np.isfinite(found), found, 0.0).max(axis=1, initial=0.0))
 

@@ -49,7 +49,7 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
         "freedoms": layout.tree_freedoms - (redundancy.active_rows - redundancy.dependent) - scene.undetermined_count,
         "driven": len(mechanism.laws),
         "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": redundancy.generic,
-        "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler_freedoms(mechanism),
+        "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": count_grubler_freedoms(mechanism),
         "chosen": list(scene.start.start_choices), "notes": [],
     }  # fmt: skip
     if scene.start.displaced_bodies:
@@ -87,7 +87,7 @@ def make_model_block(scene: PreparedScene, runner: Runner, method: str, redundan
 
 
 def has_rolling_wheels(mechanism: Mechanism) -> bool:
-    """Whether wheels constrain speeds and not poses."""
+    """Return whether wheels constrain speeds and not poses."""
     return any(row.parts[0].constrains_speed for coupling in mechanism.couplings for row in coupling.rows)
 
 
@@ -117,7 +117,7 @@ def add_rest_sentences(block: Block, sentences: Sequence[str]) -> Block:
     return block | {"rest": list(sentences), "notes": [*sentences, *block["notes"]]} if sentences else block
 
 
-def grubler_freedoms(mechanism: Mechanism) -> int:
+def count_grubler_freedoms(mechanism: Mechanism) -> int:
     """Grübler's count of freedoms: 6 (in the plane 3) per body minus the constraints of joints and drives."""
     kinds = [JOINTS[j.kind] for j in mechanism.joints]
     rows = sum(kind.planar_row_count if mechanism.planar else kind.row_count for kind in kinds)
@@ -142,8 +142,6 @@ def describe_model(scene: PreparedScene, model: Block) -> list[str]:
     if coupled:
         sentences.append(f"coupled: {list_some(coupled)}")
     if any(isinstance(load, ThreadLoad) for load in mechanism.loads):
-        from heuncli.study.model.model_note import describe_threads  # few scenes have them
-
         sentences += describe_threads(mechanism)
     driven = [mechanism.owner_path(law.owner).partition(".")[2] for law in mechanism.laws]
     if driven:
@@ -234,7 +232,7 @@ def end_time(spec: Spec) -> float:
 
 
 def is_smooth(layout: Layout) -> bool:
-    """Whether only jumps in time can end a step early, apart from the step's own error."""
+    """Return whether only jumps in time can end a step early, apart from the step's own error."""
     return not (layout.pack.branch_count or layout.contacts or layout.mechanism.impulses)
 
 
@@ -261,7 +259,7 @@ def describe_stiffness(mechanism: Mechanism) -> str:
 
 def describe_length(layout: Layout, last: float) -> list[str]:
     """Say in a sentence whether the motion is long and conservative, or short; empty if it is neither."""
-    swings = last * typical_rate(layout) / (2.0 * math.pi)
+    swings = last * estimate_typical_rate(layout) / (2.0 * math.pi)
     if swings < 1.0:
         return ["short motion: less than one revolution or oscillation"]
     if swings >= LONG_MOTION and is_conservative(layout):
@@ -275,7 +273,7 @@ def describe_length(layout: Layout, last: float) -> list[str]:
 
 
 def is_conservative(layout: Layout) -> bool:
-    """Whether nothing adds or takes energy: only weight and springs act, without drives, impulses or contacts."""
+    """Return whether nothing adds or takes energy: only weight and springs act; no drives, impulses or contacts."""
     mechanism = layout.mechanism
     is_driven = bool(mechanism.laws)
     return not (is_driven or layout.contacts or mechanism.impulses) and all(
@@ -283,14 +281,14 @@ def is_conservative(layout: Layout) -> bool:
     )
 
 
-def typical_rate(layout: Layout) -> float:
-    """How fast the scene turns, or would swing as a pendulum of its size [rad/s]."""
+def estimate_typical_rate(layout: Layout) -> float:
+    """Return how fast the scene turns, or would swing as a pendulum of its size [rad/s]."""
     gravity = float(np.sqrt(np.sum(np.square(layout.mechanism.gravity))))
-    return max(largest_rate(layout), math.sqrt(gravity / layout.size))
+    return max(find_largest_rate(layout), math.sqrt(gravity / layout.size))
 
 
-def largest_rate(layout: Layout) -> float:
-    """The largest rate at the start; a speed is divided by the scene's size [1/s]."""
+def find_largest_rate(layout: Layout) -> float:
+    """Return the largest rate at the start; a speed is divided by the scene's size [1/s]."""
     y: Array = layout.y0
     rates = [np.abs(y[int(g["rates"]) : int(g["end"])] * layout.weights[int(g["rates"]) : int(g["end"])])
              for k, g in enumerate(layout.tables["groups"]) if k != layout.energy_group]  # fmt: skip

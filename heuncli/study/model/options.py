@@ -2,7 +2,7 @@
 
 Memory is estimated before anything moves. The schema of results gives the count of numbers at an instant; the bytes per
 number on its way to the output, and those of the kernel's solutions, are measured (`MemoryBudget`, SOLUTION_COPIES).
-Where results are composed part by part (study/compose/parts.py), their numbers go to a file, and memory holds the
+Where results are composed part by part (study/compose/results.py), their numbers go to a file, and memory holds the
 states of all instants. The number of steps is unknown beforehand, except that each jump or kink in time ends one.
 """
 
@@ -166,7 +166,7 @@ def truncate_to_two_digits(value: float) -> float:
 
 
 def can_compose_in_parts(setup: Setup) -> bool:
-    """Whether results can be composed for some instants at a time (study/compose/parts.py says where not, and why)."""
+    """Return whether results can be composed in parts (study/compose/results.py says where not, and why)."""
     if setup.method is None or setup.scene.layout.rows or SHARES in setup.selection.reports:
         return False
     return not any(isinstance(condition, ResultCondition) for condition in setup.spec.analysis.conditions)
@@ -197,7 +197,7 @@ def iter_numbers_by_block(setup: Setup) -> Iterator[tuple[str, int]]:
 
 
 def is_in_results(row: Quantity, setup: Setup) -> bool:
-    """Whether the results have a quantity."""
+    """Return whether the results have a quantity."""
     if row.is_words or (is_share(row) and SHARES not in setup.selection.reports):
         return False
     return not row.path.startswith("sections.SECTION.stress.") or any(cuts.properties for cuts in setup.cuts)

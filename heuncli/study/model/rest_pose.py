@@ -48,8 +48,8 @@ MIN_DIFFERENCE = 1e-3  # rad, or parts of the size: smaller differences are not 
 def describe_other_pose(layout: Layout, here: Pose, there: Pose) -> str:
     """Describe the differences of the pose `there` from `here`, the largest first."""
     own_coordinates, other_coordinates = (
-        evaluate_joint_coordinates(layout, at.evaluation, make_body_states(layout, at.evaluation))
-        for at in (here, there)
+        evaluate_joint_coordinates(layout, pose.evaluation, make_body_states(layout, pose.evaluation))
+        for pose in (here, there)
     )
     differences: list[tuple[float, str]] = []
     for joint, values in other_coordinates.items():
@@ -58,7 +58,7 @@ def describe_other_pose(layout: Layout, here: Pose, there: Pose) -> str:
                 value = float(values[name][0])
                 difference = abs(value - float(own_coordinates[joint][name][0])) / (layout.size if unit == "m" else 1.0)
                 differences.append((difference, f"{joint}.{name} = {value:.6g} {unit}"))
-    centres, other_centres = (make_body_states(layout, at.evaluation).centre[0] for at in (here, there))
+    centres, other_centres = (make_body_states(layout, pose.evaluation).centre[0] for pose in (here, there))
     bodies = [body.name for body in layout.mechanism.bodies]
     if max((difference for difference, _ in differences), default=0.0) <= MIN_DIFFERENCE:
         for name, c, d in zip(bodies, centres, other_centres, strict=True):
@@ -144,7 +144,9 @@ def require_no_slip(runner: Runner, state: Array) -> None:
     weights = layout.tables["closures"]["weight"][[layout.contacts[i].row for i in layout.sticking]]
     moved *= weights / layout.size  # an angle, or a way relative to the size
     slipping = [
-        layout.contacts[i].name for i, way in zip(layout.sticking, moved, strict=True) if way > tolerances.AT_LIMIT
+        layout.contacts[i].name
+        for i, displacement in zip(layout.sticking, moved, strict=True)
+        if displacement > tolerances.AT_LIMIT
     ]
     if slipping:
         message = f"{list_some(slipping)} does not hold the start position"

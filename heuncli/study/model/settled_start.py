@@ -38,7 +38,7 @@ def settle_start(
 
     Raises SolveError [no-rest-pose] where there is none, or where a drive moves at the start that is to be at rest.
     """
-    require_drives_at_rest(scene.mechanism, kind)
+    require_startable_laws(scene.mechanism, kind)
     held = hold_scene(scene, kind)
     settled, _, rest = start_at_rest(*make_runner(held, stages), with_time=True)
     if held.layout.spanning != scene.layout.spanning:  # a joint whose rate is given must not be cut
@@ -51,7 +51,7 @@ def settle_start(
     return replace(scene, layout=layout), sentences, rest.warnings
 
 
-def require_drives_at_rest(mechanism: Mechanism, kind: StartKind) -> None:
+def require_startable_laws(mechanism: Mechanism, kind: StartKind) -> None:
     """Raise SolveError [no-rest-pose] for drives that move at a start at rest, and for ropes driven at a rate."""
     problems: list[Problem] = []
     for law in mechanism.laws:

@@ -234,7 +234,7 @@ def select_part(spec: Spec, selection: Selection, reduce: bool) -> tuple[Spec, t
     """Return the requested part of the spec, and a sentence on what is left out."""
     if selection.is_everything:
         return spec, ()
-    from heuncli.study.model.needed_parts import describe_left_out, restrict_spec  # only if not everything is requested
+    from heuncli.study.model.selection import describe_left_out, restrict_spec  # only if not everything is requested
 
     part = restrict_spec(spec, selection, reduce=reduce)
     return part, describe_left_out(spec, part)

@@ -7,6 +7,9 @@ of loads relative to its own largest. To this comes the rounding of the terms th
 Numbers of one family (the components of one vector) share their decimals. A number below the last decimal is `0`: it is
 known to be negligible beside the others. A family whose largest number is rounding is `0`, too. A family whose largest
 number does not exceed its error is `?`: not even its sign is known.
+
+So do the tables of `heun run`. Summaries, reports, pictures and pages show what a reader compares, 24.39 kN: four
+significant digits of a family's largest, a unit by size, an error only where it shows.
 """
 
 from __future__ import annotations
@@ -82,15 +85,15 @@ class StatedErrors(NamedTuple):
     units: Units = DEFAULT_UNITS
 
     def error_of(self, kind: str, unit: str) -> float:
-        """The estimated error of numbers of this kind and unit, at least their rounding."""
+        """Return the estimated error of numbers of this kind and unit, at least their rounding."""
         return max(self.errors.get((kind, unit), 0.0), self.rounding_of(unit))
 
     def rounding_of(self, unit: str) -> float:
-        """The rounding error of numbers of this unit."""
+        """Return the rounding error of numbers of this unit."""
         return self.rounding.get(unit, 0.0)
 
     def find_error(self, channel: Channel) -> float:
-        """The estimated error of a channel's numbers, SI."""
+        """Return the estimated error of a channel's numbers, SI."""
         return self.error_of(channel.error_kind, channel.unit)
 
     def choose_style(self, kind: str, unit: str, scale: float) -> Style:
@@ -111,7 +114,7 @@ def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes)
     }
     for kind in LOADS:
         for error_kind in (kind, f"{kind} {BY_CAUSE}"):
-            errors |= _wrench_errors(error_kind, results.relative_error(kind), scales, magnitudes.size)
+            errors |= _find_wrench_errors(error_kind, results.relative_error(kind), scales, magnitudes.size)
     errors |= magnitudes.errors
     errors |= results.position_errors(magnitudes.size)
     for unit in ("m", "m/s", "m/s²", "rad/s²"):  # where no path has its own measure of travel
@@ -145,18 +148,20 @@ def find_scales(results: Results, labels: Labels, only_kind: str | None = None) 
 
 
 def is_load(kind: str, unit: str) -> bool:
-    """Whether numbers are forces or moments of a kind that has one common error."""
+    """Return whether numbers are forces or moments of a kind that has one common error."""
     return kind in LOADS and unit in ("N", "N·m")
 
 
 def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, kind: str, unit: str) -> float:
     """Return the error of one kind of loads, as `find_stated_errors` gives it without a horizon."""
-    estimates = _wrench_errors(kind, results.relative_error(kind), find_scales(results, labels, kind), magnitudes.size)
+    estimates = _find_wrench_errors(
+        kind, results.relative_error(kind), find_scales(results, labels, kind), magnitudes.size
+    )
     errors = {**estimates, **magnitudes.errors}
     return max(errors[kind, unit], magnitudes.rounding_errors().get(unit, 0.0))
 
 
-def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
+def _find_wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
     """Return the errors of forces and moments of one kind of loads; a force counts as a moment with the scene's size as
     lever.
     """
@@ -167,24 +172,26 @@ def _wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> d
     return errors
 
 
-def add_axis_errors(certain: StatedErrors, results: Results, magnitudes: Magnitudes, unit: str = "N") -> StatedErrors:
+def add_axis_errors(
+    stated_errors: StatedErrors, results: Results, magnitudes: Magnitudes, unit: str = "N"
+) -> StatedErrors:
     """Add the errors of the central axis at the shown instants: it is no more accurate than its force.
 
     direction s/|s|, point s × M / s², pitch s·M / s²: an error of M is one of s on a lever. unit: N·s of impulses.
     """
     if "axis" not in results.foundation:
-        return certain
+        return stated_errors
     axis = results.foundation["axis"]
     force = np.sqrt(np.sum(results.foundation["force"] ** 2, axis=1))[np.isfinite(axis["pitch"])]
-    relative = certain.error_of("foundation", unit) / float(force.min()) if force.size else 0.0
+    relative = stated_errors.error_of("foundation", unit) / float(force.min()) if force.size else 0.0
     lever = magnitudes.size + largest_magnitude(axis["point"]) + largest_magnitude(axis["pitch"])
     bounds = {("axis", "1"): relative, ("axis", "m"): relative * lever}
-    axis_errors = {key: max(bound, certain.errors.get(key, 0.0)) for key, bound in bounds.items()}
-    return certain._replace(errors={**certain.errors, **axis_errors})
+    axis_errors = {key: max(bound, stated_errors.errors.get(key, 0.0)) for key, bound in bounds.items()}
+    return stated_errors._replace(errors={**stated_errors.errors, **axis_errors})
 
 
 def largest_magnitude(values: Array) -> float:
-    """The largest finite magnitude, 0 where there is none."""
+    """Return the largest finite magnitude, 0 where there is none."""
     maximum = float(np.abs(values).max(initial=0.0))
     if math.isfinite(maximum):
         return maximum
@@ -220,11 +227,11 @@ def trim_zeros(texts: Sequence[str]) -> list[str]:
     return [text[: len(text) - cut] if cut and "." in text and "e" not in text else text for text in texts]
 
 
-def format_unclaimed(value: float, unit: str, certain: StatedErrors, text: str) -> str:
+def format_unclaimed(value: float, unit: str, stated_errors: StatedErrors, text: str) -> str:
     """Format a number after the horizon: `?`, unless it is indeterminate or only rounding."""
     if text == OPEN:
         return OPEN
-    return "0" if abs(value) <= certain.rounding_of(unit) else UNKNOWN
+    return "0" if abs(value) <= stated_errors.rounding_of(unit) else UNKNOWN
 
 
 def write_times(times: Sequence[float], span: float) -> list[str]:
@@ -257,3 +264,68 @@ def format_with_error(value: float, error: float) -> str:
     if not SMALL_ALONE <= abs(value) < LARGE_ALONE or last > 0:
         return f"{value:.{lead - last}e}"
     return f"{value:.{-last}f}"
+
+
+READER_DIGITS = 4
+# SI unit -> the units that replace it by size, each with how many of it make one; the first is the smallest.
+PREFIXES: dict[str, tuple[tuple[str, float], ...]] = {
+    "N": (("N", 1.0), ("kN", 1e-3), ("MN", 1e-6)),
+    "N·m": (("N·m", 1.0), ("kN·m", 1e-3), ("MN·m", 1e-6)),
+    "Pa": (("Pa", 1.0), ("kPa", 1e-3), ("MPa", 1e-6)),
+    "m": (("mm", 1e3), ("m", 1.0)),
+    "W": (("W", 1.0), ("kW", 1e-3), ("MW", 1e-6)),
+    "J": (("J", 1.0), ("kJ", 1e-3), ("MJ", 1e-6)),
+}
+FULL_UNIT = 1.0  # the smallest size at which a unit is used
+
+
+class ReaderStyle(NamedTuple):
+    """How the numbers of one family are written for a reader.
+
+    unit: display unit; size: how many of it make one SI unit
+    decimals: of fixed numbers
+    error: of the numbers, in the display unit
+    """
+
+    unit: str
+    size: float
+    decimals: int
+    error: float = 0.0
+
+    def write(self, value: float) -> str:
+        """Format an SI number in the display unit, with U+2212 as minus; 0 below the last decimal."""
+        shown = self.size * value
+        if math.isnan(shown):
+            return OPEN
+        if abs(shown) < 0.5 * 10.0**-self.decimals:
+            return "0"
+        if self.error >= abs(shown):
+            return UNKNOWN
+        return f"{shown:.{max(self.decimals, 0)}f}".replace("-", "−")
+
+    def write_with_error(self, value: float) -> str:
+        """Format an SI number, and its error where this reaches the last decimal."""
+        text = self.write(value)
+        if self.error < 0.5 * 10.0**-self.decimals or text in (OPEN, UNKNOWN, "0"):
+            return text
+        return f"{text} ± {self.error:.{max(self.decimals, 0)}f}"
+
+
+def choose_reader_style(unit: str, scale: float, units: Units, error: float = 0.0) -> ReaderStyle:
+    """Choose how a family of numbers is written.
+
+    unit: SI unit; scale: the largest magnitude, SI; error: of the numbers, SI
+    units: a unit that the user chose stays; another is chosen by size
+    """
+    shown_unit, size = units.find(unit)
+    if unit in PREFIXES and not units.is_chosen(unit):
+        shown_unit, size = choose_prefix(unit, scale)
+    shown = size * scale
+    digits = READER_DIGITS - 1 - math.floor(math.log10(shown)) if math.isfinite(shown) and shown > 0.0 else 0
+    return ReaderStyle(shown_unit, size, max(digits, 0), size * error)
+
+
+def choose_prefix(unit: str, scale: float) -> tuple[str, float]:
+    """Return the largest display unit in which `scale` (SI) is at least 1, and how many of it make one SI unit."""
+    fitting = [row for row in PREFIXES[unit] if row[1] * scale >= FULL_UNIT]
+    return fitting[-1] if fitting else PREFIXES[unit][0]

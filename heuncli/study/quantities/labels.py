@@ -87,7 +87,7 @@ class Labels:
     captions: Mapping[str, str] = NO_ENTRIES
 
     def is_rotational(self, block: str, name: str) -> bool:
-        """Whether a quantity of `block` is rotational for `name`: this decides between its two units."""
+        """Return whether a quantity of `block` is rotational for `name`: this decides between its two units."""
         if block == "coordinates":
             return self._find_joint_kind(name).coordinates == ("angle",)
         if block == "joints":

@@ -39,7 +39,7 @@ class Units(NamedTuple):
         return self.display_units.get(unit, (unit, 1.0))
 
     def is_chosen(self, unit: str) -> bool:
-        """Whether the user chose the display unit of an SI unit, or one from which it is derived."""
+        """Return whether the user chose the display unit of an SI unit, or one from which it is derived."""
         return unit in self.display_units and self.display_units[unit] != STRESS.get(unit)
 
 

@@ -132,10 +132,10 @@ def _find_extreme_time(request: InstantRequest, study: Study) -> float:
         (problem,) = error.problems
         raise NotOneNumber(f"--at {request.word}: {problem.message}", problem.hint) from None
     if found.time is None or math.isnan(found.value) or found.open_at is not None:
-        at = "" if found.open_at is None else f" at t = {found.open_at:.6g} s"
+        time_text = "" if found.open_at is None else f" at t = {found.open_at:.6g} s"
         hint = "release what the real machine leaves free (heun explain open), or use --least-norm"
         raise SolveError(
-            Problem("open-load-case", f"--at {request.word}: it is open{at}, so it has no peak", hint=hint)
+            Problem("open-load-case", f"--at {request.word}: it is open{time_text}, so it has no peak", hint=hint)
         )
     return found.time
 
@@ -148,14 +148,14 @@ def _iter_impulses(request: InstantRequest, study: Study) -> Iterator[LoadCaseIn
         named = [int(request.what)]
     if not named:
         raise NotOneNumber(
-            f"--at {request.word}: there is no such impulse in this run", _impulse_hint(impulses, request.what)
+            f"--at {request.word}: there is no such impulse in this run", _format_impulse_hint(impulses, request.what)
         )
     for k in named:
         word = request.word if len(named) == 1 else f"{request.word}#{k}"
         yield LoadCaseInstant(word, float(impulses[k]["time"]), k)
 
 
-def _impulse_hint(impulses: Sequence[Block], word: str) -> str:
+def _format_impulse_hint(impulses: Sequence[Block], word: str) -> str:
     if not impulses:
         return "this run has no impulses: use a time, such as --at last"
     names = dict.fromkeys(name for block in impulses for name in block["names"])

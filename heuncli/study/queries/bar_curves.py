@@ -151,15 +151,15 @@ def find_corners(nodes: Array, tolerance: float) -> Array:
 def make_interpolation(nodes: Array, s: Array, side: Array) -> Array:
     """Return the matrix (9 m, k) that interpolates values at the nodes (9 m,) to places (k,) on their sides."""
     pieces = nodes.reshape(-1, DEGREE + 1)
-    kept = np.flatnonzero(pieces[:, -1] > pieces[:, 0])  # the others are too short for results
-    corners = np.append(pieces[kept, 0], pieces[kept[-1], -1])
+    is_long = np.flatnonzero(pieces[:, -1] > pieces[:, 0])  # the others are too short for results
+    corners = np.append(pieces[is_long, 0], pieces[is_long[-1], -1])
     first, last = (np.searchsorted(corners[1:-1], s, side=side_name) for side_name in ("right", "left"))
     piece = np.where(side == BEFORE, last, first)
     a, b = corners[piece], corners[piece + 1]
     rows = chebyshev_polynomials((2.0 * s - a - b) / (b - a)) @ TO_COEFFICIENTS
     matrix = np.zeros((len(nodes), len(s)))
     for k in range(DEGREE + 1):
-        matrix[(DEGREE + 1) * kept[piece] + k, np.arange(len(s))] = rows[:, k]
+        matrix[(DEGREE + 1) * is_long[piece] + k, np.arange(len(s))] = rows[:, k]
     return matrix
 
 

@@ -37,7 +37,7 @@ from heuncli.study.queries.bar_curves import (
     make_interpolation,
     make_places,
 )
-from heuncli.study.queries.curve_sampling import choose_curve_instants, find_bounds, halve_steps
+from heuncli.study.queries.curves import choose_curve_instants, find_bounds, halve_steps
 from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import ChannelSearch, StudyColumns
@@ -83,8 +83,8 @@ class WholeBar:
         return self.study.spec.analysis.type == "impulse" and bool(self.study.results.impulses)
 
     @cached_property
-    def certain(self) -> StatedErrors:
-        """The accuracy of its loads."""
+    def stated_errors(self) -> StatedErrors:
+        """The stated errors of its loads."""
         return find_stated_errors(self.study.results, make_labels(self.study.spec), self.study.magnitudes)
 
     def find_unit(self, quantity: str) -> str:
@@ -96,7 +96,7 @@ class WholeBar:
         """Return the stated error of a quantity, SI; not below the rounding error of the sums that it is computed
         from.
         """
-        return self.certain.error_of("sections", self.find_unit(quantity))
+        return self.stated_errors.error_of("sections", self.find_unit(quantity))
 
     @cached_property
     def attachments(self) -> list[BarAttachment]:
@@ -227,7 +227,7 @@ class WholeBar:
         def collect(results: Results) -> tuple[Channel, ...]:
             return make_section_channels(self.name, results.sections[self.name])[: len(RESULTANTS)]
 
-        search = ChannelSearch(collect, self.certain.find_error)
+        search = ChannelSearch(collect, self.stated_errors.find_error)
         columns = StudyColumns(self.study, search, SECTIONS, self.setup)
         times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]

@@ -19,7 +19,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
-from heuncli.motion.integration.check.changes import ConditionChanges, impulse_time_differences
+from heuncli.motion.integration.check.changes import ConditionChanges, find_impulse_time_differences
 from heuncli.results.path_words import error_kind_of_path, find_quantity
 from heuncli.results.results import Array, Block, Results, Status
 from heuncli.results.results_paths import find_values
@@ -293,7 +293,7 @@ def estimate_instant_errors(study: Study, result: Crossings) -> Array:
     motion's error.
     """
     history, errors = study.history, result.error.copy()
-    impulse_distances = [impulse_time_differences(history.impulses, other) for other in history.check_impulses]
+    impulse_distances = [find_impulse_time_differences(history.impulses, other) for other in history.check_impulses]
     motion_error = history.estimate["motion"] * float(history.times[-1])
     for i in np.flatnonzero(result.jumps):
         distances = [each.get(float(result.times[i]), 0.5 * motion_error) for each in impulse_distances] or [
@@ -340,8 +340,8 @@ def add_ending(results: Results, condition: WatchedCondition, changes: Condition
     became = np.flatnonzero(changes.values)
     if len(became):
         k = int(became[0])
-        at = format_instant(float(changes.times[k]), float(changes.error[k]))
-        message = f"end condition {condition.text} met at t = {at} s{began}"
+        time_text = format_instant(float(changes.times[k]), float(changes.error[k]))
+        message = f"end condition {condition.text} met at t = {time_text} s{began}"
         status: Status = {"code": results.status["code"], "message": message}
     else:
         message = f"the end condition, {condition.text}, did not become true{began}"

@@ -188,28 +188,28 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     A vector counts by its magnitude, a series of cuts over its whole length. times: restricts the search to these
     instants.
     """
-    asked = study.find_numbers(path)
-    if not asked.is_timed:
+    numbers = study.find_numbers(path)
+    if not numbers.is_timed:
         raise NotOneNumber(f"{path} has no time history, so no largest value", f"give the path alone: {path}")
-    require_extreme(path, asked)
+    require_extreme(path, numbers)
     open_at: list[float] = []
 
     def collect(results: Results) -> list[Channel]:
-        channel = make_path_channel(asked if results is study.results else find_values(results, path))
+        channel = make_path_channel(numbers if results is study.results else find_values(results, path))
         is_open = np.isnan(channel.values)
         if is_open.any():
             left = is_open.any(axis=1)
             open_at.extend(results.time[left & ~np.isin(results.time, results.accuracy.get("unknown", []))][:1])
         return [channel]
 
-    if study.has_one_instant and CUT not in asked.axes:
-        at = float((study.results.time if times is None else times)[0])
-        low, high = find_lowest_and_highest(collect(study.results)[0], at)
+    if study.has_one_instant and CUT not in numbers.axes:
+        instant = float((study.results.time if times is None else times)[0])
+        low, high = find_lowest_and_highest(collect(study.results)[0], instant)
     else:
-        is_one_sided = how == "abs" and make_path_channel(asked).is_magnitude
-        sides = BOTH_SIDES if CUT in asked.axes else SIDES["max" if is_one_sided else how]
-        error = find_search_error(study, asked.keys)
-        read = make_joint_reader(study, asked, path)
+        is_one_sided = how == "abs" and make_path_channel(numbers).is_magnitude
+        sides = BOTH_SIDES if CUT in numbers.axes else SIDES["max" if is_one_sided else how]
+        error = find_search_error(study, numbers.keys)
+        read = make_joint_reader(study, numbers, path)
         search = ChannelSearch(collect, lambda channel: error if math.isfinite(error) else math.nan, sides, read)
         bounds = study.search_extremes(search, find_reports(path), times=times)
         lowest, highest = bounds.places[0] if bounds.places else (None, None)

@@ -29,10 +29,10 @@ def find_unit(path: str, spec: Spec) -> str:
     keys = [*entry, *remaining] if entry is not None else words
     while keys and find_quantity(keys) is None:  # words after the quantity select one of its numbers: .x, .0.x
         keys.pop()
-    return _unit_of_keys(keys, spec)
+    return _find_unit_of_keys(keys, spec)
 
 
-def _unit_of_keys(keys: Sequence[str], spec: Spec) -> str:
+def _find_unit_of_keys(keys: Sequence[str], spec: Spec) -> str:
     """Return the SI unit of the quantity under some keys; of two units, that of an angle or of a travel."""
     row = find_quantity(keys)
     if row is None or not row.units:
@@ -53,7 +53,7 @@ def measure_uncertainty(study: Study, path: str, how: str = "", value: float = m
     keys = numbers.keys
     if keys[0] == EVENTS:
         return _find_event_error(keys, value, study)
-    unit = _unit_of_keys(keys, study.spec)
+    unit = _find_unit_of_keys(keys, study.spec)
     if not unit:
         return None
     error = _find_unit_error(keys, unit, study)

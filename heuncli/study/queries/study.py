@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from heuncli.study.compose.unknown_numbers import OpenMarker
 
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
-NONE: frozenset[str] = frozenset()
+NO_REPORTS: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose solutions are in memory at a time
 MAX_RECOVERIES = 64  # cached ones, together of no more instants than a chunk
 RECENT_PARTS = 8  # of such a chunk: the share that stays cached for the next question
@@ -123,7 +123,7 @@ class Study:
 
             if has_moving_joints(self.setup):
                 times = extremes.sort_distinct(
-                    np.concatenate([times, find_passages(lambda at: self._recovery(at, NONE), times)])
+                    np.concatenate([times, find_passages(lambda instants: self._recover(instants, NO_REPORTS), times)])
                 )
         return extremes.fill_short_stretches(times), is_enough
 
@@ -134,7 +134,7 @@ class Study:
         if self.has_one_instant:
             return self.results
         reports = self.options.reports
-        results = compose(self.setup, self.history, self._recovery(times, reports), reports, self.impulse_results)
+        results = compose(self.setup, self.history, self._recover(times, reports), reports, self.impulse_results)
         results.work["seconds"] = dict(self.results.work["seconds"])
         self.unknown.update(results.accuracy.get("unknown", ()))
         self.later_warnings.update(dict.fromkeys(w for w in results.warnings if w not in self.results.warnings))
@@ -231,7 +231,7 @@ class Study:
         key = times.tobytes(), SHARES in reports
         recovery = self.recovery_cache.get(key)
         if recovery is None:
-            recovery = self._recovery(times, reports)
+            recovery = self._recover(times, reports)
             if keep:
                 self.recovery_cache[key] = recovery
                 counts = [len(own.solutions.times) for own in self.recovery_cache.values()]
@@ -258,7 +258,7 @@ class Study:
 
         return self.compute_reports(times, frozenset({"sections", SHARES}), cut_at_places(self.setup, name, places))
 
-    def _recovery(self, times: Array, reports: frozenset[str]) -> Recovery:
+    def _recover(self, times: Array, reports: frozenset[str]) -> Recovery:
         recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in reports)
         return recover(self.setup, recovered, self.options.least_norm)
 
@@ -278,8 +278,8 @@ class Study:
         return replace_runs(self.setup, bent)
 
     def is_searched(self, columns: int) -> bool:
-        """Whether the extremes of that many columns of a whole report are searched between the requested instants,
-        too.
+        """Return whether the extremes of that many columns of a whole report are searched between the requested
+        instants, too.
         """
         return columns <= extremes.MAX_COLUMNS and columns * len(self.search_times) <= MOST_SEARCHED
 
@@ -336,7 +336,7 @@ def find_partial_friction(study: Study, times: Iterable[float]) -> dict[float, l
         return {}
     if study.has_one_instant:
         instants = study.results.time
-    return list_partial_friction(mechanism, study.find_recovery(instants, NONE).solutions)
+    return list_partial_friction(mechanism, study.find_recovery(instants, NO_REPORTS).solutions)
 
 
 def make_friction_warning(study: Study, path: str, time: float | None) -> str | None:

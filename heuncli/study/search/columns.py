@@ -205,12 +205,12 @@ class StudyColumns:
         assert self.setup is not None
         from heuncli.study.search.cuts import cut_at, find_sides, find_stretch, locate_summit
 
-        setup, (name, at, nodes, values) = self.setup, run_sample
+        setup, (name, instant, nodes, values) = self.setup, run_sample
         s, end, ends = locate_summit(nodes, values, side)
         if self.bent and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:
-                cut_results = self.compute_results(np.array([at]), cut_at(setup, name, s, ends))
+                cut_results = self.compute_results(np.array([instant]), cut_at(setup, name, s, ends))
                 return self.collect(cut_results)[k].searched_values.T
 
             errors, is_squared = self.errors[k : k + 1], self.is_squared[k : k + 1]
@@ -270,8 +270,8 @@ def choose_search_times(setup: Setup, history: History, max_instants: int = MAX_
 
 
 def has_loads_along_coordinates(setup: Setup) -> bool:
-    """Whether loads depend on coordinates or points: if they push a constrained direction, no step shows how fast they
-    change.
+    """Return whether loads depend on coordinates or points: if they push a constrained direction, no step shows how
+    fast they change.
     """
     return any(value.uses for load in setup.scene.mechanism.loads for value in load.values)
 

@@ -102,20 +102,22 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
         shape = pool.compute_bends()
         least = tolerances.EPS * np.abs(pool.f[:, 1:3]).max(axis=1, initial=0.0)
-        worth = wide & (pool.promised_heights(shape) > least)
+        worth = wide & (pool.bound_heights(shape) > least)
         pool, shape = pool.select(worth), shape.select(worth)
         if not len(pool.target):
             return merge_samples(more_t, more_h, complete=True)
         if probes > MAX_PROBES:
             break
-        at = pool.choose_probes(shape)
-        instants = sort_distinct(at)
+        probe_times = pool.choose_probes(shape)
+        instants = sort_distinct(probe_times)
         values = sample(instants)
         side = np.where(pool.target < 1, -1.0, 1.0)
         more_t.append(instants)
         more_h.append(values)
         probes += len(instants)
-        pool = select_hidden(pool.divide(shape, at, side * (values[np.searchsorted(instants, at)] - error)))
+        pool = select_hidden(
+            pool.divide(shape, probe_times, side * (values[np.searchsorted(instants, probe_times)] - error))
+        )
     return merge_samples(more_t, more_h, complete=False)
 
 

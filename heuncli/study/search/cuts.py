@@ -128,7 +128,9 @@ ROUNDS = 14  # 16^14: down to neighbouring doubles
 
 
 def has_moving_joints(setup: Setup) -> bool:
-    """Whether any joint moves over a body that has a single cut; series of cuts are searched with the moving joint."""
+    """Return whether any joint moves over a body that has a single cut; series of cuts are searched with the moving
+    joint.
+    """
     cut = {cuts.body for cuts in setup.cuts if cuts.s is None}
     return any(joint.a in cut and JOINTS[joint.kind].has_moving_contact for joint in setup.scene.mechanism.joints)
 

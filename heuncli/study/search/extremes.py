@@ -46,25 +46,25 @@ class Targets(NamedTuple):
     column (m,): the columns of all groups
     owner (m,): the group of each of these columns
     error (n,): absolute, of the searched number
-    even (n,): whether the columns are squares of that number
+    is_squared (n,): whether the columns are squares of that number
     """
 
     n: int
     column: Indices
     owner: Indices
     error: Array
-    even: Mask
+    is_squared: Mask
 
-    def min_gain(self, height: Array) -> Array:
+    def find_min_gain(self, height: Array) -> Array:
         """Return how much more than the best so far (2n,) an interval must promise to be worth a sample, (2n,)."""
-        error, is_squared = GOOD_ENOUGH * self.error, self.even
+        error, is_squared = GOOD_ENOUGH * self.error, self.is_squared
         size = np.where(np.isfinite(height), np.abs(height), 0.0).reshape(2, self.n)
         squared = error * error + 2.0 * error * np.sqrt(size)
         return np.asarray(np.where(is_squared, squared, error) + tolerances.SUM_ROUNDING * size).reshape(-1)
 
     def limit_promise(self, promise: Array, target: Indices) -> Array:
         """Limit promises of targets to possible values: no square is below 0."""
-        bounded = self.even[target % self.n] & (target < self.n)
+        bounded = self.is_squared[target % self.n] & (target < self.n)
         return np.asarray(np.where(bounded, np.minimum(promise, 0.0), promise))
 
 
@@ -134,8 +134,8 @@ def search_extremes(
         grid_size = GridSize(len(times), float(np.ptp(times)))
         complete = refine_best(sample, find_intervals(times, values, targets, best, sides), targets, best, grid_size)
     value = np.repeat([-1.0, 1.0], n) * best.height
-    at, column = best.time, best.column
-    return Extremes(value[:n], at[:n], column[:n], value[n:], at[n:], column[n:], search_between, complete)
+    time, column = best.time, best.column
+    return Extremes(value[:n], time[:n], column[:n], value[n:], time[n:], column[n:], search_between, complete)
 
 
 def find_best(times: Array, values: Array, targets: Targets) -> Best:
@@ -157,7 +157,7 @@ def find_intervals(
     times: Array, values: Array, targets: Targets, best: Best, sides: tuple[float, ...] = BOTH_SIDES
 ) -> Intervals:
     """Return the grid intervals that may hold a higher value than the best sample, for each side."""
-    heights = best.height + targets.min_gain(best.height)
+    heights = best.height + targets.find_min_gain(best.height)
     return find_intervals_above(times, values, targets, lambda b, c, target: heights[target], sides)
 
 
@@ -240,9 +240,9 @@ def refine_best(sample: ColumnSampler, pool: Intervals, targets: Targets, best: 
     probes = 0
     for turn in range(MAX_ROUNDS):
         shape = pool.compute_bends()
-        promise = targets.limit_promise(pool.promised_heights(shape), pool.target)
+        promise = targets.limit_promise(pool.bound_heights(shape), pool.target)
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * grid_size.span
-        worth = wide & (promise > (best.height + targets.min_gain(best.height))[pool.target])
+        worth = wide & (promise > (best.height + targets.find_min_gain(best.height))[pool.target])
         if not worth.all():
             pool, shape, promise = pool.select(worth), shape.select(worth), promise[worth]
         if not len(promise):
@@ -257,16 +257,16 @@ def refine_best(sample: ColumnSampler, pool: Intervals, targets: Targets, best: 
             if is_chosen.all()
             else (pool.select(is_chosen), shape.select(is_chosen), pool.select(~is_chosen))
         )
-        at = chosen.choose_probes(shape)
-        instants = sort_distinct(at)
+        probe_times = chosen.choose_probes(shape)
+        instants = sort_distinct(probe_times)
         if len(instants) > grid_size.instants:
-            at = merge_neighbours(at, chosen.t[:, 2] - chosen.t[:, 1])
-            instants = sort_distinct(at)
+            probe_times = merge_neighbours(probe_times, chosen.t[:, 2] - chosen.t[:, 1])
+            instants = sort_distinct(probe_times)
         side = np.where(chosen.target < targets.n, -1.0, 1.0)
-        height = side * sample(instants)[np.searchsorted(instants, at), chosen.column]
+        height = side * sample(instants)[np.searchsorted(instants, probe_times), chosen.column]
         probes += len(instants)
-        best.update(height, at, chosen.column, chosen.target)
-        parts = chosen.divide(shape, at, height)
+        best.update(height, probe_times, chosen.column, chosen.target)
+        parts = chosen.divide(shape, probe_times, height)
         pool = parts if rest is None else concatenate_intervals([rest, parts])
     return False
 

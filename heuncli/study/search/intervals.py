@@ -20,9 +20,8 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Indices, Mask
 
-THIRD_DERIVATIVE_SHARE = (
-    0.5  # of the difference of the two bends, added to the larger: for third derivatives that change sign
-)
+# of the difference of the two bends, added to the larger: for third derivatives that change sign
+THIRD_DERIVATIVE_SHARE = 0.5
 FOURTH_DERIVATIVE_SHARE = 0.5  # of the bend: possible effect of the fourth derivative where four instants span a summit
 MIN_END_DISTANCE = 0.02  # of an interval: how near to its ends it is divided: a summit's neighbourhood shrinks so fast
 MAX_RISE_PER_BEND = 0.26  # of a bend: a quarter, and more than rounding adds to it
@@ -80,8 +79,8 @@ class Intervals(NamedTuple):
             rise_before, rise_after = rise[0] * (w[1] / w[0]), -rise[2] * (w[1] / w[2])
         return Bends(*fill_missing(kappa_before, kappa_after), rise_before, rise_after)
 
-    def promised_heights(self, bends: Bends) -> Array:
-        """The highest values that may lie between b and c."""
+    def bound_heights(self, bends: Bends) -> Array:
+        """Return the highest values that may lie between b and c."""
         b, c = self.f[:, 1], self.f[:, 2]
         smooth = bound_heights(
             b, c, bends.kappa_before, bends.kappa_after, self.doubt, bends.rise_before, bends.rise_after

@@ -65,7 +65,7 @@ def refine_for_time_laws(mechanism: Mechanism, grid: Array, max_instants: int) -
     first_samples = SampledTurns(grid, sample_laws(time_laws, grid), complete)
     probes = np.setdiff1d(fine_grid, grid, assume_unique=True)
     found = refine_until_predicted(
-        lambda at: sample_laws(time_laws, at), first_samples, slack, max_instants=max_instants, probes=probes
+        lambda times: sample_laws(time_laws, times), first_samples, slack, max_instants=max_instants, probes=probes
     )
     return found.times, complete and found.complete
 

@@ -78,19 +78,19 @@ def add_turning_points(
         shape = pool.compute_bends()
         required = required_height(pool.f[:, 1], pool.f[:, 2], pool.target)
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
-        worth = wide & (targets.limit_promise(pool.promised_heights(shape), pool.target) > required)
+        worth = wide & (targets.limit_promise(pool.bound_heights(shape), pool.target) > required)
         pool, shape = pool.select(worth), shape.select(worth)
         if not len(pool.target) or probes > MAX_PROBES:
             break
-        at = pool.choose_probes(shape)
-        instants = sort_distinct(at)
+        probe_times = pool.choose_probes(shape)
+        instants = sort_distinct(probe_times)
         values = sample(instants)
         parts.append(SampledTurns(instants, values, complete=True))
         probes += len(instants)
         if np.isnan(values).any():
             return merge_samples(parts, complete=True)
         side = np.where(pool.target < targets.n, -1.0, 1.0)
-        pool = pool.divide(shape, at, side * values[np.searchsorted(instants, at), pool.column])
+        pool = pool.divide(shape, probe_times, side * values[np.searchsorted(instants, probe_times), pool.column])
     return merge_samples(parts, complete=not len(pool.target))
 
 
@@ -216,16 +216,16 @@ def merge_samples(parts: Sequence[SampledTurns], *, complete: bool) -> SampledTu
 
 
 def make_required_height(errors: Array, is_squared: Mask) -> Callable[[Array, Array, Indices], Array]:
-    """Return a function that tells how high an interval must promise to go before it may hide a relevant turning point.
+    """Return the function for how high an interval must promise to go before it may hide a relevant turning point.
 
     The function takes the heights at both ends of intervals, and their targets.
     """
     n = len(errors)
 
-    def beat(b: Array, c: Array, target: Indices) -> Array:
-        higher, of = np.maximum(b, c), target % n
-        error, size = GOOD_ENOUGH * errors[of], np.abs(higher)
+    def require_height(b: Array, c: Array, target: Indices) -> Array:
+        higher, group = np.maximum(b, c), target % n
+        error, size = GOOD_ENOUGH * errors[group], np.abs(higher)
         squared = error * error + 2.0 * error * np.sqrt(size)
-        return np.asarray(higher + np.where(is_squared[of], squared, error) + tolerances.SUM_ROUNDING * size)
+        return np.asarray(higher + np.where(is_squared[group], squared, error) + tolerances.SUM_ROUNDING * size)
 
-    return beat
+    return require_height

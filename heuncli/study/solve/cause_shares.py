@@ -29,7 +29,7 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_extents import BalanceTerms
+from heuncli.study.solve.error_estimates import BalanceTerms
 
 
 def add_shares(
@@ -78,7 +78,7 @@ def iter_compared_shares(
     """Yield the shares of the compared kinds of loads, of joints, couplings, foundation and sections."""
     layout = setup.scene.layout
     shares = find_shares(layout, recovered, states, applied_actions, find_cause_columns(layout.mechanism))
-    factor = terms_factor(shares.cause_results, terms)
+    factor = compute_term_ratio(shares.cause_results, terms)
     joint_shares = [rotate_joint_loads(load, states, setup.selection.axes) for load in shares.joints]
     shares_of_kinds = (
         list_joint_shares(joint_shares) + list_coupling_shares(shares.couplings) if "reactions" in kinds else []
@@ -89,8 +89,8 @@ def iter_compared_shares(
         yield ComparedShares(kind, name, values, factor)
 
 
-def terms_factor(column: CauseResults, terms: BalanceTerms) -> Array:
-    """The ratio of the terms of the largest share to those of the whole, at least 1, (n_t,)."""
+def compute_term_ratio(column: CauseResults, terms: BalanceTerms) -> Array:
+    """Return the ratio of the terms of the largest share to those of the whole, at least 1, (n_t,)."""
     row_forces = column.rows["multiplier"][..., None] * column.rows["f"]
     parts = [column.bodies["joint_force"], row_forces]
     largest = np.max([np.abs(x).max(axis=(0, 2, 3), initial=0.0) for x in parts], axis=0)

@@ -1,20 +1,249 @@
-"""Estimate the errors of loads and energy of a motion from what was collected of the differences between its runs.
+"""Compare two runs of a motion: differences of each quantity, the terms whose rounding its sums carry, and the errors
+of loads and energy that follow.
 
-The kinds of errors, and what each is relative to: load_errors.py.
+load_errors.py collects them over a run, and has the kinds of errors and what each is relative to.
+
+Momenta and energies have no error in common with positions. A small body in a large scene may turn by far more than its
+position errors suggest; orbital and spin moments of momentum may have opposite errors.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property, reduce
 
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.loads.kinetostatics.actions import AppliedLoad
+from heuncli.loads.kinetostatics.balance import system_vector
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.foundation import find_momenta, inertia_rows
+from heuncli.motion.integration.evaluator import Evaluation
+from heuncli.multibody.mechanism.loads import RopeLoad
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.path_words import BY_CAUSE
-from heuncli.results.results import ErrorEstimate
+from heuncli.results.results import Array, ErrorEstimate, Mask
 from heuncli.results.results_schema import IMPULSES
+from heuncli.scene.shapes.rotations import instants_first, instants_last, largest_magnitude, squared_lengths
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_extents import ESTIMATED, MOTION_KINDS, Extent, Weights, relative_error
+
+
+class Weights(NamedTuple):
+    """The weights of an error: of the difference between the runs, and of the rounding of sums."""
+
+    difference: float
+    rounding: float
+
+
+ESTIMATED = Weights(2.0, 1.0)  # error of a run, estimated by a finer one
+DIFFERENCE_ONLY = Weights(1.0, 0.0)  # the difference itself
+
+
+class Extent:
+    """The largest difference, rounding, terms and range of one quantity over the instants added so far.
+
+    claimed: the largest difference before the horizon
+    """
+
+    def __init__(self, weights: Weights = ESTIMATED) -> None:
+        self.weights = weights
+        self.difference = self.claimed = self.rounding = self.terms = 0.0
+        self.largest = self.largest_requested = 0.0
+        self.low, self.high = np.inf, -np.inf
+
+    def add(
+        self,
+        values: Array,
+        rounding: Array,
+        terms: Array,
+        which: tuple[Mask, Mask],
+        extra_difference: Array | None = None,
+    ) -> None:
+        """Add values (c n, ...) of c runs, at each instant one run after the other.
+
+        extra_difference (n,): added to the differences
+        rounding, terms: (c n,)
+        which: masks of the requested instants, and of those before the horizon, (n,)
+        """
+        is_requested, is_claimed = which
+        if not values.size:
+            return
+        count, last = len(values) // len(is_requested), instants_last(values)
+        first_run = last[..., 0::count]
+        size = _compute_lengths(first_run)
+        difference = reduce(np.maximum, [_compute_lengths(first_run - last[..., k::count]) for k in range(1, count)])
+        self.add_difference(difference if extra_difference is None else difference + extra_difference, is_claimed)
+        self.rounding = _larger(self.rounding, rounding)
+        self.terms = _larger(self.terms, terms)
+        self.largest, self.largest_requested = (
+            _larger(self.largest, size),
+            _larger(self.largest_requested, size[is_requested]),
+        )
+        self.low, self.high = min(self.low, float(first_run.min())), max(self.high, float(first_run.max()))
+
+    def add_difference(self, difference: Array, is_claimed: Mask) -> None:
+        """Add differences (n,); is_claimed: which of them are before the horizon."""
+        self.difference, self.claimed = (
+            _larger(self.difference, difference),
+            _larger(self.claimed, difference[is_claimed]),
+        )
+
+    @property
+    def error(self) -> float:
+        """The estimated error over the whole run."""
+        return self.weights.difference * self.difference + self.weights.rounding * self.rounding
+
+    @property
+    def claimed_error(self) -> float:
+        """The estimated error before the horizon, up to which results are claimed."""
+        return self.weights.difference * self.claimed + self.weights.rounding * self.rounding
+
+    @property
+    def range_or_largest(self) -> float:
+        """The range between lowest and highest value, or the largest magnitude if that is smaller."""
+        return max(min(self.high - self.low, self.largest), 0.0)
+
+
+def compute_norms(vectors: Array) -> Array:
+    """Return the lengths of vectors (n, m, 3), (n, m)."""
+    return np.asarray(np.sqrt(np.einsum("tni,tni->tn", vectors, vectors)))
+
+
+def compute_lengths(values: Array) -> Array:
+    """Return the largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
+    return _compute_lengths(instants_last(values))
+
+
+def _compute_lengths(values: Array) -> Array:
+    """Return the same for values with the instants last, (..., 3, n) or (n,)."""
+    if values.ndim == 1:
+        return np.abs(values)
+    squares = (values * values).sum(axis=-2).reshape(-1, values.shape[-1])
+    return np.asarray(np.sqrt(squares.max(axis=0)))
+
+
+def _larger(so_far: float, values: Array) -> float:
+    """Return the largest; nan counts as infinite."""
+    largest = float(values.max(initial=0.0))
+    return max(so_far, largest) if np.isfinite(largest) else np.inf
+
+
+def relative_error(error: float, terms: float, *scales: float) -> float:
+    """Divide an error by the first of the scales that exceeds the rounding of its terms; 0 if none does."""
+    scale = next((x for x in scales if x > tolerances.NO_LOAD * terms), 0.0)
+    if scale == 0.0:
+        return 0.0
+    found = error / scale if np.isfinite(scale) else np.inf
+    return min(found, tolerances.UNKNOWN)
+
+
+MOTION_KINDS = ("motion", "attitudes", "rodrigues")  # kinds of errors of a motion
+
+
+def iter_momentum_quantities(
+    mechanism: Mechanism, states: BodyStates, moment_point: Array
+) -> Iterator[tuple[str, Array, Array]]:
+    """Yield by unit the values of the bodies and the sums over them (n_t, m, 3), and the rounding (n_t,)."""
+    body_momenta, vector = find_momenta(mechanism, states, moment_point), system_vector(mechanism, states)
+    body_vectors = [np.stack([*own.values()], axis=1) for own in vector.values() if isinstance(own, dict)]
+    for unit, parts, totals in (
+        ("N·s", (body_momenta.linear,), ()),
+        ("N·m·s", (body_momenta.orbital, body_momenta.spin), (body_momenta.orbital + body_momenta.spin,)),
+        ("N·m/s", body_vectors, ()),
+    ):
+        sums = [part.sum(axis=1, keepdims=True) for part in parts]
+        rounding = tolerances.SUM_ROUNDING * sum(compute_norms(part).sum(axis=1) for part in parts)
+        yield unit, np.concatenate([*(totals or parts), *sums], axis=1), np.asarray(rounding)
+
+
+def compare_attitudes(R: Array, count: int) -> tuple[Array, Array]:
+    """Return how far the attitudes of `count` runs, instant by instant, lie from the first's, and their Rodrigues'
+    vectors, (n,).
+
+    Columns of two attitudes an angle d apart differ by at most 2 sin(d/2), 1/√2 of the root of squares of all elements.
+    For rho = tan(half the turn) that makes (1 + rho^2) d/2, where 1 + rho^2 = 4 / (1 + tr R); near half a turn no
+    vector is compared.
+    """
+    first_run = R[0::count]
+    others = [np.sqrt(0.5 * np.square(first_run - R[k::count]).sum(axis=(2, 3))) for k in range(1, count)]
+    distances = reduce(np.maximum, others)
+    trace = 1.0 + np.trace(first_run, axis1=2, axis2=3)
+    is_defined = trace > 4.0 * tolerances.HALF_TURN**2
+    vectors = 2.0 * distances / np.where(is_defined, trace, 1.0) * is_defined
+    return distances.max(axis=1), vectors.max(axis=1)
+
+
+def estimate_load_rounding(recovered: Evaluation, force: Array, moment: Array, size: float) -> tuple[Array, Array]:
+    """Estimate the rounding of forces [N] and moments [N m] at each instant, (c n,); force, moment: their largest
+    terms.
+
+    It is that of sums of some dozen terms, plus the kernel's estimate of the rounding of each multiplier: near a
+    singular pose the closures amplify it (kernel/orthogonal.py).
+    """
+    rows = recovered.rows
+    by_force = (rows["doubt"] * np.abs(rows["f"]).max(axis=2)).max(axis=1, initial=0.0)
+    by_moment = (rows["doubt"] * np.abs(rows["m"]).max(axis=2)).max(axis=1, initial=0.0)
+    F = tolerances.SUM_ROUNDING * force + by_force + by_moment / size
+    return F, tolerances.SUM_ROUNDING * moment + by_moment + size * by_force
+
+
+class BalanceTerms:
+    """The terms of the balances: inertia loads, weights, and the largest of all at each instant (c n,).
+
+    by_component: the inertia loads, force and moment, (b, 3, c n)
+    force: [N]
+    moment: [N m], including that of forces with the reach of the scene as arm
+    rounding: of the loads, absolute
+    """
+
+    def __init__(self, setup: Setup, recovered: Evaluation, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+        mechanism, size = setup.scene.mechanism, setup.scene.layout.size
+        ma, spin = self.by_component = inertia_rows(mechanism, states)
+        self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
+        row_forces = recovered.rows["multiplier"][..., None] * recovered.rows["f"]
+        applied = [load.action for load in loads]
+        pulls = [
+            recovered.loads["value"][:, own] for load, own in mechanism.iter_load_rows() if isinstance(load, RopeLoad)
+        ]
+        # a free spin is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
+        layout, bodies = setup.scene.layout, mechanism.bodies
+        angular_motion = np.abs(states.component_rows("alpha")).max(axis=1) + squared_lengths(
+            states.component_rows("omega")
+        )
+        arms = [b.center - layout.reference[layout.place[i]] for i, b in enumerate(bodies)]
+        offset = np.array([[b.mass * float(np.abs(arm).max())] for b, arm in zip(bodies, arms, strict=True)])
+        gyration = np.array([[float(np.trace(b.inertia))] for b in bodies])
+        joint_force, joint_moment = (instants_last(recovered.bodies[name]) for name in ("joint_force", "joint_moment"))
+        forces = [
+            ma,
+            angular_motion * offset,
+            joint_force,
+            instants_last(row_forces),
+            *(instants_last(x.force) for x in applied),
+            *(x.T for x in pulls),
+        ]
+        moments = [spin, angular_motion * gyration, joint_moment, *(instants_last(x.moment) for x in applied)]
+        self.force = np.maximum(_find_largest_at_each_instant(forces), np.abs(self.weight).max(initial=0.0))
+        self.moment = np.maximum(_find_largest_at_each_instant(moments), size * self.force)
+        self.rounding = estimate_load_rounding(recovered, self.force, self.moment, size)
+
+    @cached_property
+    def ma(self) -> Array:
+        """m x_s.. of the bodies, (c n, b, 3) [N]."""
+        return instants_first(self.by_component[0])
+
+    @cached_property
+    def spin(self) -> Array:
+        """I sigma. + sigma x I sigma, (c n, b, 3) [N m]."""
+        return instants_first(self.by_component[1])
+
+
+def _find_largest_at_each_instant(values: Iterable[Array]) -> Array:
+    """Return the largest of all values at each instant, (c n,); each (..., c n)."""
+    return np.asarray(np.max([largest_magnitude(x) for x in values], axis=0))
+
 
 UNITS = {"force": "N", "moment": "N·m", "place": "m", "angle": "rad"}
 
@@ -52,19 +281,19 @@ class ErrorEstimates:
         """Return the estimated error of each requested kind, relative to its largest result."""
         size, found = self.setup.scene.layout.size, ErrorEstimate()
         if "reactions" in self.compared:
-            found["reactions"] = self.relative_wrench_error(size, "reactions")
+            found["reactions"] = self.find_relative_wrench_error(size, "reactions")
             found["drives"] = max(
-                self.relative_wrench_error(1.0, "drives", "thrust", ""),
-                self.relative_wrench_error(1.0, "drives", "", "torque"),
+                self.find_relative_wrench_error(1.0, "drives", "thrust", ""),
+                self.find_relative_wrench_error(1.0, "drives", "", "torque"),
             )
         if "foundation" in self.compared:
-            found["foundation"] = self.relative_wrench_error(
+            found["foundation"] = self.find_relative_wrench_error(
                 size + self.reach, "foundation", other_kinds=("effects", "elements")
             )
         if "sections" in self.compared:
-            found["sections"] = self.relative_wrench_error(size, "sections")
+            found["sections"] = self.find_relative_wrench_error(size, "sections")
         if "energy" in self.compared:
-            found["energy"] = self.relative_energy_error()
+            found["energy"] = self.find_relative_energy_error()
         return found
 
     def errors(self) -> dict[tuple[str, str], float]:
@@ -94,19 +323,19 @@ class ErrorEstimates:
         found["energy", "J"] = max(
             error_by_name.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work")
         )
-        return found | self.errors_by_cause()
+        return found | self.estimate_errors_by_cause()
 
-    def errors_by_cause(self) -> dict[tuple[str, str], float]:
+    def estimate_errors_by_cause(self) -> dict[tuple[str, str], float]:
         """Return the estimated errors of shares by cause, by kind and unit, before the horizon."""
         units = {"force": "N", "moment": "N·m"}
         extents = {name: extent for name, extent in self.extents.items() if name[0].endswith(BY_CAUSE)}
         return {(kind, units[name]): extent.claimed_error for (kind, name), extent in extents.items()}
 
-    def relative_wrench_error(
+    def find_relative_wrench_error(
         self, arm: float, kind: str, force: str = "force", moment: str = "moment", other_kinds: Sequence[str] = ()
     ) -> float:
-        """The relative error of forces and moments of a kind, together with those of other kinds; arm: the longest of a
-        moment.
+        """Return the relative error of forces and moments of a kind, together with those of other kinds; arm: the
+        longest of a moment.
         """
         if not other_kinds and not {(kind, force), (kind, moment)} & self.extents.keys():
             return 0.0
@@ -127,8 +356,8 @@ class ErrorEstimates:
             relative_error(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
         )
 
-    def relative_energy_error(self) -> float:
-        """The relative error of the energies."""
+    def find_relative_energy_error(self) -> float:
+        """Return the relative error of the energies."""
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
         kinetic, potential, work = (self.find_extent("energy", name) for name in ("kinetic", "potential", "work"))
         lift = sum(b.mass for b in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
@@ -138,6 +367,6 @@ class ErrorEstimates:
         shown_energy = max(kinetic.largest_requested, potential.range_or_largest, work.range_or_largest)
         return relative_error(error, kinetic.largest, shown_energy, kinetic.largest)
 
-    def largest_kinetic_energy(self) -> float:
-        """The largest kinetic energy over the run [J]."""
+    def find_largest_kinetic_energy(self) -> float:
+        """Return the largest kinetic energy over the run [J]."""
         return self.find_extent("energy", "kinetic").largest

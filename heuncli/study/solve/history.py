@@ -17,7 +17,7 @@ from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.method_rows import AUTO
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.check.estimate import CheckedRun, evaluate_run, make_checked_run
-from heuncli.motion.integration.check.run_comparison import MotionPoints, interleave, motion_error
+from heuncli.motion.integration.check.run_comparison import MotionPoints, find_motion_error, interleave
 from heuncli.motion.integration.check.runs import Runs, perturb_start
 from heuncli.motion.integration.check.singular_poses import find_singular_positions
 from heuncli.motion.integration.contacts.impulses import ImpulseEvent
@@ -260,7 +260,7 @@ def solve_state(setup: Setup, time: float, tolerance: float, by_cause: bool = Fa
     pose_error = (
         0.0
         if setup.rest is None
-        else float(motion_error(MotionPoints(layout), solutions.bodies, len(starts), layout.size)[0])
+        else float(find_motion_error(MotionPoints(layout), solutions.bodies, len(starts), layout.size)[0])
     )
     estimate = ErrorEstimate(motion=pose_error, **errors.estimate())
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
@@ -272,7 +272,7 @@ def solve_state(setup: Setup, time: float, tolerance: float, by_cause: bool = Fa
         impulses=impulses[0],
         check_impulses=tuple(impulses[1:]),
         seconds=seconds,
-        errors=errors.errors_by_cause(),
+        errors=errors.estimate_errors_by_cause(),
         state_instants=None if setup.steady_spin_axes else errors.last,
         notes=notes,
     )

@@ -26,6 +26,7 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
+from heuncli.loads.kinetostatics.balance import energy_block
 from heuncli.loads.kinetostatics.bodies import BodyStates, KernelBodyStates, make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
@@ -35,7 +36,6 @@ from heuncli.loads.kinetostatics.couplings import (
     list_coupling_actions,
     list_rope_actions,
 )
-from heuncli.loads.kinetostatics.energy import energy_block
 from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
@@ -45,15 +45,15 @@ from heuncli.results.path_words import BY_CAUSE, TRAVELS
 from heuncli.results.results import Array, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_estimates import ErrorEstimates
-from heuncli.study.solve.error_extents import (
+from heuncli.study.solve.error_estimates import (
     ESTIMATED,
     BalanceTerms,
+    ErrorEstimates,
     Weights,
     compare_attitudes,
+    compute_lengths,
+    compute_norms,
     iter_momentum_quantities,
-    lengths,
-    norms,
 )
 
 
@@ -190,8 +190,6 @@ class LoadErrors(ErrorEstimates):
         if "reactions" in self.compared:
             coupling_results: Sequence[Quantity] = ()
             if couplings:
-                from heuncli.study.solve.load_errors import iter_coupling_results  # few scenes have them
-
                 coupling_results = [
                     *iter_coupling_results(couplings, applied, self.setup.scene.mechanism.joints, states)
                 ]
@@ -238,10 +236,10 @@ class LoadErrors(ErrorEstimates):
 
         def find_differences(values: Array) -> Array:
             own = values[0::count]
-            return reduce(np.maximum, [norms(own - values[k::count]) for k in range(1, count)])
+            return reduce(np.maximum, [compute_norms(own - values[k::count]) for k in range(1, count)])
 
         omega_difference, alpha_difference = find_differences(states.omega), find_differences(states.alpha)
-        centripetal = 2.0 * norms(states.omega[0::count]) * omega_difference
+        centripetal = 2.0 * compute_norms(states.omega[0::count]) * omega_difference
         for unit, difference in (
             ("rad/s", omega_difference),
             ("rad/s²", alpha_difference),
@@ -289,14 +287,19 @@ class LoadErrors(ErrorEstimates):
         zeros = np.zeros(len(F))
         if joints and (coupling_results or any(JOINTS[load.joint.kind].follows_path for load in joints)):
             self.add_values(("reactions", "place"), np.stack([x.point for x in joints], axis=1), zeros, zeros)
-        of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (zeros, zeros), "angle": (zeros, zeros)}
+        terms_by_name = {
+            "force": (F, terms.force),
+            "moment": (M, terms.moment),
+            "place": (zeros, zeros),
+            "angle": (zeros, zeros),
+        }
         for name, values in coupling_results:
-            self.add_values(("reactions", name), values, *of[name])
+            self.add_values(("reactions", name), values, *terms_by_name[name])
         for load in joints:
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"
-                rounding, of = (M, terms.moment) if turns else (F, terms.force)
-                self.add_values(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
+                rounding, largest_term = (M, terms.moment) if turns else (F, terms.force)
+                self.add_values(("drives", "torque" if turns else "thrust"), load.drive, rounding, largest_term)
 
     def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the total of the foundation, its elements and the mass effects.
@@ -334,7 +337,9 @@ class LoadErrors(ErrorEstimates):
         axis = central_axis(force[is_requested], moment[is_requested], self.setup.moment_point, 0.0)
         for unit, values in (("1", axis["direction"]), ("m", axis["point"]), ("m", axis["pitch"][:, None])):
             first_run = values[0::count]
-            difference = np.max([norms((first_run - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0)
+            difference = np.max(
+                [compute_norms((first_run - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0
+            )
             self.find_extent("axis", unit).add_difference(np.nan_to_num(difference), self.is_claimed[self.is_requested])
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
@@ -360,7 +365,7 @@ class LoadErrors(ErrorEstimates):
                 ("force", force, F, terms.force), ("moment", moment, M, terms.moment),
             ):  # fmt: skip
                 instants_first = values.transpose(1, 2, 0)
-                turn_difference = turned * lengths(instants_first[0::count])
+                turn_difference = turned * compute_lengths(instants_first[0::count])
                 self.add_values(("sections", quantity), instants_first, rounding, magnitude, turn_difference)
 
     def add_energy(self, recovered: Evaluation, states: BodyStates) -> None:

@@ -48,9 +48,8 @@ def require_motion(layout: Layout, start_solution: Evaluation) -> None:
     bare = Runner(remove_weight_and_loads(layout))
     rates = rate_places[rate_places >= 0]
     all_motions, is_kept = solve_with_rates(bare, start_solution, rates, list(resting.values()))
-    if (
-        is_kept and all_motions.residual[0] <= all_motions.allowed_residual[0]
-    ):  # the usual case: one check of all islands together
+    if is_kept and all_motions.residual[0] <= all_motions.allowed_residual[0]:
+        # the usual case: one check of all islands together
         return
     for k, motion in resting.items():
         motion_solution, is_kept = solve_with_rates(bare, start_solution, rates, [motion])
@@ -63,7 +62,7 @@ def require_motion(layout: Layout, start_solution: Evaluation) -> None:
 
 
 def is_immobile(island: Island, rows: NamedArrays) -> bool:
-    """Whether the island has as many independent rows as freedoms: what cannot move is pushed nowhere."""
+    """Return whether the island has as many independent rows as freedoms: what cannot move is pushed nowhere."""
     return float(rows["chosen"][island.rows].sum()) >= len(island.freedoms)
 
 
@@ -84,13 +83,13 @@ def solve_with_rates(
 
 
 def remove_weight_and_loads(layout: Layout) -> Layout:
-    """Return the scene without weight and loads, so that only its closures act."""
+    """Return the layout of the scene on which only its closures act."""
     mechanism = replace(layout.mechanism, gravity=np.zeros(3))
     return replace(layout, mechanism=mechanism, tables=layout.tables | {"loads": layout.tables["loads"][:0]})
 
 
 def rate_derivatives(layout: Layout, solution: Evaluation) -> Array:
-    """The derivatives of the state's rates, each at the place of its rate, 0 elsewhere; of one instant."""
+    """Return the derivatives of the state's rates, each at the place of its rate, 0 elsewhere; of one instant."""
     found = np.zeros(layout.n_state)
     for k, body in enumerate(layout.bodies):
         if body["ball"]:
@@ -102,7 +101,9 @@ def rate_derivatives(layout: Layout, solution: Evaluation) -> Array:
 
 
 def is_pushed(layout: Layout, solution: Evaluation, motion: Evaluation) -> bool:
-    """Whether the loads act along a motion by more than the pose is known: power of the inertia loads over loads."""
+    """Return whether the loads act along a motion by more than the pose is known: power of the inertia loads over
+    loads.
+    """
     bodies = layout.mechanism.bodies
     states: BodyStates = make_body_states(layout, solution)
     moving = make_body_states(layout, motion)

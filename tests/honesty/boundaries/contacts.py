@@ -9,8 +9,11 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.contacts.resting import is_short_flight, solve_complementarity
-from heuncli.motion.integration.contacts.restitution import solve_contact_impulses
+from heuncli.motion.integration.contacts.restitution import (
+    is_short_flight,
+    solve_complementarity,
+    solve_contact_impulses,
+)
 from heuncli.motion.integration.contacts.sequential_impacts import find_independent
 from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies
 from tests.honesty.boundaries.part import Part, Row

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.contacts.resting import is_short_flight
+from heuncli.motion.integration.contacts.restitution import is_short_flight
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.pushed_block import pushed_block

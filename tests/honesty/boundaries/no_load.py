@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.loads.kinetostatics.energy import energy_drift
+from heuncli.loads.kinetostatics.balance import energy_drift
 from heuncli.loads.kinetostatics.foundation import central_axis
 from heuncli.study.compose.warnings import warn_unbalanced
 from tests.honesty.boundaries.part import Part, Row

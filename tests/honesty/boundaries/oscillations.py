@@ -13,7 +13,7 @@ from heuncli.motion.linearisation.indifference import Indifference, IndifferentM
 from heuncli.motion.linearisation.linearise import linearise
 from heuncli.motion.linearisation.oscillations import Mode, find_modes
 from heuncli.motion.linearisation.reduced_equations import ReducedEquations
-from heuncli.motion.linearisation.steady_motion import distance_from_rest
+from heuncli.motion.linearisation.steady_motion import find_distance_from_rest
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.honesty.boundaries.part import Part, Row
@@ -74,7 +74,7 @@ def pushed_freely(x: float) -> str:
     here = SimpleNamespace(
         system=system, weights=np.ones(1), indifferent=IndifferentMotions(one, one, 0.0, f, one, f, f)
     )
-    return "falls" if np.isinf(distance_from_rest(here)) else "rests"  # type: ignore[arg-type]
+    return "falls" if np.isinf(find_distance_from_rest(here)) else "rests"  # type: ignore[arg-type]
 
 
 def hanging(x: float, law: str = "0") -> str:

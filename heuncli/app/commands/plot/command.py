@@ -22,7 +22,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import find_similar
 from heuncli.output.drawing.drawing_files import encode_drawing
 from heuncli.output.drawing.figure import Figure
-from heuncli.study.quantities.given_captions import check_text
+from heuncli.study.quantities.captions import check_text
 
 
 def main(request: PlotRequest) -> int:

@@ -88,7 +88,7 @@ def find_changes_in_run(runner: Runner, run: Trajectory) -> list[ConditionChange
     found = []
     for condition, truth in zip(conditions.conditions, truths.T, strict=True):
         if np.isnan(truth).any():
-            raise no_value_error(condition.value, float(inside[np.isnan(truth)][0]))
+            raise make_no_value_error(condition.value, float(inside[np.isnan(truth)][0]))
         found.append(make_changes(condition.name, begins, truth > 0.5))
     return found
 
@@ -134,7 +134,7 @@ def estimate_errors(
     for run in runs[1:]:
         instants = np.minimum(condition_changes.times, run.end_time)
         coordinates = evaluate_coordinates(runner, instants, runner.resample(run, instants))
-        impulse_errors = impulse_time_differences(runs[0].impulse_events, run.impulse_events)
+        impulse_errors = find_impulse_time_differences(runs[0].impulse_events, run.impulse_events)
         for i, (t, value, jets) in enumerate(
             zip(condition_changes.times.tolist(), condition_changes.values.tolist(), coordinates, strict=True)
         ):
@@ -147,7 +147,9 @@ def estimate_errors(
     return found
 
 
-def impulse_time_differences(impulses: Sequence[ImpulseEvent], others: Sequence[ImpulseEvent]) -> dict[float, float]:
+def find_impulse_time_differences(
+    impulses: Sequence[ImpulseEvent], others: Sequence[ImpulseEvent]
+) -> dict[float, float]:
     """Return for each impulse of a run how much earlier or later another run has it; nan where that has none."""
     found = dict.fromkeys((blow.time for blow in impulses), UNKNOWN)
     for i, k in match_impulses(impulses, others):
@@ -170,7 +172,7 @@ def find_change_distance(
     return UNKNOWN
 
 
-def no_value_error(value: Expression, t: float) -> SolveError:
+def make_no_value_error(value: Expression, t: float) -> SolveError:
     """Make the error of a condition that has no value."""
     hint = "keep it within the domain of its functions, as with max(x, 0) or 'a if c else b', or within its tables"
     message = f"'{value.source.strip()}' has no value at t = {t:.9g} s"

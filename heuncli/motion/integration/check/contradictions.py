@@ -24,7 +24,7 @@ from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.diagnosis.ambiguous_laws import find_fighting_drives
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import just_after, just_before
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.run.kernel_loop import REACHED, KernelLoop, LoopStart
 from heuncli.motion.integration.run.request import ClosuresLost
 from heuncli.motion.integration.run.runner import Runner

@@ -37,9 +37,9 @@ from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.check.run_comparison import (
     JoinedStates,
-    angle_error,
-    bounded_motion_error,
+    bound_motion_error,
     choose_instants,
+    find_angle_error,
     find_ends_between,
     interleave,
     is_between_impulses,
@@ -76,7 +76,7 @@ class LoadDifferences(Protocol):
     def errors(self) -> Mapping[tuple[str, str], float]:
         """Return the estimated errors by kind and unit, at instants before the horizon."""
 
-    def largest_kinetic_energy(self) -> float:
+    def find_largest_kinetic_energy(self) -> float:
         """Return the largest kinetic energy over the run [J]."""
 
     @property
@@ -176,7 +176,7 @@ def make_checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> Ch
             )
     evaluate = make_evaluate(runs, best, loads.by_cause)
     seconds = best.seconds + time.perf_counter() - clock_start
-    error_results = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.largest_kinetic_energy()
+    error_results = best.motion, loads.estimate(), loads.errors(), best.horizon, loads.find_largest_kinetic_energy()
     check_impulses = tuple(run.impulse_events for run in best.runs[1:])
     return CheckedRun(
         a, evaluate, *error_results, check_impulses, seconds, discarded_seconds, find_condition_changes(runs, best)
@@ -271,8 +271,8 @@ def estimate_errors(
     several = None
     for part, several in evaluate_together(runs, a, times, states):
         with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
-            point_errors[part] = bounded_motion_error(runs.motion_points, several, len(states), layout.size)
-            angle_errors[part], largest_angle = angle_error(layout, several, len(states))
+            point_errors[part] = bound_motion_error(runs.motion_points, several, len(states), layout.size)
+            angle_errors[part], largest_angle = find_angle_error(layout, several, len(states))
         largest = max(largest, largest_angle)
     whole = several if several is not None and len(several.times) == len(states) * len(times) else None
     return np.maximum(point_errors, angle_errors / largest), whole

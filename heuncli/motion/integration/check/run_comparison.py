@@ -36,12 +36,12 @@ FULL_CHECKS = 8  # instants at which all points are always compared
 ROUNDING_MARGIN = 1.0 + 1e-9  # more than the rounding of a distance
 
 
-def motion_error(marks: MotionPoints, bodies: Table, count: int, size: float) -> Array:
+def find_motion_error(marks: MotionPoints, bodies: Table, count: int, size: float) -> Array:
     """Estimate the error of any point relative to the size, (n,); bodies: results of `count` runs."""
     r, R = (bodies[name].reshape(-1, count, *bodies[name].shape[1:]) for name in ("r", "R"))
     extent = np.abs(r[:, 0]).max(axis=(1, 2)) / size
     one, other = pair_runs(count)
-    squares = marks.squared_distances(r[:, other] - r[:, one], R[:, other] - R[:, one])
+    squares = marks.compute_squared_distances(r[:, other] - r[:, one], R[:, other] - R[:, one])
     distance = np.sqrt(squares.max(axis=(1, 2))) / size
     return replace_nan_errors(2.0 * distance + tolerances.PLACE_ROUNDING * np.maximum(extent, 1.0))
 
@@ -52,7 +52,7 @@ def pair_runs(count: int) -> tuple[Indices, Indices]:
     return np.triu_indices(count, 1)
 
 
-def bounded_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, size: float) -> Array:
+def bound_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, size: float) -> Array:
     """Bound that error (n,). The bound equals the error where it is largest and where it may exceed CLAIMED.
 
     A point is no farther away than its body's joint point plus the longest arm times the body's rotation. Two attitudes
@@ -67,22 +67,22 @@ def bounded_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int
         for other in range(k + 1, count):
             dr, dR = (x[other] - x[k] for x in (r, R))
             turned = np.sqrt(0.5 * (dR * dR).sum(axis=1)) + tolerances.SUM_ROUNDING
-            point_distance = np.sqrt((dr * dr).sum(axis=1)) + turned * marks.reach[:, None]
-            np.maximum(distance, point_distance.max(axis=0), out=distance)
+            distances = np.sqrt((dr * dr).sum(axis=1)) + turned * marks.reach[:, None]
+            np.maximum(distance, distances.max(axis=0), out=distance)
     bound = ROUNDING_MARGIN * (2.0 * (distance / size) + tolerances.PLACE_ROUNDING * np.maximum(extent, 1.0))
 
-    def exact_error(which: Indices) -> Array:
+    def find_exact_error(which: Indices) -> Array:
         bodies = evaluation.bodies[(count * which[:, None] + np.arange(count)).ravel()]
-        return motion_error(marks, bodies, count, size)
+        return find_motion_error(marks, bodies, count, size)
 
     if len(bound) <= FULL_CHECKS or not np.isfinite(bound).all():
-        return exact_error(np.arange(len(bound)))
+        return find_exact_error(np.arange(len(bound)))
     first = np.argpartition(bound, -FULL_CHECKS)[-FULL_CHECKS:]
-    exact = exact_error(first)
+    exact = find_exact_error(first)
     bound[first] = 0.0
     others = np.flatnonzero(bound >= min(float(exact.max()), tolerances.CLAIMED))
     if len(others):
-        bound[others] = exact_error(others)
+        bound[others] = find_exact_error(others)
     bound[first] = exact
     return bound
 
@@ -93,27 +93,28 @@ def group_by_run(values: Array, count: int) -> Array:
     return np.ascontiguousarray(each.transpose(1, *range(2, each.ndim), 0))
 
 
-def point_distance(marks: MotionPoints, bodies: Table, count: int, size: float, first: int = 0) -> Array:
+def find_point_distance(marks: MotionPoints, bodies: Table, count: int, size: float, first: int = 0) -> Array:
     """Return the largest distance of any point between run number `first` and a later one, relative to the size,
     (n,).
     """
     first_bodies = bodies[first::count]
     return np.asarray(
-        np.max([marks.max_distance(first_bodies, bodies[k::count]) for k in range(first + 1, count)], axis=0) / size
+        np.max([marks.find_max_distance(first_bodies, bodies[k::count]) for k in range(first + 1, count)], axis=0)
+        / size
     )
 
 
-def angle_error(layout: Layout, evaluation: Evaluation, count: int) -> tuple[Array, float]:
+def find_angle_error(layout: Layout, evaluation: Evaluation, count: int) -> tuple[Array, float]:
     """Estimate the error of the angles that are counted over turns [rad], (n,), and return the largest of them, at
     least 1.
     """
-    difference, largest = angle_difference(layout, evaluation, count)
+    difference, largest = find_angle_difference(layout, evaluation, count)
     for k in range(1, count - 1):
-        difference = np.maximum(difference, angle_difference(layout, evaluation, count, k)[0])
+        difference = np.maximum(difference, find_angle_difference(layout, evaluation, count, k)[0])
     return replace_nan_errors(2.0 * difference + tolerances.PLACE_ROUNDING * largest), float(largest.max(initial=1.0))
 
 
-def angle_difference(layout: Layout, evaluation: Evaluation, count: int, first: int = 0) -> tuple[Array, Array]:
+def find_angle_difference(layout: Layout, evaluation: Evaluation, count: int, first: int = 0) -> tuple[Array, Array]:
     """Return the largest difference of any counted angle between run `first` and a later one [rad], (n,), and the
     largest angle, at least 1, (n,).
 
@@ -160,11 +161,11 @@ class MotionPoints:
         self.reach = np.zeros(len(bodies))  # the longest arm of each body
         np.maximum.at(self.reach, self.owner, np.sqrt(np.sum(self.arms**2, axis=1)))
 
-    def max_distance(self, a: Table, b: Table) -> Array:
+    def find_max_distance(self, a: Table, b: Table) -> Array:
         """Return the largest distance of any of the points between two tables `Evaluation.bodies`, (n_t,) [m]."""
-        return np.asarray(np.sqrt(self.squared_distances(b["r"] - a["r"], b["R"] - a["R"]).max(axis=1)))
+        return np.asarray(np.sqrt(self.compute_squared_distances(b["r"] - a["r"], b["R"] - a["R"]).max(axis=1)))
 
-    def squared_distances(self, dr: Array, dR: Array) -> Array:
+    def compute_squared_distances(self, dr: Array, dR: Array) -> Array:
         """Return the squared distance of each point, (..., m) [m²].
 
         dr (..., b, 3), dR (..., b, 3, 3): differences of the joint points and attitudes of two sets of bodies

@@ -17,7 +17,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.motion.integration.check.run_comparison import MotionPoints
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import Method, load_method_by_name
 from heuncli.motion.integration.run.request import ClosuresLost, EventfulRun, MotionTask, StiffRun, StoppingRules
 from heuncli.motion.integration.run.runner import Runner
@@ -35,9 +35,8 @@ MIN_RATIO = 4.0  # smallest such ratio: errors scale with tolerances, so 2 |A - 
 MIN_STEP_RATIO = 2.0  # for a fixed step: at order 1, 2 |A - B| still equals the error of A
 AUTOMATIC_TOLERANCE = 1e-6  # tolerance of a run with automatic steps, where fixed ones fail
 COLLAPSE_CODES = ("step-collapsed", "closure-lost")  # how a run may end near a singular pose because of rounding
-MAX_STEP_GROWTH = (
-    20  # a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
-)
+# a finer run that takes more than so many times the steps of the coarser one is dominated by rounding
+MAX_STEP_GROWTH = 20
 
 
 class Runs:
@@ -106,8 +105,6 @@ class Runs:
         try:
             return self.run(step)
         except SolveError as error:
-            # only on the way to an error
-
             raise explain_fixed_step_error(
                 error, self.runner, self.method, step, self.run_with_automatic_steps
             ) from None
@@ -127,7 +124,7 @@ class Runs:
             else:
                 return None
 
-    def attempt(
+    def try_run(
         self,
         local: float,
         reference: Trajectory,
@@ -152,7 +149,7 @@ class Runs:
         collapses.
         """
         for ratio in (factor, RATIO) if factor > RATIO else (RATIO,):
-            run = self.attempt(max(a.local / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
+            run = self.try_run(max(a.local / ratio, tolerances.LEAST_TOLERANCE), a, None, None)
             if run is not None:
                 return run
         return None
@@ -169,7 +166,7 @@ class Runs:
         )
         attempts = [(a.local / ratio, self.perturbed_start) for ratio in (most, least, 1.0 / most)]
         for local, start in (*attempts, (a.local / most, None)):
-            run = self.attempt(local, a, check_times, start, a.method.check)
+            run = self.try_run(local, a, check_times, start, a.method.check)
             if run is not None:
                 return self.add_finest(a, run, check_times, start)
         return (self.run(a.local * most, check_times, check_method=a.method.check),)
@@ -187,14 +184,14 @@ class Runs:
             return (b,)
         if b.local <= tolerances.LEAST_TOLERANCE:
             return (b,)
-        finest = self.attempt(tolerances.LEAST_TOLERANCE, a, check_times, start)
+        finest = self.try_run(tolerances.LEAST_TOLERANCE, a, check_times, start)
         return (b,) if finest is None else (finest, b)
 
     def run_from_moved_start(self, a: Trajectory, check_times: Array) -> Trajectory | None:
         """Make the run M: like A from the moved start, where rounding may matter; else None."""
         if a.method.is_determined or (not a.method.has_fixed_step and a.local >= tolerances.ROUNDING_MATTERS):
             return None
-        return self.attempt(a.local, a, check_times, self.perturbed_start)
+        return self.try_run(a.local, a, check_times, self.perturbed_start)
 
 
 def has_shared_steps(a: Array, b: Array) -> bool:
@@ -210,7 +207,7 @@ def has_shared_steps(a: Array, b: Array) -> bool:
 
 
 @cache
-def asymmetric_numbers(count: int) -> Array:
+def list_asymmetric_numbers(count: int) -> Array:
     """Return numbers between a half and one of either sign, without a pattern, (count,)."""
     fraction = np.modf(0.6180339887498949 * np.arange(1, count + 1))[0]
     numbers = np.where(fraction < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * fraction)[0] / 2.0)
@@ -226,7 +223,7 @@ def perturb_start(layout: Layout) -> Array:
     of the golden section.
     """
     y = layout.y0.copy()
-    direction = asymmetric_numbers(len(y))
+    direction = list_asymmetric_numbers(len(y))
     for group in layout.tables["groups"]:
         coordinates, rates, end = group["coordinates"], group["rates"], group["end"]
         unit = 1.0 / layout.weights[coordinates:end]
@@ -239,9 +236,8 @@ def perturb_start(layout: Layout) -> Array:
 
 # Given steps
 
-STABILITY_LIMIT = (
-    2.0  # stable h |lambda| of explicit fixed-step methods: 2 for Euler's and Heun's, 2.5 for Heun3, 2.8 for RK4
-)
+# stable h |lambda| of explicit fixed-step methods: 2 for Euler's and Heun's, 2.5 for Heun3, 2.8 for RK4
+STABILITY_LIMIT = 2.0
 STEP_MESSAGES = {
     "not-a-number": "a motion in steps of {step:g} s has no finite acceleration after this instant",
     "closure-lost": "with steps of {step:g} s closed loops cannot be assembled after this instant",
@@ -282,13 +278,13 @@ def explain_fixed_step_error(
 
 def suggest_step(runner: Runner, method: Method, step: float) -> str:
     """Say which steps to try in place of a step [s]."""
-    rate = 0.0 if method.implicit else fastest_rate(runner)
+    rate = 0.0 if method.implicit else find_fastest_rate(runner)
     if rate * step > STABILITY_LIMIT:
         return f"the fastest rate at the start is {rate:.2g} 1/s: use steps of {STABILITY_LIMIT / rate:.1g} s or less"
     return f"use steps shorter than {step:g} s"
 
 
-def fastest_rate(runner: Runner) -> float:
+def find_fastest_rate(runner: Runner) -> float:
     """Return the largest eigenvalue magnitude of the linearised motion at the start [1/s]; 0 if it has none."""
     integrated_scene = runner.integrated_scene
     start = integrated_scene.restrict(0.0, runner.layout.y0)
@@ -300,7 +296,7 @@ def fastest_rate(runner: Runner) -> float:
 
 # Fewer stages
 
-MESSAGE = (
+FEWER_STAGES_MESSAGE = (
     "events (contact, condition, jump, table point) end {cut} of the first {steps} steps; up to t = {t:.3g} s "
     "{name} takes {few} evaluations, {method} {many}"
 )
@@ -318,7 +314,7 @@ def try_fewer_stages(runs: Runs, eventful: EventfulRun) -> bool:
         )
         trial = runs.runner.run(request, StoppingRules())
         if trial.evaluations < eventful.evaluations:
-            eventful.reason = MESSAGE.format(
+            eventful.reason = FEWER_STAGES_MESSAGE.format(
                 cut=eventful.cut, steps=eventful.steps, t=eventful.end_time, name=method.name, few=trial.evaluations,
                 method=runs.method.name, many=eventful.evaluations,
             )  # fmt: skip

@@ -48,7 +48,7 @@ def find_singular_positions(runner: Runner, run: Trajectory) -> list[float]:
     return instants
 
 
-def least_singular_values(runner: Runner, run: Trajectory, times: Array) -> Array:
+def find_least_singular_values(runner: Runner, run: Trajectory, times: Array) -> Array:
     """Estimate the smallest relative singular value of the independent closures, (n_t,)."""
     # the rows are selected at the first instant, and pivots are relative to those there
     instants = np.concatenate([run.times[:1], times])
@@ -60,7 +60,7 @@ def least_singular_values(runner: Runner, run: Trajectory, times: Array) -> Arra
 
 def bracket_minima(runner: Runner, run: Trajectory, times: Array) -> list[tuple[float, float]]:
     """Return intervals [a, b] around the local minima."""
-    g = least_singular_values(runner, run, times)
+    g = find_least_singular_values(runner, run, times)
     padded = np.concatenate([[np.inf], g, [np.inf]])
     low = np.flatnonzero((g <= padded[:-2]) & (g < padded[2:]))
     return [(float(times[max(k - 1, 0)]), float(times[min(k + 1, len(times) - 1)])) for k in low.tolist()]
@@ -72,7 +72,7 @@ def find_singular_instant(runner: Runner, run: Trajectory, a: float, b: float) -
     low, high, t = np.inf, 0.0, a
     for _ in range(ROUNDS):
         times = np.linspace(a, b, PROBES)
-        g = least_singular_values(runner, run, times)
+        g = find_least_singular_values(runner, run, times)
         k = int(np.argmin(g))
         low, high, t = float(g[k]), max(high, float(g.max())), float(times[k])
         a, b = float(times[max(k - 1, 0)]), float(times[min(k + 1, PROBES - 1)])
@@ -109,7 +109,7 @@ def find_meeting(runner: Runner, run: Trajectory, horizon: float | None) -> Prob
     marks = marks[marks < (np.inf if horizon is None else horizon)]
     for first in range(0, len(marks), CHUNK):
         times = marks[first : first + CHUNK + 1]
-        spans = separations(runner, run, times, loads)
+        spans = find_separations(runner, run, times, loads)
         reversed_lines = np.sum(spans[1:] * spans[:-1], axis=2) < 0.0
         meetings = (locate_meeting(runner, run, load, times[:-1][in_steps], times[1:][in_steps])
                  for load, in_steps in zip(loads, reversed_lines.T, strict=True))  # fmt: skip
@@ -120,7 +120,7 @@ def find_meeting(runner: Runner, run: Trajectory, horizon: float | None) -> Prob
     return None
 
 
-def separations(runner: Runner, run: Trajectory, times: Array, loads: Sequence[tuple[PairLoad, slice]]) -> Array:
+def find_separations(runner: Runner, run: Trajectory, times: Array, loads: Sequence[tuple[PairLoad, slice]]) -> Array:
     """Return the vector from one point to the other of each load, (n_t, loads, 3) [m]."""
     rows = runner.evaluate_run(run, times).loads[:, [load_rows.start for _, load_rows in loads]]
     return np.asarray(rows["at"] - rows["from_at"])
@@ -140,7 +140,7 @@ def locate_meeting(
         middle = 0.5 * (low + high)
         is_approaching = runner.evaluate_run(run, middle).loads[:, load[1].start]["rate"] < 0.0
         low, high = np.where(is_approaching, middle, low), np.where(is_approaching, high, middle)
-    sides = [runner.evaluate_run(run, at).loads[:, load[1].start] for at in (low, high)]
+    sides = [runner.evaluate_run(run, times).loads[:, load[1].start] for times in (low, high)]
     close = np.minimum(sides[0]["span"], sides[1]["span"]) <= tolerances.NO_LENGTH * runner.layout.size
     close &= (sides[0]["value"] != 0.0) | (sides[1]["value"] != 0.0)
     return (float(high[close][0]), load[0].name) if close.any() else None
@@ -161,7 +161,7 @@ def find_half_turn(runner: Runner, run: Trajectory, horizon: float | None) -> Pr
     marks = marks[marks < (np.inf if horizon is None else horizon)]
     for first in range(0, len(marks), CHUNK):
         times = marks[first : first + CHUNK + 1]
-        rotations = bushing_rotations(runner, run, times, bushings)
+        rotations = find_bushing_rotations(runner, run, times, bushings)
         has_jumped = np.sum(np.square(rotations[1:] - rotations[:-1]), axis=2) > np.pi**2
         if has_jumped.any():
             k = int(np.argmax(has_jumped.any(axis=1)))
@@ -169,7 +169,7 @@ def find_half_turn(runner: Runner, run: Trajectory, horizon: float | None) -> Pr
     return None
 
 
-def bushing_rotations(
+def find_bushing_rotations(
     runner: Runner, run: Trajectory, times: Array, bushings: Sequence[tuple[BushingLoad, int]]
 ) -> Array:
     """Return the rotation vector of each bushing, (n_t, bushings, 3) [rad]."""

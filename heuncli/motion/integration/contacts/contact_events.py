@@ -1,7 +1,7 @@
 """Handle contact events: what is struck at an instant of a run, by which impulses, and what is held from then on.
 
-touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses, resting.py
-the contacts that stay closed, contact_problem.py the errors and sentences.
+touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses and the
+contacts that stay closed, contact_problem.py the errors and sentences.
 """
 
 from __future__ import annotations
@@ -37,23 +37,21 @@ from heuncli.motion.integration.contacts.latches import (
     LatchConditions,
     Latches,
     add_catches,
-    work_of_catches,
-)
-from heuncli.motion.integration.contacts.resting import (
-    acceleration_noise,
-    find_contradicted,
-    find_resting,
-    is_short_flight,
+    compute_catch_work,
 )
 from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
+    estimate_acceleration_noise,
+    find_contradicted,
     find_coupled_groups,
+    find_resting,
+    is_short_flight,
     solve_contact_impulses,
 )
 from heuncli.motion.integration.contacts.sequential_impacts import (
     EndlessImpacts,
-    endless_impacts_error,
     find_independent,
+    make_endless_impacts_error,
 )
 from heuncli.motion.integration.contacts.shared_impulses import (
     LoadedContact,
@@ -63,7 +61,12 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     select_loaded,
 )
 from heuncli.motion.integration.contacts.sticking import FrictionStates
-from heuncli.motion.integration.contacts.touching import TouchingContacts, can_move_bodies, find_touching, opening_rates
+from heuncli.motion.integration.contacts.touching import (
+    TouchingContacts,
+    can_move_bodies,
+    find_opening_rates,
+    find_touching,
+)
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
 from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
@@ -106,7 +109,7 @@ class Contacts:
         latch_conditions: the conditions of latches there; by default evaluated at the state
         """
         latches = self.latches
-        is_closed = (self.holding > 0.0) & ~self.find_left(row)
+        is_closed = (self.holding > 0.0) & ~self.find_opening_redundant(row)
         require_smooth(self.layout, given_impulse, is_closed)
         latch_conditions = latch_conditions or latches.evaluate_conditions(given_impulse.before_time, state)
         released = latches.release(latch_conditions)
@@ -165,7 +168,7 @@ class Contacts:
         """
         self.friction.begin_event()
         for _ in range(MAX_FRICTION_CHANGES):
-            outcome = self.solve(given_impulse, sides, units, problem, catches)
+            outcome = self.solve_event(given_impulse, sides, units, problem, catches)
             self.holding = self.friction.add_to(self.latches.holding())
             self.holding[problem.touching.indices] = outcome.holding
             self.holding[unwatched] = UNWATCHED
@@ -179,8 +182,8 @@ class Contacts:
                 return outcome
         raise self.friction.unsettled_error(given_impulse.after_time)
 
-    def find_left(self, row: int | None) -> Mask:
-        """Mark the contact (contacts,) that others kept closed and whose gap left its rounding there: it has a rate."""
+    def find_opening_redundant(self, row: int | None) -> Mask:
+        """Mark the contact (contacts,) that redundant others held closed and whose gap, now beyond rounding, opens."""
         is_left = np.zeros(len(self.holding), dtype=bool)
         for k, contact in enumerate(self.layout.contacts):
             is_left[k] = contact.row == row and self.holding[k] == CLOSED_BY_OTHERS
@@ -197,13 +200,13 @@ class Contacts:
         solution = solve_impulses(
             self.evaluator.workspace, given_impulse.before_time, sides.still.states[0], loads, jumps
         )
-        rates = opening_rates(contacts_touching, solution.columns.bodies)
+        rates = find_opening_rates(contacts_touching, solution.columns.bodies)
         A = 0.5 * (rates[:, n:] + rates[:, n:].T)
         return solution, ContactProblem(
             contacts_touching, A, can_move_bodies(self.layout, contacts_touching, A), rates[:, :n].sum(axis=1)
         )
 
-    def solve(
+    def solve_event(
         self,
         given_impulse: GivenImpulse,
         sides: RightSides,
@@ -226,7 +229,7 @@ class Contacts:
             holding, acceleration = find_resting(
                 contacts_touching, problem.A, problem.moves, impulses.rate, after_evaluation, self.layout
             )
-            noise = acceleration_noise(self.layout, contacts_touching, problem.A, after_evaluation)
+            noise = estimate_acceleration_noise(self.layout, contacts_touching, problem.A, after_evaluation)
             is_still = impulses.rate == 0.0
             require_yielding(
                 self.layout, problem, np.where(is_still, acceleration, 0.0), noise, given_impulse.after_time
@@ -251,7 +254,7 @@ class Contacts:
             impulses, columns, total = self.refine(given_impulse, sides, unrefined)
             after_state, work = state_after(self.layout, given_impulse, sides, total)
         work += float(impulses.impulses @ (0.5 * (contacts_touching.rate + impulses.rate)))
-        work += work_of_catches(self.layout, catches, columns.multipliers)
+        work += compute_catch_work(self.layout, catches, columns.multipliers)
         self.bring_to_rest(sides.still.states[0], after_state)
         return ContactOutcome(impulses, holding, at_rest, columns, after_state, work)
 
@@ -266,7 +269,7 @@ class Contacts:
             )
         except EndlessImpacts as endless:
             names = [self.layout.contacts[i].name for i in contacts_touching.indices.tolist()]
-            raise endless_impacts_error(
+            raise make_endless_impacts_error(
                 t, [names[k] for k in endless.contacts.tolist()], names[endless.most_struck]
             ) from None
 
@@ -296,9 +299,8 @@ class Contacts:
         ]
         contacts += select_loaded(list_bilateral_contacts(self.layout), outcome.columns.multipliers)
         is_coupled = np.zeros((len(contacts), len(contacts)), dtype=bool)
-        for group in find_coupled_groups(
-            problem.A
-        ):  # also through contacts that bear nothing, which depends on the model, too
+        # also through contacts that bear nothing, which depends on the model, too
+        for group in find_coupled_groups(problem.A):
             members = np.isin(taking_part, group)
             is_coupled[: len(taking_part), : len(taking_part)] |= members[:, None] & members
         return tuple(find_shared_impulses(contacts, is_coupled, outcome.columns.multipliers))
@@ -326,11 +328,8 @@ class Contacts:
         With the rates after the impulse known, the bearing contacts are held and solved by the factors of the closures,
         in one column. What the contacts' columns lack of it is added to the last of them.
         """
-        contacts_touching, impulse_solution, n = (
-            unrefined_impulses.touching,
-            unrefined_impulses.impulses,
-            len(sides.loads),
-        )
+        contacts_touching, impulse_solution = unrefined_impulses.touching, unrefined_impulses.impulses
+        n = len(sides.loads)
         basis, others = unrefined_impulses.basis, unrefined_impulses.others
         contacts = [self.layout.contacts[i] for i in contacts_touching.indices[basis].tolist()]
         rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])

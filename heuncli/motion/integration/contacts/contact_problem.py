@@ -10,7 +10,7 @@ from heuncli.base.records import record
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.impulses import GivenImpulse, ImpulseEvent, RightSides
 from heuncli.motion.integration.contacts.latches import LatchCatch
-from heuncli.motion.integration.contacts.restitution import ContactImpulses, chattering_error
+from heuncli.motion.integration.contacts.restitution import ContactImpulses, make_chattering_error
 from heuncli.motion.integration.contacts.shared_impulses import SharedImpulse, join_names
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.motion.integration.evaluator import Evaluator
@@ -162,7 +162,9 @@ class ContactNotes:
         self.simultaneous_count = self.simultaneous_count + 1 if t - self.last_event_time <= near else 0
         self.last_event_time = t
         if self.simultaneous_count > MAX_SIMULTANEOUS + 4 * len(self.layout.contacts):
-            raise chattering_error(t, max(self.strike_counts, key=lambda name: self.strike_counts[name], default=""))
+            raise make_chattering_error(
+                t, max(self.strike_counts, key=lambda name: self.strike_counts[name], default="")
+            )
 
     def add_notes(
         self,

@@ -178,10 +178,13 @@ def make_right_sides(evaluator: Evaluator, given_impulse: GivenImpulse, state: A
     still = evaluator.evaluate(np.array([given_impulse.before_time]), state[None, :], holding=holding)
     impulses = tuple(make_body_impulse(layout, still.bodies[0], i) for i in given_impulse.blows)
     n_b, n_u = len(layout.place), len(layout.freedoms) + len(layout.rows)
-    loads, jumps = [impulse_column(layout, still.bodies[0], one) for one in impulses], [np.zeros(n_u)] * len(impulses)
+    loads, jumps = (
+        [find_impulse_column(layout, still.bodies[0], one) for one in impulses],
+        [np.zeros(n_u)] * len(impulses),
+    )
     if given_impulse.drives:
         loads.append(np.zeros((n_b, 6)))
-        jumps.append(prescribed_jumps(layout, given_impulse))
+        jumps.append(find_prescribed_jumps(layout, given_impulse))
     causes = tuple(mechanism.impulses[i].name for i in given_impulse.blows) + (
         (DRIVES,) if given_impulse.drives else ()
     )
@@ -216,7 +219,7 @@ def state_after(
 ) -> tuple[Array, float]:
     """Return the state after columns of jumps, and the work of what is given [J]."""
     total = columns.sum()
-    work = work_of_impulses(layout, sides.still.bodies[0], total, sides.impulses) + work_of_drives(
+    work = compute_impulse_work(layout, sides.still.bodies[0], total, sides.impulses) + compute_drive_work(
         layout, given_impulse, total
     )
     return add_jump(layout, sides.still.states[0], total), work
@@ -255,7 +258,10 @@ def make_impulse_event(
         sides.still, causes=solution.columns.select(None), residual=np.array([solution.unmet.max()]),
         massless_count=np.array([float(solution.massless_count)]),
     )  # fmt: skip
-    kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, after_evaluation.bodies[0])
+    kinetic = (
+        compute_kinetic_energy(layout, still.bodies[0]),
+        compute_kinetic_energy(layout, after_evaluation.bodies[0]),
+    )
     names = tuple(dict.fromkeys((*given_impulse.list_names(layout.mechanism), *result.struck_names)))
     return ImpulseEvent(
         result.time,
@@ -284,7 +290,7 @@ def make_body_impulse(layout: Layout, bodies: Table, number: int) -> BodyImpulse
     return BodyImpulse(number, force, moment, r + R @ (point - layout.reference[place]))
 
 
-def impulse_column(layout: Layout, bodies: Table, impulse: BodyImpulse) -> Array:
+def find_impulse_column(layout: Layout, bodies: Table, impulse: BodyImpulse) -> Array:
     """Return an impulse as a column of loads, (n_b, 6): moment about the body's joint point, force."""
     place = layout.place[layout.mechanism.impulses[impulse.blow].body]
     loads = np.zeros((len(bodies), 6))
@@ -293,7 +299,7 @@ def impulse_column(layout: Layout, bodies: Table, impulse: BodyImpulse) -> Array
     return loads
 
 
-def prescribed_jumps(layout: Layout, given_impulse: GivenImpulse) -> Array:
+def find_prescribed_jumps(layout: Layout, given_impulse: GivenImpulse) -> Array:
     """Return the jumps of the prescribed rates, of the freedoms and then of the closure rows."""
     jumps = {k: then - first for k, (first, then) in given_impulse.drives.items()}
     freedoms = [jumps.get(f.joint, 0.0) if f.q < 0 else 0.0 for f in layout.freedoms]
@@ -318,7 +324,7 @@ def add_jump(layout: Layout, state: Array, jump: Columns) -> Array:
     return after_state
 
 
-def work_of_impulses(layout: Layout, bodies: Table, jump: Columns, impulses: tuple[BodyImpulse, ...]) -> float:
+def compute_impulse_work(layout: Layout, bodies: Table, jump: Columns, impulses: tuple[BodyImpulse, ...]) -> float:
     """Return the work of given impulses [J]: each with the mean of the velocities before and after, where it acts."""
     work = 0.0
     for impulse in impulses:
@@ -330,7 +336,7 @@ def work_of_impulses(layout: Layout, bodies: Table, jump: Columns, impulses: tup
     return work
 
 
-def work_of_drives(layout: Layout, given_impulse: GivenImpulse, jump: Columns) -> float:
+def compute_drive_work(layout: Layout, given_impulse: GivenImpulse, jump: Columns) -> float:
     """Return the work of the drives' impulses [J], with the mean of the prescribed rates before and after.
 
     A drive whose rate does not jump does work too: its impulse times that rate.
@@ -348,7 +354,7 @@ def work_of_drives(layout: Layout, given_impulse: GivenImpulse, jump: Columns) -
     return work
 
 
-def kinetic_energy(layout: Layout, bodies: Table) -> float:
+def compute_kinetic_energy(layout: Layout, bodies: Table) -> float:
     """Return the kinetic energy of all bodies [J]; bodies in tree order."""
     energy = 0.0
     for place, link in enumerate(layout.spanning.links):

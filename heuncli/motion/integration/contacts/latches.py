@@ -19,7 +19,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.conditions import Conditions, read_coordinates
 from heuncli.motion.integration.contacts.impulses import RightSides
-from heuncli.motion.integration.contacts.touching import TouchingContacts, gap_term_size, unit_load
+from heuncli.motion.integration.contacts.touching import TouchingContacts, find_gap_term_size, unit_load
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.layout import Contact, Layout
@@ -124,7 +124,7 @@ class Latches:
                 or self.is_held(i)
             ):
                 continue
-            rate, noise = latch_rate(self.layout, evaluation, self.layout.contacts[i], self.last)
+            rate, noise = find_latch_rate(self.layout, evaluation, self.layout.contacts[i], self.last)
             place = self.find_catch_value(
                 i, stop, evaluation, contacts_touching, latch_conditions.is_value_passed[n], abs(rate) <= noise
             )
@@ -165,18 +165,18 @@ class Latches:
             return None
         if latch.position is None:
             return gap
-        near = tolerances.CONTACT_TOUCHES * gap_term_size(self.layout, evaluation.bodies[0], contact)
+        near = tolerances.CONTACT_TOUCHES * find_gap_term_size(self.layout, evaluation.bodies[0], contact)
         return latch.position if is_passed or (is_still and abs(gap) <= near) else None
 
 
-def latch_rate(layout: Layout, evaluation: Evaluation, contact: Contact, last: float) -> tuple[float, float]:
+def find_latch_rate(layout: Layout, evaluation: Evaluation, contact: Contact, last: float) -> tuple[float, float]:
     """Return the rate of the coordinate that a latch holds, and its rounding error in a run up to `last`."""
     bodies = evaluation.bodies[0]
     unit_loads = unit_load(layout, evaluation, contact, multiplier=1.0)
     rate = float(np.sum(unit_loads[:, :3] * bodies["omega"]) + np.sum(unit_loads[:, 3:] * bodies["v"]))
     sizes = np.linalg.norm(unit_loads[:, :3], axis=1) @ np.linalg.norm(bodies["omega"], axis=1)
     sizes += np.linalg.norm(unit_loads[:, 3:], axis=1) @ np.linalg.norm(bodies["v"], axis=1)
-    reach = tolerances.KERNEL["touching"] * gap_term_size(layout, bodies, contact)
+    reach = tolerances.KERNEL["touching"] * find_gap_term_size(layout, bodies, contact)
     return rate, max(tolerances.CONTACT_RATE * float(sizes), reach / (last or 1.0))
 
 
@@ -195,7 +195,7 @@ def add_catches(layout: Layout, sides: RightSides, catches: Sequence[LatchCatch]
     return replace(sides, loads=loads, jumps=jumps, causes=(*sides.causes, *causes))
 
 
-def work_of_catches(layout: Layout, catches: Sequence[LatchCatch], multipliers: Array) -> float:
+def compute_catch_work(layout: Layout, catches: Sequence[LatchCatch], multipliers: Array) -> float:
     """Return the work of the impulses of latches that catch [J], with the mean of the rates before and after.
 
     multipliers (n, rows): of all columns of the impulse

@@ -222,7 +222,7 @@ def find_independent(A: Array) -> Indices:
     return np.array(sorted(selected), dtype=int)
 
 
-def endless_impacts_error(t: float, names: list[str], name: str) -> SolveError:
+def make_endless_impacts_error(t: float, names: list[str], name: str) -> SolveError:
     """Make the error of endless impacts among the named contacts; name: of the one that is struck most often."""
     message = (
         f"at t = {t:.9g} s the impacts of {', '.join(dict.fromkeys(names))} do not end after {MAX_IMPACTS} repetitions"

@@ -23,7 +23,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.contact_problem import make_jamming_problem
-from heuncli.motion.integration.contacts.latches import latch_rate
+from heuncli.motion.integration.contacts.latches import find_latch_rate
 from heuncli.motion.integration.contacts.restitution import find_coupled_groups
 from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.contacts.touching import unit_load
@@ -108,7 +108,7 @@ class FrictionStates:
         before, place = self.earlier
         broken, stuck = None, before & ~is_struck
         for k, contact in enumerate(self.contacts):
-            rate, noise = latch_rate(self.layout, opened, contact, self.last)
+            rate, noise = find_latch_rate(self.layout, opened, contact, self.last)
             if stuck[k] or contact.row == row or abs(rate) <= noise:
                 at_rest.append(k)
                 broken = k if contact.row == row and stuck[k] else broken
@@ -315,7 +315,7 @@ class StateSearch:
         return StateTrial(agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation), jam)
 
     def is_replaceable(self, evaluation: Evaluation) -> bool:
-        """Whether a friction that sticks depends on other constraints."""
+        """Return whether a friction that sticks depends on other constraints."""
         if not evaluation.rows["closed"][0, self.friction.rows].any():
             return False
         holding = evaluation.holding[0].copy()

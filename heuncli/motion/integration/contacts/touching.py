@@ -58,14 +58,14 @@ def find_touching(
         if contact.sense == 0:
             continue  # a latch
         gap = -contact.sense * float(rows["gap"][contact.row])
-        tolerance = tolerances.CONTACT_TOUCHES * gap_term_size(layout, bodies, contact)
+        tolerance = tolerances.CONTACT_TOUCHES * find_gap_term_size(layout, bodies, contact)
         if is_closed[i] or contact.row == event_row or gap <= tolerance:
             numbers.append(i)
     contacts = [layout.contacts[i] for i in numbers]
     loads = np.array([unit_load(layout, evaluation, contact, -contact.sense) for contact in contacts])
     loads = loads.reshape(len(contacts), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
-    terms = np.array([gap_term_size(layout, bodies, contact) for contact in contacts])
+    terms = np.array([find_gap_term_size(layout, bodies, contact) for contact in contacts])
     reaches = tolerances.KERNEL["touching"] * terms
     moments, forces = np.linalg.norm(loads[:, :, :3], axis=2), np.linalg.norm(loads[:, :, 3:], axis=2)
     speeds = moments @ np.linalg.norm(bodies["omega"], axis=1) + forces @ np.linalg.norm(bodies["v"], axis=1)
@@ -76,7 +76,7 @@ def find_touching(
         rate=np.where(
             is_closed[numbers],
             0.0,
-            np.einsum("kbi,bi->k", loads, motion) + prescribed_opening_rate(layout, contacts, evaluation),
+            np.einsum("kbi,bi->k", loads, motion) + find_prescribed_opening_rate(layout, contacts, evaluation),
         ),
         noise=np.maximum(noise, reaches / (end_time or 1.0)),
         reach=reaches,
@@ -85,7 +85,7 @@ def find_touching(
     )
 
 
-def prescribed_opening_rate(layout: Layout, contacts: Sequence[Contact], evaluation: Evaluation) -> Array:
+def find_prescribed_opening_rate(layout: Layout, contacts: Sequence[Contact], evaluation: Evaluation) -> Array:
     """Return how fast a prescribed motion makes contacts open: the rate of a rope that is paid out, 0 for others."""
     laws = {law.owner: law.value for law in layout.mechanism.laws}
     is_driven = layout.tables["closures"]["program"]["count"] > 0
@@ -94,7 +94,7 @@ def prescribed_opening_rate(layout: Layout, contacts: Sequence[Contact], evaluat
     return np.array(rates).reshape(len(contacts))
 
 
-def gap_term_size(layout: Layout, bodies: Table, contact: Contact) -> float:
+def find_gap_term_size(layout: Layout, bodies: Table, contact: Contact) -> float:
     """Return the sum of the magnitudes of the terms of a contact's gap [m or rad], the scale of its rounding."""
     row = layout.tables["closures"][contact.row]
     places = [
@@ -142,7 +142,7 @@ def unit_load(layout: Layout, evaluation: Evaluation, contact: Contact, multipli
     return load
 
 
-def opening_rates(contacts_touching: TouchingContacts, columns: Table) -> Array:
+def find_opening_rates(contacts_touching: TouchingContacts, columns: Table) -> Array:
     """Return the rates of opening that columns of jumps give, (k, n_c)."""
     motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
     return np.asarray(np.einsum("kbi,cbi->kc", contacts_touching.loads, motion))

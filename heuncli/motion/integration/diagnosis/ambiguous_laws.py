@@ -52,7 +52,7 @@ def find_undirected_loads(layout: Layout, evaluation: Evaluation, is_motion_star
         if not is_coincident.any():
             continue
         if not load.needs_direction:
-            separation_speed = np.sqrt(np.sum(separation_velocity(layout, load, evaluation) ** 2, axis=1))
+            separation_speed = np.sqrt(np.sum(find_separation_velocity(layout, load, evaluation) ** 2, axis=1))
             is_coincident &= (load_rows["span"] == 0.0) & (load.damping * separation_speed > 0.0)
         elif load.value is not None:
             is_coincident &= is_motion_start | (load_rows["value"] != 0.0)
@@ -61,7 +61,7 @@ def find_undirected_loads(layout: Layout, evaluation: Evaluation, is_motion_star
     return problems
 
 
-def separation_velocity(layout: Layout, load: PairLoad, evaluation: Evaluation) -> Array:
+def find_separation_velocity(layout: Layout, load: PairLoad, evaluation: Evaluation) -> Array:
     """Return the velocity of the second point relative to the first, (n_t, 3) [m/s]."""
     speeds = []
     for body, end in ((load.a, "from_at"), (load.b, "at")):
@@ -115,7 +115,7 @@ def find_half_turned(mechanism: Mechanism, evaluation: Evaluation, instant: int)
 # Half turns
 
 
-def half_turn_error(
+def make_half_turn_error(
     integrated_scene: IntegratedScene, body: int, t: float, state: Array, *, is_unreduced: bool
 ) -> SolveError:
     """Make the error of a body, by its number in the tree, whose kappa grows without bound in the state at t.
@@ -163,7 +163,9 @@ def find_jammed_after(mechanism: Mechanism, workspace: Workspace, t: float) -> l
     return [make_jamming_problem(mechanism, status, row, when)] if status != kernel.FOUND and when >= t else []
 
 
-def indeterminate_friction_problem(mechanism: Mechanism, loads: Sequence[JointLoad | ThreadLoad], t: float) -> Problem:
+def make_indeterminate_friction_problem(
+    mechanism: Mechanism, loads: Sequence[JointLoad | ThreadLoad], t: float
+) -> Problem:
     """Make the problem of friction that depends on indeterminate reactions of redundant joints."""
     load_names = ", ".join(mechanism.describe_friction(load) for load in loads)
     message = f"at t = {t:.9g} s friction depends on indeterminate reactions of redundant joints: {load_names}"

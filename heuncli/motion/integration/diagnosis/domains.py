@@ -48,7 +48,7 @@ def evaluate_coordinates(layout: Layout, evaluation: Evaluation, instant: int) -
     for load, rows in layout.mechanism.iter_load_rows():
         coordinates |= load_coordinates(load, evaluation.loads[instant, rows])
         if isinstance(load, BushingLoad):
-            coordinates |= bushing_strains(layout, load, rows.start, evaluation, instant)
+            coordinates |= find_bushing_strains(layout, load, rows.start, evaluation, instant)
     return coordinates
 
 
@@ -63,13 +63,13 @@ def load_coordinates(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     return {}
 
 
-def bushing_strains(layout: Layout, load: BushingLoad, first: int, evaluation: Evaluation, instant: int) -> Moving:
+def find_bushing_strains(layout: Layout, load: BushingLoad, first: int, evaluation: Evaluation, instant: int) -> Moving:
     """Return the shift and the rotation of a bushing with their rates, in its own axes; first: its row of kernel
     loads.
     """
     bodies, row = evaluation.bodies[instant], layout.tables["loads"][first]
     (x_a, v_a, R_a, omega_a), (x_b, v_b, _, omega_b) = (
-        point_state(bodies, int(row[body]), to_vector(row[point])) for body, point in (("a", "p"), ("b", "q"))
+        find_point_state(bodies, int(row[body]), to_vector(row[point])) for body, point in (("a", "p"), ("b", "q"))
     )
     axes = R_a @ load.frame
     shift, turn = (
@@ -89,7 +89,7 @@ def to_vector(components: Any) -> Array:
     return np.array(components.tolist())
 
 
-def point_state(bodies: Table, body: int, arm: Array) -> tuple[Array, Array, Array, Array]:
+def find_point_state(bodies: Table, body: int, arm: Array) -> tuple[Array, Array, Array, Array]:
     """Return position and velocity of a point of a body or the ground, and attitude and angular velocity of the
     body.
     """

@@ -89,14 +89,14 @@ def find_fast_motion(scene: Evaluator, t: float, state: Array, holding: Array | 
     scale = turn[i] if turns else shift[i]
     body = layout.spanning.links[i].body
     spin, speed = (float(np.sqrt(np.sum(poses[i][name] ** 2))) for name in ("omega", "v"))
-    inertia = twice_kinetic_energy(layout, poses, spins, speeds) / float(scale) ** 2
+    inertia = compute_twice_kinetic_energy(layout, poses, spins, speeds) / float(scale) ** 2
     return FastMotion(
         abs(complex(values[k])), body, turns, spin, speed, inertia,
         find_opposed_pins(layout, eigenvector, rates, poses),
     )  # fmt: skip
 
 
-def twice_kinetic_energy(layout: Layout, poses: Table, spins: Array, speeds: Array) -> float:
+def compute_twice_kinetic_energy(layout: Layout, poses: Table, spins: Array, speeds: Array) -> float:
     """Return twice the kinetic energy of angular velocities and velocities of the centres, (n_b, 3) each."""
     total = 0.0
     for i, link in enumerate(layout.spanning.links):
@@ -136,14 +136,14 @@ def find_noisiest_body(scene: Evaluator, t: float, state: Array) -> tuple[int, f
     force, moment = (
         np.sqrt(np.sum(evaluation.bodies[name][0] ** 2, axis=1)) for name in ("joint_force", "joint_moment")
     )
-    inertia = np.array([largest_inertia(layout, link.body) for link in layout.spanning.links])
+    inertia = np.array([find_largest_inertia(layout, link.body) for link in layout.spanning.links])
     load_noise = tolerances.EPS * (force * layout.size + moment)
     noise = np.divide(load_noise, inertia, out=np.zeros(len(load_noise)), where=inertia > 0.0)
     i = int(np.argmax(noise))
     return layout.spanning.links[i].body, float(noise[i])
 
 
-def largest_inertia(layout: Layout, number: int) -> float:
+def find_largest_inertia(layout: Layout, number: int) -> float:
     """Return the largest principal moment of inertia of a body [kg m^2]."""
     return float(np.linalg.eigvalsh(layout.mechanism.bodies[number].inertia)[-1])
 
@@ -182,7 +182,7 @@ def explain_short_steps(scene: Evaluator, t: float, state: Array, step: float = 
 def describe_body(layout: Layout, number: int) -> str:
     """Describe a body with its mass and its largest inertia."""
     body = layout.mechanism.bodies[number]
-    return f"bodies.{body.name} ({body.mass:.2g} kg, {largest_inertia(layout, number):.2g} kg\u00b7m\u00b2)"
+    return f"bodies.{body.name} ({body.mass:.2g} kg, {find_largest_inertia(layout, number):.2g} kg\u00b7m\u00b2)"
 
 
 # Growth
@@ -200,7 +200,7 @@ def find_growing(
     return find_grown(scene.layout.mechanism, (t, coordinates[1]), (earlier, coordinates[0]))
 
 
-def stalled_error(problems: Sequence[Problem], done_text: str, needed_steps: float, cause: str = "") -> HeunError:
+def make_stalled_error(problems: Sequence[Problem], done_text: str, needed_steps: float, cause: str = "") -> HeunError:
     """Explain why a run does not advance: what grows, else how many steps it would need, and for which cause (a
     sentence).
     """

@@ -59,7 +59,7 @@ def require_on_sheaves(layout: Layout, evaluation: Evaluation, *, has_all_steps:
                 message, hint = GONE_AROUND, GONE_AROUND_HINT
         elif part.kind == "strand":
             violations = np.flatnonzero(
-                is_taut & (np.abs(slant_angle(layout, evaluation, part, k)) > tolerances.FLEET_ANGLE)
+                is_taut & (np.abs(find_slant_angle(layout, evaluation, part, k)) > tolerances.FLEET_ANGLE)
             )
             message, hint = f"leaves a sheave's plane by more than {FLEET}", HINT
             wound_up = np.flatnonzero(is_taut & (evaluation.parts["gap"][:, k] <= 0.0))
@@ -100,7 +100,7 @@ def format_slant_warnings(layout: Layout, evaluation: Evaluation) -> list[str]:
     largest_angles: dict[str, float] = {}
     for coupling, part, k, is_taut in iter_rope_parts(layout, evaluation):
         if part.kind == "strand":
-            angles = np.where(is_taut, np.abs(slant_angle(layout, evaluation, part, k)), 0.0)
+            angles = np.where(is_taut, np.abs(find_slant_angle(layout, evaluation, part, k)), 0.0)
             largest_angles[coupling.name] = max(largest_angles.get(coupling.name, 0.0), float(angles.max(initial=0.0)))
     return [
         f"couplings.{name} leaves a sheave's plane by up to {math.degrees(angle):.2g} deg: relative error of "
@@ -162,7 +162,7 @@ def world_direction(layout: Layout, evaluation: Evaluation, body: int, axis: obj
     return np.tile(e, (len(evaluation.times), 1)) if body < 0 else evaluation.bodies["R"][:, layout.place[body]] @ e
 
 
-def slant_angle(layout: Layout, evaluation: Evaluation, part: CouplingPart, k: int) -> Array:
+def find_slant_angle(layout: Layout, evaluation: Evaluation, part: CouplingPart, k: int) -> Array:
     """Return the angle between a strand and the plane of the sheave it is measured from [rad], (n_t,)."""
     n = world_direction(layout, evaluation, part.a, part.e)
     strand = evaluation.parts["on_b"][:, k] - evaluation.parts["on_a"][:, k]

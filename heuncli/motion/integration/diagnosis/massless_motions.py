@@ -19,9 +19,8 @@ from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad, RopeLoad
-from heuncli.multibody.tree.idle_spins import find_massless_axes
 from heuncli.multibody.tree.layout import Layout
-from heuncli.multibody.tree.prepare import PreparedScene, find_missing_inertia
+from heuncli.multibody.tree.prepare import PreparedScene, find_massless_axes, find_missing_inertia
 from heuncli.multibody.tree.tables import Table, make_table, vector_array
 from heuncli.results.results import Array
 
@@ -58,7 +57,9 @@ class MasslessMotions:
         """Return combinations of the motions, N (k, other)."""
         return MasslessMotions(self.bodies, self.omega @ N, self.v @ N)
 
-    def body_velocities(self, body: int, point: Array | None, poses: TreePoses, size: float) -> tuple[Array, Array]:
+    def find_body_velocities(
+        self, body: int, point: Array | None, poses: TreePoses, size: float
+    ) -> tuple[Array, Array]:
         """Return of a body (-1: the ground) its angular velocities, and velocities of its point divided by the size,
         (3, k).
         """
@@ -86,7 +87,8 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
     layout, poses = scene.layout, start_poses(scene)
     # the parent of the first body that turns is at rest; mostly the body itself resists
     own_resistances = (
-        rest_conditions(layout, i, axes, poses) @ freedom_directions(layout, i, poses).T for i, axes in lacking.items()
+        find_rest_conditions(layout, i, axes, poses) @ list_freedom_directions(layout, i, poses).T
+        for i, axes in lacking.items()
     )
     if not any(null_space(resisted).size for resisted in own_resistances):
         return scene
@@ -98,7 +100,7 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
     rows = [
         row
         for body, axes in find_axes_in_any_pose(scene, lacking).items()
-        for row in artificial_inertia_rows(scene, body, axes)
+        for row in make_artificial_inertia_rows(scene, body, axes)
     ]
     return replace(
         scene,
@@ -132,7 +134,7 @@ def find_loose_axes(scene: PreparedScene, bodies: Table, rows: Table) -> dict[in
     poses = TreePoses(bodies["R"], bodies["r"])
     motions = find_massless_motions(scene, find_missing_inertia(scene), poses)
     return {
-        i: span_vectors(turning)
+        i: find_span_vectors(turning)
         for i, turning in find_loose_motions(scene.layout, motions, poses, rows).find_axes(poses).items()
     }
 
@@ -156,20 +158,20 @@ def is_unloaded_spin(scene: PreparedScene, evaluation: Evaluation, k: int) -> bo
     power, scale = np.zeros(free.count), 0.0
     for load, rows in scene.mechanism.iter_load_rows():
         if isinstance(load, RopeLoad):
-            rope_part_power, size = rope_power(scene, evaluation, k, load, free, poses)
+            rope_part_power, size = compute_rope_power(scene, evaluation, k, load, free, poses)
             power, scale = power + rope_part_power, scale + size
             continue
         for row, load_result in zip(layout.tables["loads"][rows], evaluation.loads[k, rows], strict=True):
             F, M = load_result["force"], load_result["moment"]
             ends = [(row["b"], load_result["at"], 1.0), (row["a"], load_result["from_at"], -1.0)]
             for body, point, sign in ends[:1] if isinstance(load, PointLoad) else ends:
-                omega, v = free.body_velocities(int(body), point, poses, layout.size)
+                omega, v = free.find_body_velocities(int(body), point, poses, layout.size)
                 power += sign * (F @ v * layout.size + M @ omega)
             scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
     return bool(np.all(np.abs(power) <= tolerances.NO_MOMENT * scale))
 
 
-def rope_power(
+def compute_rope_power(
     scene: PreparedScene, evaluation: Evaluation, k: int, load: RopeLoad, free: MasslessMotions, poses: TreePoses
 ) -> tuple[Array, float]:
     """Return the power of a stretching rope along the motions at an instant, (count,), and the magnitude of its
@@ -182,7 +184,7 @@ def rope_power(
         ends, part_result = layout.tables["parts"][part], evaluation.parts[k, part]
         F, M = value * part_result["f"], value * part_result["m"]
         for body, sign in ((int(ends["b"]), 1.0), (int(ends["a"]), -1.0)):
-            omega, v = free.body_velocities(body, part_result["Q"], poses, layout.size)
+            omega, v = free.find_body_velocities(body, part_result["Q"], poses, layout.size)
             power += sign * (F @ v * layout.size + M @ omega)
         scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
     return power, scale
@@ -199,7 +201,7 @@ def leaves_joints_fixed(scene: PreparedScene, free: MasslessMotions, poses: Tree
             if body < 0:
                 continue
             joint_point = poses.r[body] + poses.R[body] @ (point - layout.reference[body])
-            omega, v = free.body_velocities(body, joint_point, poses, layout.size)
+            omega, v = free.find_body_velocities(body, joint_point, poses, layout.size)
             is_guided = joint.kind in ("line", "plane") and end == joint.b
             if np.abs(v).max(initial=0.0) > tolerances.ON_AXIS:
                 return False
@@ -229,22 +231,22 @@ def find_massless_motions(scene: PreparedScene, lacking: Mapping[int, Array], po
     layout = scene.layout
     parents = layout.bodies["parent"].tolist()
     bodies = [i for i, parent in enumerate(parents) if i in lacking or parent in lacking]
-    conditions = {i: [rest_conditions(layout, i, lacking.get(i), poses)] for i in bodies}
+    conditions = {i: [find_rest_conditions(layout, i, lacking.get(i), poses)] for i in bodies}
     free_motions, inverse = {}, {}
     for i in reversed(bodies):
-        A, S = np.concatenate(conditions[i]), freedom_directions(layout, i, poses).T
+        A, S = np.concatenate(conditions[i]), list_freedom_directions(layout, i, poses).T
         U, sigma, Vt = np.linalg.svd(A @ S, full_matrices=True)
         rank = count_rank(sigma)
         free_motions[i] = S @ Vt[rank:].T
         inverse[i] = S @ (Vt[:rank].T / sigma[:rank]) @ U[:, :rank].T @ A
         if parents[i] in lacking:
-            conditions[parents[i]].append(independent_rows(U[:, rank:].T @ A @ transfer_matrix(layout, i, poses)))
+            conditions[parents[i]].append(independent_rows(U[:, rank:].T @ A @ make_transfer_matrix(layout, i, poses)))
     motion = np.zeros((len(bodies), 6, sum(free.shape[1] for free in free_motions.values())))
     first = 0
     number = {body: n for n, body in enumerate(bodies) if body in lacking}
     for n, i in enumerate(bodies):
         if parents[i] in number:
-            carried_motion = transfer_matrix(layout, i, poses) @ motion[number[parents[i]]]
+            carried_motion = make_transfer_matrix(layout, i, poses) @ motion[number[parents[i]]]
             motion[n] = carried_motion - inverse[i] @ carried_motion
         end = first + free_motions[i].shape[1]
         motion[n, :, first:end] += free_motions[i]
@@ -253,7 +255,7 @@ def find_massless_motions(scene: PreparedScene, lacking: Mapping[int, Array], po
     return MasslessMotions(bodies, motion[:, :3], motion[:, 3:]).combine(Vt.T / sigma)
 
 
-def rest_conditions(layout: Layout, i: int, axes: Array | None, poses: TreePoses) -> Array:
+def find_rest_conditions(layout: Layout, i: int, axes: Array | None, poses: TreePoses) -> Array:
     """Return the conditions on turn and shift of a body, (n, 6): its centre rests, it turns about `axes` without
     inertia alone. A body without mass has none.
     """
@@ -276,7 +278,7 @@ def cross_matrix(arm: Array) -> Array:
     return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
 
 
-def transfer_matrix(layout: Layout, i: int, poses: TreePoses) -> Array:
+def make_transfer_matrix(layout: Layout, i: int, poses: TreePoses) -> Array:
     """Return the effect of the parent's turn and shift on a body whose joint is fixed, (6, 6); a ball joint passes no
     turn on.
     """
@@ -288,7 +290,7 @@ def transfer_matrix(layout: Layout, i: int, poses: TreePoses) -> Array:
     return matrix
 
 
-def freedom_directions(layout: Layout, i: int, poses: TreePoses) -> Array:
+def list_freedom_directions(layout: Layout, i: int, poses: TreePoses) -> Array:
     """Return turn and shift from each freedom of a body that is not driven, world axes (n, 6)."""
     row = layout.bodies[i]
     of_parent = poses.R[row["parent"]] if row["parent"] >= 0 else np.eye(3)
@@ -310,7 +312,7 @@ def find_loose_motions(layout: Layout, motions: MasslessMotions, poses: TreePose
     """
     number = {body: n for n, body in enumerate(motions.bodies)}
     closures = layout.tables["closures"]
-    measure = layout.size / mean_lever(layout)
+    measure = layout.size / find_mean_lever(layout)
     resisted = np.zeros((len(closures), motions.count))
     for k, closure in enumerate(closures):
         f, m, b = rows["f"][k], rows["m"][k], int(closure["b"])
@@ -324,7 +326,7 @@ def find_loose_motions(layout: Layout, motions: MasslessMotions, poses: TreePose
     return motions.combine(free if free.shape[1] else np.linalg.svd(resisted)[2][-1:].T)
 
 
-def mean_lever(layout: Layout) -> float:
+def find_mean_lever(layout: Layout) -> float:
     """Return the mean distance of the cut joints' points from the centres of their bodies [m]; without any, the scene's
     size.
     """
@@ -354,10 +356,10 @@ def find_axes_in_any_pose(scene: PreparedScene, lacking: Mapping[int, Array]) ->
         pose = TreePoses(pose_bodies["R"], pose_bodies["r"])
         for body, turning in find_massless_motions(scene, lacking, pose).find_axes(pose).items():
             turnings.setdefault(body, []).append(turning)
-    return {body: span_vectors(np.concatenate(turning)) for body, turning in turnings.items()}
+    return {body: find_span_vectors(np.concatenate(turning)) for body, turning in turnings.items()}
 
 
-def artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> list[kernel.ArtificialInertia]:
+def make_artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> list[kernel.ArtificialInertia]:
     """Return artificial inertia for a body about some axes, of the order of its mass's own; one row of the kernel's
     table each.
     """
@@ -377,7 +379,7 @@ def independent_rows(rows: Array) -> Array:
     return np.asarray(sigma[:rank, None] * Vt[:rank])
 
 
-def span_vectors(rows: Array) -> Array:
+def find_span_vectors(rows: Array) -> Array:
     """Return unit vectors that span the rows, (k, 3); the largest component of a single axis is positive."""
     _, S, Vt = np.linalg.svd(rows, full_matrices=False)
     vectors = Vt[S > tolerances.RANK * float(S[0])]

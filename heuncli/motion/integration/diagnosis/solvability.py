@@ -47,10 +47,10 @@ def require_solvable(scene: PreparedScene, evaluation: Evaluation, wording: Erro
         from heuncli.motion.integration.diagnosis.massless_motions import is_unloaded_spin
 
         if not is_unloaded_spin(scene, evaluation, k):
-            raise SolveError(no_inertia_problem(scene, evaluation, k))
+            raise SolveError(make_no_inertia_problem(scene, evaluation, k))
     is_unmet = evaluation.residual > evaluation.allowed_residual
     if is_unmet.any():
-        raise SolveError(unmet_rows_problem(scene, evaluation, int(np.flatnonzero(is_unmet)[0]), wording))
+        raise SolveError(make_unmet_rows_problem(scene, evaluation, int(np.flatnonzero(is_unmet)[0]), wording))
     layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle_spins:
         rows = evaluation.bodies[:, layout.place[spin.body]]
@@ -132,7 +132,9 @@ def find_undirected(scene: PreparedScene, evaluation: Evaluation, is_motion_star
     return find_undirected_loads(scene.layout, evaluation, is_motion_start)
 
 
-def unmet_rows_problem(scene: PreparedScene, evaluation: Evaluation, instant: int, wording: ErrorWording) -> Problem:
+def make_unmet_rows_problem(
+    scene: PreparedScene, evaluation: Evaluation, instant: int, wording: ErrorWording
+) -> Problem:
     """Make the problem of closed chains that the accelerations found do not hold together."""
     from heuncli.motion.integration.diagnosis.ambiguous_laws import find_fighting_drives
 
@@ -170,7 +172,7 @@ def find_not_finite(scene: PreparedScene, evaluation: Evaluation, instant: int) 
     ]
 
 
-def no_inertia_problem(scene: PreparedScene, evaluation: Evaluation, instant: int) -> Problem:
+def make_no_inertia_problem(scene: PreparedScene, evaluation: Evaluation, instant: int) -> Problem:
     """Make the problem of a freedom that moves no mass: which bodies turn in it, about which axes."""
     from heuncli.motion.integration.diagnosis.massless_motions import find_loose_axes
 

@@ -48,9 +48,9 @@ def make_method(
     error_order: of Radau's error estimate in h; 0 for Gauss's methods, whose step is fixed
     """
     c = [Fraction(x) for x in collocation_nodes.nodes]
-    A, b, is_fixed = lagrange_integrals(c, c), lagrange_integrals(c, [Fraction(1)])[0], not error_order
+    A, b, is_fixed = integrate_lagrange(c, c), integrate_lagrange(c, [Fraction(1)])[0], not error_order
     inverse = invert(A)
-    at_start = [-x for x in lagrange_values(c, Fraction(0))]
+    at_start = [-x for x in evaluate_lagrange(c, Fraction(0))]
     collocation = {
         "real": collocation_nodes.real,
         "parts": list(collocation_nodes.pairs),
@@ -63,10 +63,10 @@ def make_method(
         name=name,
         order=order,
         nodes=(0.0, *collocation_nodes.nodes),
-        stages=tuple(sparse_row([Fraction(0), *row]) for row in A),
-        solution=sparse_row([Fraction(0), *b]),
+        stages=tuple(make_sparse_row([Fraction(0), *row]) for row in A),
+        solution=make_sparse_row([Fraction(0), *b]),
         error_order=error_order or 1,
-        dense=dense_output_rows(c),
+        dense=make_dense_output_rows(c),
         has_fixed_step=is_fixed,
         by_step=is_fixed,
         implicit=True,
@@ -78,7 +78,7 @@ def make_method(
 # Polynomials through nodes
 
 
-def lagrange_values(c: list[Fraction], x: Fraction) -> list[Fraction]:
+def evaluate_lagrange(c: list[Fraction], x: Fraction) -> list[Fraction]:
     """Return the values l_j(x)."""
     products = []
     for j, cj in enumerate(c):
@@ -90,14 +90,14 @@ def lagrange_values(c: list[Fraction], x: Fraction) -> list[Fraction]:
     return products
 
 
-def lagrange_integrals(c: list[Fraction], ends: list[Fraction]) -> Matrix:
+def integrate_lagrange(c: list[Fraction], ends: list[Fraction]) -> Matrix:
     """Return the integrals of all l_j from 0 to each of the ends, as sums of powers."""
     powers = invert([[x**k for k in range(len(c))] for x in c])
     power_integrals = [[x ** (k + 1) / (k + 1) for k in range(len(c))] for x in ends]
     return multiply(power_integrals, powers)
 
 
-def dense_output_rows(c: list[Fraction]) -> tuple[Row, ...]:
+def make_dense_output_rows(c: list[Fraction]) -> tuple[Row, ...]:
     """Return the rows that extend the cubic to the polynomial through all stages within the step.
 
     At x = c_i the stage differs from the cubic by x^2 (1 - x)^2 (F3 + x (F4 + (1 - x) (F5 + ...))). Rows apply to the
@@ -112,7 +112,7 @@ def dense_output_rows(c: list[Fraction]) -> tuple[Row, ...]:
         for k in range(1, len(inner)):
             shape.append(shape[-1] * (x if k % 2 else 1 - x))
         shapes.append(shape)
-    return tuple(sparse_row(row) for row in multiply(invert(shapes), differences))
+    return tuple(make_sparse_row(row) for row in multiply(invert(shapes), differences))
 
 
 # Matrices of fractions
@@ -143,7 +143,7 @@ def flatten(A: Matrix) -> list[float]:
     return [float(x) for row in A for x in row]
 
 
-def sparse_row(numbers: list[Fraction]) -> Row:
+def make_sparse_row(numbers: list[Fraction]) -> Row:
     """Return stage and coefficient of all numbers except zeros."""
     return tuple((stage, float(x)) for stage, x in enumerate(numbers) if x)
 
@@ -201,7 +201,7 @@ RADAU9 = make_method("Radau9", 9, RADAU_5, error_order=6, sample_fractions=(0.12
 # Scipy methods
 
 
-def scipy_method(name: str, order: int) -> Method:
+def make_scipy_method(name: str, order: int) -> Method:
     """Make a method from a class of `scipy.integrate`."""
     return Method(
         name=f"SciPy-{name}", order=order, nodes=(), stages=(), solution=(), error_order=order, scipy_name=name,
@@ -209,6 +209,6 @@ def scipy_method(name: str, order: int) -> Method:
     )  # fmt: skip
 
 
-RADAU = scipy_method("Radau", 5)  # Radau IIA of three stages: Hairer, Wanner, Solving ODEs II, IV.8
-BDF = scipy_method("BDF", 5)  # orders 1 to 5: Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997) 1-22
-LSODA = scipy_method("LSODA", 12)  # Adams to 12, BDF to 5: Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136-148
+RADAU = make_scipy_method("Radau", 5)  # Radau IIA of three stages: Hairer, Wanner, Solving ODEs II, IV.8
+BDF = make_scipy_method("BDF", 5)  # orders 1 to 5: Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997) 1-22
+LSODA = make_scipy_method("LSODA", 12)  # Adams to 12, BDF to 5: Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136-148

@@ -41,14 +41,14 @@ def make_failure_error(progress: RunProgress, code: int) -> SolveError:
     """Make the error of a run that the kernel's loop ended with a code."""
     t, scene, loop = progress.t, progress.scene, progress.kernel.loop
     if code == CHATTERING:
-        return SolveError(chattering_problem(t, *scene.layout.pack.branches[loop.changed_branch]))
+        return SolveError(make_chattering_problem(t, *scene.layout.pack.branches[loop.changed_branch]))
     if code == HALF_TURN:
         from heuncli.motion.integration.diagnosis.ambiguous_laws import (
-            half_turn_error,  # the global chart alone has them
+            make_half_turn_error,  # the global chart alone has them
         )
 
         is_unreduced = progress.integrated_scene.layout is scene.layout
-        return half_turn_error(
+        return make_half_turn_error(
             progress.integrated_scene, loop.half_turn, t, progress.integrated_state, is_unreduced=is_unreduced
         )
     name, message, hint = KERNEL_ERRORS[code]
@@ -62,7 +62,7 @@ def make_failure_error(progress: RunProgress, code: int) -> SolveError:
             return SolveError(*problems)
         problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
         return ClosuresLost(problem, passed_states=progress.passed_states, failure_time=t, last=progress.last)
-    return no_acceleration_error(run_failure, name, message, hint)
+    return make_no_acceleration_error(run_failure, name, message, hint)
 
 
 def find_left_paths_at(run_failure: RunFailure) -> list[Problem]:
@@ -86,7 +86,7 @@ def find_lost_loads(run_failure: RunFailure) -> list[Problem]:
     return find_without_value(run_failure.mechanism, run_failure.t, run_failure.progress.last, run_failure.coordinates)
 
 
-def no_acceleration_error(run_failure: RunFailure, name: str, message: str, hint: str) -> SolveError:
+def make_no_acceleration_error(run_failure: RunFailure, name: str, message: str, hint: str) -> SolveError:
     """Return the error of an expression without a value there, else of one that grows without bound, else that of the
     code.
     """
@@ -127,7 +127,7 @@ def find_turned_bushings(run_failure: RunFailure) -> list[Problem]:
     return find_half_turned(run_failure.mechanism, run_failure.evaluation, 0)
 
 
-def chattering_problem(t: float, expression: Expression, branch: int) -> Problem:
+def make_chattering_problem(t: float, expression: Expression, branch: int) -> Problem:
     """Make the problem of a branch that changes back as soon as it changed: the motion would have to stay in
     between.
     """

@@ -83,7 +83,7 @@ class KernelLoop:
             "courses": self.polynomials,
         }
         output.update(zip(PER_STEP, self.per_step, strict=True))
-        self.loop = integration.Integration(workspace, method.arrays, loop_input(start, method, layout), output)
+        self.loop = integration.Integration(workspace, method.arrays, make_loop_input(start, method, layout), output)
 
     def read_steps(self) -> Array:
         """Return the PER_STEP values of the last steps, (count, 4); a view."""
@@ -119,7 +119,7 @@ def to_double_array(numbers: Array) -> array[float]:
     return array("d", np.asarray(numbers, dtype=float).tobytes())
 
 
-def loop_input(start: LoopStart, method: Method, layout: Layout) -> dict[str, Any]:
+def make_loop_input(start: LoopStart, method: Method, layout: Layout) -> dict[str, Any]:
     """Return a start as input of the kernel's loop (kernel/integration.py): its tolerance, or the fixed step
     instead.
     """
@@ -133,12 +133,12 @@ def loop_input(start: LoopStart, method: Method, layout: Layout) -> dict[str, An
         "rate": start.rate,
         "following": int(start.is_replay),
         "late": int(start.late),
-        **(stiffness_limits(method, layout) if start.watch_stiffness else NO_STIFFNESS_WATCH),
+        **(make_stiffness_limits(method, layout) if start.watch_stiffness else NO_STIFFNESS_WATCH),
     }
 
 
-def stiffness_limits(method: Method, layout: Layout) -> dict[str, float]:
-    """Return the limits by which the kernel's loop notices stiffness (kernel/stiffness.py); none for implicit
+def make_stiffness_limits(method: Method, layout: Layout) -> dict[str, float]:
+    """Return the limits by which the kernel's loop notices stiffness (kernel/stages.py); none for implicit
     methods.
     """
     if method.stable == 0.0:

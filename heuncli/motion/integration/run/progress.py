@@ -211,9 +211,8 @@ class StepRecorder:
 
 
 MAX_POLYNOMIAL_NUMBERS = 1_000_000  # numbers in the stored polynomials; with more, steps are repeated instead
-MAX_RECORD_NUMBERS = (
-    20_000_000  # numbers in the records for replays, at the ends of all steps or of every second, fourth, ...
-)
+# numbers in the records for replays, at the ends of all steps or of every second, fourth, ...
+MAX_RECORD_NUMBERS = 20_000_000
 MAX_PASSED_STATES = 100_000  # most states used to explain an error
 
 

@@ -11,7 +11,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.kernel.choose import steps as kernel
-from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import Method
 from heuncli.results.results import Array
 

@@ -140,7 +140,7 @@ class ScipyIntegration:
         from scipy import integrate  # not before it is needed: a third of a second
 
         solver_class = getattr(integrate, self.request.method.scipy_name)
-        scale = error_scales(self.derivative, segment.begin, state, self.request.last)
+        scale = find_error_scales(self.derivative, segment.begin, state, self.request.last)
         relative_tolerance = max(self.request.local, MIN_RELATIVE_TOLERANCE)
         try:
             return solver_class(
@@ -164,7 +164,7 @@ class ScipyIntegration:
             raise give_up_error(self.request.method, float(solver.t), str(message or "a value is no longer a number"))
 
 
-def error_scales(derivative: Derivative, t: float, state: Array, last: float) -> Array:
+def find_error_scales(derivative: Derivative, t: float, state: Array, last: float) -> Array:
     """Return the error scales of the components: 1 rad, the scene's size, and these times the scene's rate."""
     integrated_scene = derivative.integrated_scene
     weights = np.asarray(integrated_scene.layout.weights)

@@ -232,7 +232,7 @@ class Stepper:
             rope = self.progress.integrated_scene.find_rope(self.progress.kernel.loop.contact)
             return EarlyEnd(just_before(t) if t == begin > 0.0 else t, rope)
         if code == CHATTERING and self.triggers is not None and self.triggers.has_just_struck(t):
-            raise self.triggers.endless_error(t)
+            raise self.triggers.make_endless_error(t)
         from heuncli.motion.integration.run.failure import make_failure_error  # only on the way to an error
 
         raise make_failure_error(self.progress, code)

@@ -8,7 +8,7 @@ Where that happens, a method of half the stages repeats that part (check/runs.py
 continues; where events become rare, the run restarts with its first method. Work is counted in evaluations, not in
 seconds, so that a scene is always solved in the same way.
 
-Where stability has limited the steps for a while (kernel/stiffness.py), an implicit method is tried for some steps from
+Where stability has limited the steps for a while (kernel/stages.py), an implicit method is tried for some steps from
 the state reached. If the whole motion, restarted with it, costs less than the rest of this run, the run stops:
 `StiffRun`. The cost is measured, because fast oscillations that are worth following cost an implicit method as much. It
 is counted in evaluations, not in seconds, so that a scene is always solved in the same way.
@@ -99,12 +99,12 @@ def require_progress(progress: RunProgress, most_steps: int) -> None:
         from heuncli.motion.integration.diagnosis.fast_motions import (
             explain_short_steps,  # only on the way to an error
             find_growing,
-            stalled_error,
+            make_stalled_error,
         )
 
         problems = find_growing(progress.scene, progress.t, progress.state, progress.passed_states)
         cause = "" if problems else explain_short_steps(progress.scene, progress.t, progress.state, *progress.pace)
-        raise stalled_error(problems, f"{steps.count} {done_text}", projected, cause)
+        raise make_stalled_error(problems, f"{steps.count} {done_text}", projected, cause)
 
 
 # Slow runs
@@ -192,9 +192,8 @@ class EventWatch:
 TRIAL_STEPS = (8, 8)  # steps of the implicit method: those to reach its pace, and those that are measured
 MAX_TRIAL_SHARE = 0.125  # fraction of the remaining work that the trial may take
 CORRECTIONS = 8  # iterations of the stages in a step, rarely more
-START_COST = (
-    4.0  # cost of the part done with the implicit method, over its explicit evaluations: that part was not stiff
-)
+# cost of the part done with the implicit method, over its explicit evaluations: that part was not stiff
+START_COST = 4.0
 RECENT_STEPS = 8  # steps of the run whose mean is its pace
 FACTOR_COST = 0.02  # times n^2 per stage: cost of its factors, in evaluations of n numbers of state
 

@@ -152,9 +152,9 @@ class Triggers:
         for i in impulses:
             self.strike_counts[i] += 1
         if self.simultaneous_count > MAX_SIMULTANEOUS * len(self.numbers):
-            raise self.endless_error(t)
+            raise self.make_endless_error(t)
 
-    def endless_error(self, t: float) -> SolveError:
+    def make_endless_error(self, t: float) -> SolveError:
         """Make the error of impulses that follow each other endlessly at an instant, or ever faster up to it."""
         impulse_names = [self.blows[i].name for i in self.numbers if self.strike_counts[i]]
         names = " and ".join(f"impulses.{name}" for name in impulse_names)

@@ -67,8 +67,8 @@ class PlaneStateMap:
         self.balls = _find_free_rotations(full)
         self.body_count = len(full.bodies)
         pairs = [*_coordinate_pairs(plane_view, flat), *_other_pairs(full, self.small)]
-        self.full_indices = np.array([own for own, _, _ in pairs], dtype=int)
-        self.flat_indices = np.array([of for _, of, _ in pairs], dtype=int)
+        self.full_indices = np.array([full_index for full_index, _, _ in pairs], dtype=int)
+        self.flat_indices = np.array([flat_index for _, flat_index, _ in pairs], dtype=int)
         self.factor = np.array([factor for _, _, factor in pairs])
         self.constant = _constant_part(full, self.small, pairs)
 
@@ -144,7 +144,7 @@ class PlaneStateMap:
 
 
 def angles_about(n: Array, attitudes: Array, starts: Array) -> list[float]:
-    """The angles about n, within two turns, that take quaternions (b, 4) to others, including their signs."""
+    """Return the angles about n, within two turns, that take quaternions (b, 4) to others, including their signs."""
     turns = quaternion_product(attitudes, starts * np.array([1.0, -1.0, -1.0, -1.0]))
     sines = np.array([n @ turn for turn in turns[:, 1:]])
     return [2.0 * angle for angle in np.arctan2(sines, turns[:, 0]).tolist()]
@@ -175,7 +175,7 @@ def _find_turns(small: Layout) -> list[PlaneTurn]:
 
 
 def _freedom_directions(scene: PreparedScene) -> Array:
-    """The directions of a scene's scalar freedoms at the start, (n, 3)."""
+    """Return the directions of a scene's scalar freedoms at the start, (n, 3)."""
     layout, R = scene.layout, scene.start.rotation
     directions = vector_array(layout.tables["freedoms"]["direction"])
     for body, link in zip(layout.bodies, layout.spanning.links, strict=True):

@@ -66,8 +66,8 @@ def _severity(leaving: list[Departure]) -> tuple[int, float]:
 
 
 def _is_nearly_flat(leaving: list[Departure]) -> bool:
-    """Whether a reader might expect the scene to be flat: one load or drive leaves the plane, or all departures are
-    small.
+    """Return whether a reader might expect the scene to be flat: one load or drive leaves the plane, or all departures
+    are small.
     """
     return (len(leaving) == 1 and leaving[0].acts) or all(
         departure.size < tolerances.NEARLY_FLAT for departure in leaving
@@ -82,7 +82,7 @@ def _coupling_departures(plane_view: PlaneView) -> list[Departure]:
         stance.misalignment > tolerances.FLAT for stance in plane_view.orientations
     ):
         return []
-    from heuncli.multibody.reduction.plane.flat_couplings import iter_coupling_departures  # few scenes have them
+    from heuncli.multibody.reduction.plane.mechanism import iter_coupling_departures  # few scenes have them
 
     return list(iter_coupling_departures(plane_view, None))
 
@@ -123,7 +123,7 @@ def iter_departures(plane_view: PlaneView) -> Iterator[Departure]:
         yield from _impulse_departures(plane_view, height)
     yield from _fixed_coordinate_departures(plane_view)
     if plane_view.scene.mechanism.couplings:
-        from heuncli.multibody.reduction.plane.flat_couplings import iter_coupling_departures  # few scenes have them
+        from heuncli.multibody.reduction.plane.mechanism import iter_coupling_departures  # few scenes have them
 
         yield from iter_coupling_departures(plane_view, height)
 

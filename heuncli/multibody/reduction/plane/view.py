@@ -153,7 +153,7 @@ class PlaneView:
         return np.asarray(self.E[2])
 
     def is_upright(self, body: int) -> bool:
-        """Whether nothing can tilt a body, or the ground, out of the plane."""
+        """Return whether nothing can tilt a body, or the ground, out of the plane."""
         return body == GROUND or self.upright[body]
 
     def point_height(self, body: int, point: Array) -> float:
@@ -166,7 +166,7 @@ class PlaneView:
         return np.asarray(body_state(self.scene.start, body)[1].T @ self.n) if in_body else self.n
 
     def is_fixed_coordinate(self, joint: int, quantity: str) -> bool:
-        """Whether a coordinate cannot move in the plane."""
+        """Return whether a coordinate cannot move in the plane."""
         spatial_joint = self.scene.mechanism.joints[joint]
         kind = JOINTS[spatial_joint.kind]
         return quantity in kind.coordinates and quantity not in self.orientations[joint].flat_kind(kind).coordinates
@@ -219,7 +219,7 @@ def _find_upright(
 
 
 def _is_hinged(scene: PreparedScene, joints: Sequence[tuple[Joint, JointOrientation]], n: Array) -> bool:
-    """Whether joints between two bodies hold points of one line along the normal, as two hinges hold a door.
+    """Return whether joints between two bodies hold points of one line along the normal, as two hinges hold a door.
 
     One of them holds its point entirely, the other one keeps it on that line.
     """
@@ -255,7 +255,7 @@ def _find_orientation(joint: Joint, R_a: Array, R_b: Array, n: Array) -> JointOr
 
 
 def _keeps_upright(kind: JointKind, orientation: JointOrientation) -> bool:
-    """Whether a joint leaves only rotations about the normal and shifts across it."""
+    """Return whether a joint leaves only rotations about the normal and shifts across it."""
     if orientation.misalignment > tolerances.FLAT:
         return False
     turns = kind.turn in (NO_ROTATION, ABOUT_Z) or (kind.turn is ABOUT_AXIS and orientation.is_normal)
