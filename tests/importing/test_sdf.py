@@ -132,7 +132,8 @@ def test_names_that_the_import_adds_leave_those_of_the_file_alone() -> None:
 <link name="end">{MASS}</link>
 <joint name="f_mount" type="revolute"><parent>tip</parent><child>end</child><axis><xyz>0 0 1</xyz></axis></joint>
 <link name="last">{MASS}</link>
-<joint name="base_on_ground" type="revolute"><parent>end</parent><child>last</child><axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="base_on_ground" type="revolute"><parent>end</parent><child>last</child>
+<axis><xyz>0 0 1</xyz></axis></joint>
 <pose>0 0 3 0 0 0</pose>"""
     machine = described(model(more, joint=away))
     assert [one.name for one in machine.joints if one.keys["type"] == "pin"] == [

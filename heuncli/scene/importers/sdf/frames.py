@@ -93,12 +93,13 @@ class FrameTree:
                     message = f"{relation} '{base}', which is not there"
                     self.fields.report("import-tree", frame.element, name, message, hint)
         if not self.fields.problems:
-            self._report_circle({name: frame.base for name, frame in self.frames.items()}, "poses depend on each other")
+            bases = {name: frame.base for name, frame in self.frames.items()}
+            self._report_circle(bases, "poses depend on each other", "give one of them relative to the model")
         if not self.fields.problems:
             attached = {name: frame.attached_to for name, frame in self.frames.items() if name != WORLD}
-            self._report_circle(attached, "frames are attached to each other")
+            self._report_circle(attached, "frames are attached to each other", "attach one of them to a link")
 
-    def _report_circle(self, bases: Mapping[str, str | None], message: str) -> None:
+    def _report_circle(self, bases: Mapping[str, str | None], message: str, hint: str) -> None:
         """Report the first frame that depends on itself. bases: what each frame depends on, or None."""
         sound: set[str] = set()
         for name in bases:
@@ -108,7 +109,6 @@ class FrameTree:
                 chain[current] = None
                 current = bases.get(current)
             if current is not None and current in chain:
-                hint = "give one of them relative to the model" if "poses" in message else "attach one of them to a link"
                 text = f"{message}: {list_words([*chain])}"
                 self.fields.report("import-tree", self.frames[name].element, name, text, hint)
                 return

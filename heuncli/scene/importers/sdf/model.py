@@ -159,7 +159,9 @@ class RobotReader:
         self._leave_out_features(part, path)
         inertial = self.fields.find_child(part, "inertial", path)
         shapes = [shape for tag in ("collision", "visual") for shape in part.find_all(tag)]
-        element = XmlElement(part.tag, part.attributes, self._translate_shapes(shapes, part, path), part.line, part.column)
+        element = XmlElement(
+            part.tag, part.attributes, self._translate_shapes(shapes, part, path), part.line, part.column
+        )
         self.links[name] = UrdfLink(name, element, self._read_inertial(inertial, element, name, path))
 
     def _leave_out_features(self, part: XmlElement, path: str) -> None:

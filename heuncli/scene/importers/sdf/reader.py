@@ -81,7 +81,8 @@ def _choose_model(
     if len(worlds) + bool(models) != 1:
         message = "the file has no world and no model"
         if worlds:
-            message = "the file has several worlds" if len(worlds) > 1 else "the file has a world, and a model outside it"
+            what = "several worlds" if len(worlds) > 1 else "a world, and a model outside it"
+            message = f"the file has {what}"
         raise SpecError(fields.make_problem("import-tree", root, "", message, "give a file with one model"))
     ignored: dict[str, int] = {}
     gravity: Vec | None = None
