@@ -26,6 +26,7 @@ from heuncli.scene.file_format.fields import (
     AreaMoment,
     BodyOrEnd,
     Count,
+    CutOff,
     Direction,
     Either,
     Expected,
@@ -230,6 +231,10 @@ class TableEntry(Entry):
     x_unit: str | None = None
     y_unit: str | None = None
     period: Anything | None = None
+    smooth: CutOff | None = None
+    derivative: Count | None = None
+    integral: Count | None = None
+    drift: Literal["keep", "rest", "mean"] | None = None
     interpolation: Literal["linear", "cubic", "pchip"] = "linear"
     ends: Literal["not-a-knot", "natural"] | None = None
     outside: Literal["hold"] | None = None

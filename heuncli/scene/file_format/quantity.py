@@ -161,7 +161,7 @@ def require_dimension(expression: Expression, dimension: Dimension | None, scope
     if text in scope.given:
         description = f"{text} is {describe(own_dimension)} ({scope.given[text].text})"
     else:
-        hint = f"{describe_dimensions(text, scope)}; {hint}"
+        hint = "; ".join(filter(None, [describe_dimensions(text, scope), hint]))
         if WHOLE_NUMBER.search(text):
             hint += "; whole numbers are plain factors: write 3.0 for one with a unit"
         if USES_TIME.search(text):

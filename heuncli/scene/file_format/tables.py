@@ -29,6 +29,7 @@ from heuncli.scene.file_format.format import TableEntry
 from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.quantity import Scope, read_number
+from heuncli.scene.file_format.table_signals import KeyFinding, check_signal_keys, has_signal_keys, prepare_signal
 
 # hints
 SLOPES_HINT = "keep x and y within about ten powers of ten; x_unit and y_unit set their units"
@@ -85,6 +86,7 @@ def build_table(
 ) -> tuple[TableFunction | None, list[TableProblem]]:
     """Build the table of an entry (None if it cannot be used) and list its problems."""
     problems = [TableProblem(("ends",), finding) for finding in check_ends(entry)]
+    problems += [TableProblem((key,), finding) for key, finding in check_signal_keys(entry)]
     columns, units, locate = read_columns_in_si(entry, scope, files, problems)
     if columns is None or has_error(problems):
         return None, problems
@@ -98,6 +100,15 @@ def build_table(
     curve = entry.ends if entry.ends == "natural" else entry.interpolation
     table = interpolate_points(name, x, y, curve, entry.outside, entry.period)
     table = replace(table, dimensions=(units[0].dimension, units[1].dimension))
+    if has_signal_keys(entry):
+        try:
+            table, warnings = prepare_signal(table, entry)
+        except KeyFinding as error:
+            return None, [*problems, TableProblem((error.key,), error.finding)]
+        problems += [TableProblem((key,), finding, is_warning=True) for key, finding in warnings]
+        problems += check_magnitudes([table.x, table.y], None)
+        if has_error(problems):
+            return None, problems
     if not np.isfinite(np.frombuffer(table.numbers)).all():
         message = "its points are too close together or too far apart to compute a slope"
         return None, [*problems, TableProblem((), Finding("table-shape", message, SLOPES_HINT))]
