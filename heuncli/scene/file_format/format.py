@@ -226,6 +226,7 @@ class TableEntry(Entry):
     file: str | None = None
     skip: Count | None = None
     gaps: Literal["refuse", "skip", "linear"] = "refuse"
+    sheet: str | None = None
     x: Column | None = None
     y: Column | None = None
     x_unit: str | None = None
@@ -281,6 +282,9 @@ class ExpectEntry(Entry):
     below: Either | None = None
     above: Either | None = None
     curve: str | None = None
+    skip: Count | None = None
+    gaps: Literal["refuse", "skip", "linear"] | None = None
+    sheet: str | None = None
     x: ColumnName | None = None
     y: ColumnName | None = None
     x_unit: str | None = None

@@ -69,11 +69,13 @@ class FileColumns(NamedTuple):
     """The columns of a CSV file in SI, with their units.
 
     locate: returns the place of a point in the file
+    list_lines: returns the lines of all points
     """
 
     numbers: Columns
     units: list[ColumnUnit]
     locate: Locate
+    list_lines: Callable[[], array[int]]
 
 
 def has_error(problems: list[TableProblem]) -> bool:
@@ -144,10 +146,12 @@ def read_columns_in_si(
             return None, [], None
         column_keys = (entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
         units_given = entry.x_unit, entry.y_unit
-        return read_file_columns(
-            column_keys, units_given, entry.file, files, problems, entry.skip or 0, entry.gaps
-        ) or (None, [], None)
-    for key in (("skip",) if entry.skip is not None else ()) + (("gaps",) if entry.gaps != "refuse" else ()):
+        found = read_file_columns(
+            column_keys, units_given, entry.file, files, problems, entry.skip or 0, entry.gaps, entry.sheet
+        )
+        return (None, [], None) if found is None else (found.numbers, found.units, found.locate)
+    keys = {"skip": entry.skip is not None, "gaps": entry.gaps != "refuse", "sheet": entry.sheet is not None}
+    for key in (key for key, is_given in keys.items() if is_given):
         problems.append(TableProblem((key,), Finding("table-form", f"{key} is given without a file", NO_FILE_HINT)))
     units = [parse_given_unit(key, getattr(entry, key), problems) or ColumnUnit(1.0, None) for key in UNIT_KEYS]
     if isinstance(entry.x, list) and isinstance(entry.y, list):
@@ -292,17 +296,19 @@ def read_file_columns(
     problems: list[TableProblem],
     skip: int = 0,
     gaps: str = "refuse",
+    sheet: str | None = None,
 ) -> FileColumns | None:
     """Read the columns x and y of a CSV file in SI, with their units.
 
     column_keys: names or numbers of the columns
     given_units: the units that the entry gives
     skip, gaps: as `read_columns` takes them
+    sheet: of an Excel file
 
     What is wrong is appended to `problems`; None if that prevents reading.
     """
     try:
-        text = files.read_text(file)
+        text = files.read_text(file, sheet)
     except Finding as finding:
         problems.append(TableProblem(("file",), finding))
         return None
@@ -325,7 +331,12 @@ def read_file_columns(
         values = np.frombuffer(column)  # the same memory
         with np.errstate(over="ignore"):  # the caller checks the range and knows the location
             values *= unit.size
-    return FileColumns(found.numbers, units, lambda i: SourceLocation(path, found.find_line(text, i), 1))
+    return FileColumns(
+        found.numbers,
+        units,
+        lambda i: SourceLocation(path, found.find_line(text, i), 1),
+        lambda: found.list_lines(text),
+    )
 
 
 def report_gaps(columns: ReadColumns, path: str, problems: list[TableProblem]) -> None:
