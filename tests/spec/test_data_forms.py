@@ -14,8 +14,9 @@ from heuncli.base.errors import SpecError
 from heuncli.scene.file_format.load import load
 from heuncli.study.queries.expectations import compare
 from heuncli.study.workflow import solve
-from tests.spec.test_data_files import BODY, POINTS
 
+BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n"
+POINTS = [(0.0, 1.0), (1.5, 3.0)]
 TABLE = "x: time, y: force"
 
 

@@ -20,6 +20,7 @@ from heuncli.scene.importers.attitudes import (
     RIGHT_ANGLE_ERROR,
     add_vectors,
     compose_rotations,
+    compute_roll_pitch_yaw,
     rotate_vector,
     rotation_from_roll_pitch_yaw,
 )
@@ -31,7 +32,6 @@ from heuncli.scene.importers.xml_elements import XmlElement
 NO_POSE = LinkPose()
 MODEL = "__model__"  # the frame of the model that contains an element
 WORLD = "world"
-LOCK_LIMIT = 1e-7  # cos(pitch) below this: roll and yaw turn about one axis, and yaw is taken as 0
 
 
 class Frame(NamedTuple):
@@ -172,15 +172,6 @@ def transpose(R: Matrix) -> Matrix:
     """Return the inverse of a rotation."""
     a, b, c = zip(*R, strict=True)
     return a, b, c
-
-
-def compute_roll_pitch_yaw(R: Matrix) -> Vec:
-    """Return the roll, pitch and yaw of a rotation [rad]; the yaw is 0 where the pitch is a right angle."""
-    cosine = math.hypot(R[0][0], R[1][0])
-    pitch = math.atan2(-R[2][0], cosine)
-    if cosine < LOCK_LIMIT:
-        return math.atan2(-R[1][2], R[1][1]), pitch, 0.0
-    return math.atan2(R[2][1], R[2][2]), pitch, math.atan2(R[1][0], R[0][0])
 
 
 def read_pose(element: XmlElement, path: str, fields: UrdfFields) -> tuple[LinkPose, str | None] | None:
