@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.base.errors import SpecError
+from heuncli.base.errors import Problem, SpecError
 from heuncli.scene.file_format.load import load
 from heuncli.study.queries.expectations import compare
 from heuncli.study.workflow import solve
@@ -31,6 +31,11 @@ def refused(folder: Path, name: str, keys: str = TABLE) -> tuple[str, str, str]:
         read(folder, name, keys)
     (problem,) = caught.value.problems
     return problem.code, problem.message, problem.hint or ""
+
+
+def line_of(problem: Problem) -> int:
+    assert problem.location is not None
+    return problem.location.line
 
 
 def zipped(name: str) -> bytes:
@@ -72,7 +77,7 @@ def test_skip_gaps_units_and_all_digits_hold_for_excel(tmp_path: Path) -> None:
     spec = load(tmp_path / "spec.yaml", BODY + "tables: {f: {file: a.xlsx, x: t, y: F, skip: 2, gaps: skip}}\n")
     assert [*spec.tables["f"].y] == [0.1 * 1e3, 1 / 3 * 1e3, 2e3] and [*spec.tables["f"].x] == [0, 1.5, 1.7]
     (warning,) = spec.warnings
-    assert warning.code == "table-gaps" and warning.location.line == 6
+    assert warning.code == "table-gaps" and line_of(warning) == 6
     code, message, _ = refused(tmp_path, "a.xlsx", "x: t, y: F, skip: 2")
     assert code == "table-file" and "column 2 is missing" in message
 
@@ -81,7 +86,7 @@ def test_a_word_in_a_column_is_refused_at_its_row(tmp_path: Path) -> None:
     write_workbook(tmp_path / "a.xlsx", {"Bench": [["time", "force"], [0, 1], [1, "two"], [2, 3]]})
     with pytest.raises(SpecError) as caught:
         read(tmp_path, "a.xlsx")
-    assert caught.value.problems[0].location.line == 3
+    assert line_of(caught.value.problems[0]) == 3
 
 
 def test_another_zip_or_a_damaged_workbook_is_refused(tmp_path: Path) -> None:
@@ -172,7 +177,7 @@ def test_a_motor_with_an_error_is_refused_at_its_line(tmp_path: Path) -> None:
     (tmp_path / "a.eng").write_text(MOTOR.replace("4.826", "4.8x"))
     with pytest.raises(SpecError) as caught:
         read(tmp_path, "a.eng", "x: 1, y: 2")
-    assert caught.value.problems[0].location.line == 5
+    assert line_of(caught.value.problems[0]) == 5
     (tmp_path / "a.eng").write_text(MOTOR + MOTOR)
     assert "several motors: C6, C6" in refused(tmp_path, "a.eng")[1]
     (tmp_path / "a.eng").write_text("; nothing\n")
@@ -199,7 +204,7 @@ def test_the_headers_of_labview_are_passed_over(tmp_path: Path) -> None:
     (tmp_path / "a.lvm").write_text(LABVIEW.replace("3,0", "x"))
     with pytest.raises(SpecError) as caught:
         read(tmp_path, "a.lvm")
-    assert caught.value.problems[0].location.line == 11
+    assert line_of(caught.value.problems[0]) == 11
     (tmp_path / "a.lvm").write_text(LABVIEW + LABVIEW.partition("\n")[2])
     assert "segments" in refused(tmp_path, "a.lvm")[1]
 
@@ -221,7 +226,7 @@ def test_curves_take_skip_gaps_and_the_same_files(tmp_path: Path) -> None:
     (tmp_path / "fall.csv").write_text("\n".join(["Device;17", "Rate;10", "t;z", *lines]))
     spec = load(tmp_path / "spec.yaml", FALL.replace("MORE", "skip: 2, gaps: skip"))
     (warning,) = spec.warnings
-    assert (warning.code, warning.location.line) == ("table-gaps", 8)
+    assert (warning.code, line_of(warning)) == ("table-gaps", 8)
     curve = spec.expect[0].curve
     assert curve is not None and [*curve.lines] == [4, 5, 6, 7, 9, 10, 11, 12, 13, 14]
     assert compare(solve(spec), spec.expect[0]).is_met

@@ -58,7 +58,7 @@ def smooth_points(x: Array, y: Array, cut_off: float, is_periodic: bool) -> Arra
         z = fit_smoothing_spline(xs, np.tile(y[:-1], 2 * copies + 1), cut_off)[copies * count : (copies + 1) * count]
         return np.append(z, z[0])
     step = float(np.median(np.diff(x)))
-    away = step * np.arange(1, math.ceil(MEMORY * cut_off / step) + 1)
+    away: Array = step * np.arange(1.0, math.ceil(MEMORY * cut_off / step) + 1.0)
     before = continue_points(-x[::-1], y[::-1], cut_off, away)[::-1]
     after = continue_points(x, y, cut_off, away)
     xs, ys = np.concatenate([x[0] - away[::-1], x, x[-1] + away]), np.concatenate([before, y, after])
