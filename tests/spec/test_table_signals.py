@@ -267,6 +267,10 @@ def test_what_makes_no_signal_is_refused(keys: str) -> None:
     assert found[:2] == (path, code) and hint in found[2]
 
 
+def test_a_few_points_are_not_smoothed() -> None:
+    assert refused(X[:7], X[:7] ** 2, "smooth: 0.3") == ("smooth", "table-form", "give at least 8 points")
+
+
 def test_the_integral_of_a_periodic_table_needs_its_mean_taken_out() -> None:
     assert refused(X, np.sin(2.0 * math.pi * X).round(12), "integral: 1, period: 1") == (
         "integral", "table-form", "write drift: mean",

@@ -26,7 +26,7 @@ CUT_OFF_SHARE = math.sqrt(2.0) - 1.0  # so that the amplitude at the cut-off is 
 MEMORY = 7.5  # cut-off periods after which a point has lost its influence, to rounding
 ERROR_FACTOR = 3.0  # bounds the errors of noisy sines of all frequencies up to the cut-off (test_table_signals.py)
 WINDOW, MIN_WINDOW = 0.5, 4  # cut-off periods, and points at least, to which the parabola at an end is fitted
-MIN_POINTS_OF_ERROR = 8  # points of which every second one can be left out
+MIN_POINTS = 8  # fewer can neither be smoothed, nor thinned out to estimate an error
 
 
 class Integrals(NamedTuple):
@@ -126,7 +126,7 @@ def estimate_derivative_error(
     It is three times how much the derivative changes with half the period at the cut-off; without smoothing, if every
     second point is left out. None for too few points.
     """
-    if len(x) < MIN_POINTS_OF_ERROR:
+    if len(x) < MIN_POINTS:
         return None
     if cut_off is None:
         half = np.append(np.arange(0, len(x) - 1, 2), len(x) - 1)
@@ -162,7 +162,7 @@ def integrate_table(table: TableFunction, times: int, drift: str) -> Integrals:
         start = float((second[-1] - drift_of_second[-1]) / along[-1])
         drift_of_first, drift_of_second = drift_of_first + start, drift_of_second + start * along
     if times == 1:
-        return Integrals(first - drift_of_first, y - offset, offset, float(drift_of_first[-1]))
+        return Integrals(first - drift_of_first, y - offset, offset, float(offset * along[-1]))
     return Integrals(second - drift_of_second, first - drift_of_first, offset, float(drift_of_second[-1]))
 
 

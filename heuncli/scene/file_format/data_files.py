@@ -11,7 +11,6 @@ The line of a value in the text is its row in the sheet, or its line in the file
 from __future__ import annotations
 
 import io
-import zipfile
 from collections.abc import Iterable, Iterator
 from importlib import import_module
 from typing import Any
@@ -60,6 +59,8 @@ def import_extra(name: str) -> Any:
 
 def iter_workbook_rows(content: bytes | bytearray, sheet: str | None) -> Iterator[Iterable[Any]]:
     """Yield the rows of a sheet, the first one if none is named; of formulas the values. Raises Finding."""
+    import zipfile  # few scenes name an Excel file
+
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as parts:
             size = sum(part.file_size for part in parts.infolist())

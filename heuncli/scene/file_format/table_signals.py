@@ -15,8 +15,10 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.base.records import replace
 from heuncli.base.units import TIME, Dimension, describe, si_unit
+from heuncli.results.results import Array
 from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.measured_signals import (
+    MIN_POINTS,
     differentiate_points,
     estimate_derivative_error,
     integrate_table,
@@ -113,9 +115,7 @@ def integrate_entry(table: TableFunction, entry: TableEntry, notes: list[str]) -
     return replace(made, dimensions=(table.dimensions[0], dimension), notes=(*notes, note))
 
 
-def rebuild_table(
-    table: TableFunction, entry: TableEntry, y: np.ndarray, slopes: np.ndarray | None = None
-) -> TableFunction:
+def rebuild_table(table: TableFunction, entry: TableEntry, y: Array, slopes: Array | None = None) -> TableFunction:
     """Return the table through the same x and other values."""
     values, curve = array("d", y.tobytes()), table.interpolation
     made = interpolate_points(table.name, table.x, values, curve, entry.outside, entry.period, slopes)
@@ -133,6 +133,8 @@ def choose_cut_off(table: TableFunction, entry: TableEntry) -> float:
     step, span = float(np.median(np.diff(x))), float(x[-1] - x[0])
     if cut_off <= 0.0:
         raise KeyFinding("smooth", f"the cut-off is {cut_off:g}", "give a period above 0, or a frequency in Hz")
+    if len(x) < MIN_POINTS:
+        raise KeyFinding("smooth", f"{len(x)} points are too few to be smoothed", f"give at least {MIN_POINTS} points")
     text = describe_cut_off(cut_off, table)
     if cut_off < 2.0 * step:
         message = f"{text} is shorter than two steps of the points ({format_amount(step, expected)} each)"
