@@ -289,9 +289,9 @@ class _UnitReader:
 
 def suggest_unit(symbol: str) -> str:
     """Return a hint that names the most similar unit, or the common ones."""
-    similar = find_similar(symbol, UNITS)
+    similar = find_similar(symbol, UNITS, SPELLINGS)
     if similar is not None:
-        return f"did you mean {similar}?"
+        return f"did you mean {canonical_symbol(similar)}?"
     return (
         "known units: kg, g, m, mm, s, ms, rad, deg, rpm, N, kN, Pa, bar, ... and products such as N*m, kg/m^3, m/s^2"
     )

@@ -218,6 +218,7 @@ LINES: Mapping[str, Sequence[str]] = {
         "{spec} -o {out}/n.md --tolerance 1e-6 --no-reduce --least-norm --time-limit {limit}",
     ),
     "export": (
+        "urdf {spec} -o {out}/r.urdf --set {setting} --title T",
         "loads {spec} --body {body} --at first --format csv --title T --label {path}=Words",
         "loads {spec} --body {body} --at first,last --format json",
         "loads {spec} --body {body} --at first --format ansys -o {out}/a.dat",

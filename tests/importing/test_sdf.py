@@ -103,6 +103,56 @@ def test_nested_models_keep_their_names_apart() -> None:
     assert points["leg.mount"] == (0.5, 0, 0) and points["tool_base.tool_grip"] == (0.1, 0, 0)
 
 
+def points_of(text: str) -> dict[str, tuple[float, ...]]:
+    machine = described(text)
+    return {f"{body.name}.{point.name}": point.place for body in machine.bodies for point in body.points}
+
+
+@pytest.mark.parametrize(("canonical", "place"), [("", (0.5, 0, 0)), (' canonical_link="leg"', (0.5, 0, -1))])
+def test_a_frame_of_the_model_is_a_point_of_its_canonical_link(canonical: str, place: tuple[float, ...]) -> None:
+    body = "leg" if canonical else "base"
+    tip = f"""<frame name="f"><pose>0.5 0 0 0 0 0</pose></frame><link name="tip">{MASS}</link>
+<joint name="wrist" type="revolute"><parent>f</parent><child>tip</child><axis><xyz>0 1 0</xyz></axis></joint>"""
+    text = model(tip).replace('name="m"', f'name="m"{canonical}')
+    assert points_of(text)[f"{body}.f"] == place
+    assert next(one for one in described(text).joints if one.name == "wrist").keys["from"] == f"{body}.wrist"
+
+
+def test_a_frame_of_a_nested_model_of_models_is_fixed_to_the_first_link_in_it() -> None:
+    inner = f"""<model name="a"><frame name="f"><pose>0 0 2 0 0 0</pose></frame><model name="b">
+<link name="l"><pose>0 0 1 0 0 0</pose>{MASS}</link></model></model>
+<joint name="j" type="fixed"><parent>leg</parent><child>a::b::l</child></joint>"""
+    assert points_of(model(inner))["a_b_l.a_f"] == (0, 0, 1)
+
+
+def test_names_that_the_import_adds_leave_those_of_the_file_alone() -> None:
+    away = "<pose>0 0 0.5 0 0 0</pose>"  # so that links hip_frame, hip_mount and arm_on_ground would be added
+    more = f"""<link name="tip">{MASS}</link><frame name="hip_frame"/><frame name="f"/>
+<joint name="hip_mount" type="revolute"><parent>leg</parent><child>tip</child><axis><xyz>0 0 1</xyz></axis></joint>
+<link name="end">{MASS}</link>
+<joint name="f_mount" type="revolute"><parent>tip</parent><child>end</child><axis><xyz>0 0 1</xyz></axis></joint>
+<link name="last">{MASS}</link>
+<joint name="base_on_ground" type="revolute"><parent>end</parent><child>last</child>
+<axis><xyz>0 0 1</xyz></axis></joint>
+<pose>0 0 3 0 0 0</pose>"""
+    machine = described(model(more, joint=away))
+    assert [one.name for one in machine.joints if one.keys["type"] == "pin"] == [
+        "hip", "hip_mount", "f_mount", "base_on_ground",
+    ]  # fmt: skip
+    assert [body.name for body in machine.bodies] == ["base", "leg", "tip", "end", "last"]
+    assert {"base.f", "base.hip_frame"} <= set(points_of(model(more, joint=away)))
+
+
+def test_poses_in_a_link_may_be_relative_to_it_in_a_nested_model_too() -> None:
+    box = "<geometry><box><size>0.1 0.2 1</size></box></geometry>"
+    shape = f"<collision name='c'><pose relative_to='l'>0 0 0.5 0 0 0</pose>{box}</collision>"
+    mass = MASS.replace("<mass>", '<pose relative_to="l">0 0 0.25 0 0 0</pose><mass>')
+    nested = """<model name="n"><link name="l">{}</link></model>
+<joint name="j" type="fixed"><parent>leg</parent><child>n::l</child></joint>"""
+    assert described(model(nested.format(mass))).bodies[2].center == (0, 0, 0.25)
+    assert described(model(nested.format(shape)), density=1000.0).bodies[2].shapes[0].keys["center"] == (0, 0, 0.5)
+
+
 def test_a_link_without_inertial_has_the_mass_of_the_format_or_that_of_its_shape() -> None:
     box = "<geometry><box><size>0.1 0.2 1</size></box></geometry>"
     shape = f"<collision name='c'><pose>0 0 0.5 0 0 0</pose>{box}</collision>"
@@ -126,6 +176,10 @@ def test_a_world_gives_its_gravity_and_its_one_model_that_moves() -> None:
         described(world.replace("<static>true</static>", ""))
     assert refused.value.problems[0].message == "the file has 2 models that move: ground, m"
     assert described(world.replace("<static>true</static>", ""), model="m").title == "m"
+    with pytest.raises(SpecError, match="a world, and a model outside it"):
+        described(world.replace("</world>", f"</world>{robot}"))
+    with pytest.raises(SpecError, match="several worlds"):
+        described(world.replace("</sdf>", '<world name="v"/></sdf>'))
     with pytest.raises(SpecError, match="there is no model 'n'"):
         described(world, model="n")
 
@@ -143,6 +197,20 @@ REFUSED = {
     "poses in a circle": (
         model('<frame name="f"><pose relative_to="g"/></frame><frame name="g"><pose relative_to="f"/></frame>'),
         "import-tree", "relative to the model",
+    ),
+    "attached to nothing": (model('<frame name="f" attached_to="lag"><pose relative_to="leg"/></frame>'),
+                            "import-tree", "leg"),
+    "attached in a circle": (
+        model('<frame name="f" attached_to="g"><pose relative_to="leg"/></frame>'
+              '<frame name="g" attached_to="f"><pose relative_to="leg"/></frame>'),
+        "import-tree", "to a link",
+    ),
+    "no canonical link": (model().replace('name="m"', 'name="m" canonical_link="lag"'), "import-tree", "leg"),
+    "no canonical link inside": (
+        model(f'<model name="n" canonical_link="x"><link name="l">{MASS}</link></model>'), "import-tree", "n::l",
+    ),
+    "pose of a shape": (
+        model(leg='<inertial><pose relative_to="base">0 0 0 0 0 0</pose></inertial>'), "import-tree", "relative_to",
     ),
     "old pose": (model('<frame name="f"><pose frame="leg">0 0 0 0 0 0</pose></frame>'), "import-attribute", "gz sdf"),
     "not six": (model('<frame name="f"><pose>0 0 0</pose></frame>'), "import-number", "numbers"),

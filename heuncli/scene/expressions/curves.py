@@ -23,11 +23,18 @@ COEFFICIENTS = 4  # of a cubic
 
 
 def interpolate_points(
-    name: str, x: Sequence[float], y: Sequence[float], interpolation: str, outside: str | None, period: float | None
+    name: str,
+    x: Sequence[float],
+    y: Sequence[float],
+    interpolation: str,
+    outside: str | None,
+    period: float | None,
+    slopes: Array | None = None,
 ) -> TableFunction:
     """Make the table through points of ascending x; with a period, the last point equals the first.
 
     interpolation: linear, or one of SLOPES. Slopes at points that are too close together may be infinite.
+    slopes (n,): at the points, if they are known
     """
     x_array, y_array = (column if isinstance(column, array) else array("d", column) for column in (x, y))
     numbers = array("d", bytes(8 * (1 + len(x_array) + COEFFICIENTS * (len(x_array) - 1))))
@@ -36,21 +43,27 @@ def interpolate_points(
     number_view[1 : len(x_array) + 1] = x_array
     with np.errstate(all="ignore"):
         compute_cubics(np.frombuffer(x_array), np.frombuffer(y_array), interpolation, period is not None,
-               number_view[len(x_array) + 1 :].reshape(-1, COEFFICIENTS))  # fmt: skip
+               number_view[len(x_array) + 1 :].reshape(-1, COEFFICIENTS), slopes)  # fmt: skip
     kind = 2 if period is not None else 1 if outside == "hold" else 0
     return TableFunction(name, len(x_array) - 1, kind, numbers, x_array, y_array, interpolation)
 
 
-def compute_cubics(x: Array, y: Array, interpolation: str, periodic: bool, coefficients: Array) -> None:
-    """Compute the coefficients of the pieces, (n - 1, 4), in powers of the distance from their first point."""
+def compute_cubics(
+    x: Array, y: Array, interpolation: str, periodic: bool, coefficients: Array, slopes: Array | None = None
+) -> None:
+    """Compute the coefficients of the pieces, (n - 1, 4), in powers of the distance from their first point.
+
+    slopes (n,): at the points, if they are known
+    """
     h = x[1:] - x[:-1]
     d = coefficients[:, 1]  # the slopes of the straight pieces are stored where those of the curve will be
     np.divide(np.subtract(y[1:], y[:-1], out=d), h, out=d)
     coefficients[:, 0] = y[:-1]
-    if interpolation == "linear":
+    if interpolation == "linear" and slopes is None:
         return
     d = d.copy()
-    slopes = SLOPES[interpolation](x, h, d, periodic) if len(x) > 2 else np.repeat(d, 2)
+    if slopes is None:
+        slopes = SLOPES[interpolation](x, h, d, periodic) if len(x) > 2 else np.repeat(d, 2)
     a, b = slopes[:-1], slopes[1:]
     coefficients[:, 1] = a
     coefficients[:, 2] = (3.0 * d - 2.0 * a - b) / h

@@ -69,10 +69,11 @@ Pieces = Sequence[tuple[float, Formula]]  # the end of each piece, and the value
 
 # Laws from 0 to 1
 
-M = 4.0 + PI  # of the modified sine
-A = 8.0 * PI / (2.0 + PI)  # largest acceleration of the modified trapezoid
-V1, S1 = A / (4.0 * PI), A / (4.0 * PI) * (0.125 - 0.25 / PI)  # its velocity and value at x = 1/8
-V2, S2 = V1 + A / 4.0, S1 + V1 / 4.0 + A / 32.0  # at 3/8
+MODSINE_DIVISOR = 4.0 + PI  # of the modified sine
+MODTRAP_ACCELERATION = 8.0 * PI / (2.0 + PI)  # largest acceleration of the modified trapezoid
+V1 = MODTRAP_ACCELERATION / (4.0 * PI)  # its velocity at x = 1/8
+S1 = MODTRAP_ACCELERATION / (4.0 * PI) * (0.125 - 0.25 / PI)  # its value there
+V2, S2 = V1 + MODTRAP_ACCELERATION / 4.0, S1 + V1 / 4.0 + MODTRAP_ACCELERATION / 32.0  # at 3/8
 
 
 def reflect(formula: Formula) -> Formula:
@@ -87,20 +88,26 @@ def start_modified_trapezoid(x: LawPart) -> LawPart:
 
 def accelerate_modified_trapezoid(x: LawPart) -> LawPart:
     """Return the value while the acceleration is constant."""
-    return S1 + (x - 0.125) * (V1 + 0.5 * A * (x - 0.125))
+    return S1 + (x - 0.125) * (V1 + 0.5 * MODTRAP_ACCELERATION * (x - 0.125))
+
+
+def release_modified_trapezoid(x: LawPart) -> LawPart:
+    """Return the value while the acceleration falls as half a cosine, through the middle."""
+    cosine = cos(4.0 * PI * (x - 0.375))
+    return S2 + V2 * (x - 0.375) + MODTRAP_ACCELERATION / (16.0 * PI**2) * (1.0 - cosine)
 
 
 LAWS: dict[str, Pieces] = {
     "cycloid": [(1.0, lambda x: x - sin(TAU * x) * (1.0 / TAU))],
     "modsine": [
-        (0.125, lambda x: (PI * x - 0.25 * sin(4.0 * PI * x)) * (1.0 / M)),
-        (0.875, lambda x: (2.0 + PI * x - 2.25 * cos(4.0 * PI / 3.0 * x - PI / 6.0)) * (1.0 / M)),
-        (1.0, reflect(lambda x: (PI * x - 0.25 * sin(4.0 * PI * x)) * (1.0 / M))),
+        (0.125, lambda x: (PI * x - 0.25 * sin(4.0 * PI * x)) * (1.0 / MODSINE_DIVISOR)),
+        (0.875, lambda x: (2.0 + PI * x - 2.25 * cos(4.0 * PI / 3.0 * x - PI / 6.0)) * (1.0 / MODSINE_DIVISOR)),
+        (1.0, reflect(lambda x: (PI * x - 0.25 * sin(4.0 * PI * x)) * (1.0 / MODSINE_DIVISOR))),
     ],
     "modtrap": [
         (0.125, start_modified_trapezoid),
         (0.375, accelerate_modified_trapezoid),
-        (0.625, lambda x: S2 + V2 * (x - 0.375) + A / (16.0 * PI**2) * (1.0 - cos(4.0 * PI * (x - 0.375)))),
+        (0.625, release_modified_trapezoid),
         (0.875, reflect(accelerate_modified_trapezoid)),
         (1.0, reflect(start_modified_trapezoid)),
     ],
@@ -179,7 +186,7 @@ def make_motion_law(codegen: CodeGenerator, name: str, parts: Sequence[Part], te
         measure = function_dimension(name, parts[0].measure)
         return join_pieces(codegen, parts[0], LAWS[name], 1.0, text)._replace(measure=measure)
     distance, *limits = (require_constant(name, k, part) for k, part in enumerate(parts[1:]))
-    measure = profile_dimension(name, parts)
+    measure = find_profile_dimension(name, parts)
     sign = math.copysign(1.0, distance)
     pieces = [
         (end, lambda t, formula=formula: sign * formula(t))
@@ -202,7 +209,7 @@ def require_constant(name: str, k: int, part: Part) -> float:
     return part.constant
 
 
-def profile_dimension(name: str, parts: Sequence[Part]) -> MeasuredDimension:
+def find_profile_dimension(name: str, parts: Sequence[Part]) -> MeasuredDimension:
     """Return the dimension of a profile, that of its distance. Raises Finding [wrong-dimension]."""
     time, distance, *limits = (part.measure for part in parts)
     if time.kind == "known" and time.dimension != TIME:

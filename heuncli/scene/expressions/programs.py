@@ -48,6 +48,7 @@ class TableFunction:
     kind: outside its range it is 0 undefined, 1 constant, 2 periodic
     x, y: the given points [SI]
     dimensions: of the columns that have a unit
+    notes: on what was done to the given points
     """
 
     name: str
@@ -58,6 +59,7 @@ class TableFunction:
     y: array[float]
     interpolation: str = "linear"
     dimensions: tuple[tuple[int, int, int] | None, tuple[int, int, int] | None] = (None, None)
+    notes: tuple[str, ...] = ()
 
 
 def out_of_range_texts(table: TableFunction) -> tuple[str, str]:

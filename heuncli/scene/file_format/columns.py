@@ -69,6 +69,11 @@ class ReadColumns(NamedTuple):
         row = point if self.rows is None else self.rows[point]
         return next(islice(iter_rows(text, self.layout.header_lines), row, None), (1, ""))[0]
 
+    def list_lines(self, text: str) -> array[int]:
+        """Return the lines of all points in the text that was read."""
+        lines = array("q", [n for n, _ in iter_rows(text, self.layout.header_lines)])
+        return lines if self.rows is None else array("q", [lines[row] for row in self.rows])
+
 
 def read_column_numbers(text: str, *keys: object) -> Columns:
     """Read columns by name or by number from 1, without their headings. Raises CsvError, MissingColumnError."""

@@ -149,6 +149,19 @@ class DependentNumber(ValueReader):
         return read_function(value, None, info.context.load)
 
 
+class CutOffPeriod(DependentNumber):
+    """The period of an oscillation at the cut-off of a low pass, or its frequency in Hz: in the dimension of x."""
+
+    def read(self, value: Any, info: Any) -> Expression:
+        written = match_quantity(value) if type(value) is str else None
+        if written is None or written.unit not in FREQUENCIES:
+            return super().read(value, info)
+        frequency = written.value * FREQUENCIES[written.unit]
+        if not is_in_range(frequency) or frequency <= 0.0:
+            raise Finding("table-form", f"a cut-off of {value}", "give a frequency above 0, for example 20 Hz")
+        return replace(Expression.from_number(1.0 / frequency), dimension=u.TIME)
+
+
 class PartList(ValueReader):
     """A list whose items are read later by the model of their type; here it only has to be a list."""
 
@@ -272,6 +285,7 @@ class TextOrMapping:
         return {"anyOf": [{"type": "string", "description": "body.point"}, handler(schema)]}
 
 
+FREQUENCIES = {"Hz": 1.0, "kHz": 1e3}
 Anything = Annotated[float, SiNumber()]
 Number = Annotated[float, SiNumber(u.NUMBER)]
 Mass = Annotated[float, SiNumber(u.MASS)]
@@ -297,6 +311,7 @@ Damping = Annotated[float, SiNumber(u.DAMPING)]
 TurningDamping = Annotated[float, SiNumber(u.TURNING_DAMPING)]
 Count = Annotated[int, WholeNumber(u.NUMBER)]
 Either = Annotated[Expression, DependentNumber()]
+CutOff = Annotated[Expression, CutOffPeriod()]
 AngleInTime = Annotated[Expression, TimeFunction(u.ANGLE)]
 RateInTime = Annotated[Expression, TimeFunction(u.RATE)]
 VelocityInTime = Annotated[Expression, TimeFunction(u.VELOCITY)]

@@ -7,7 +7,6 @@ Impure: reads files.
 from __future__ import annotations
 
 import zlib
-from array import array
 from collections.abc import Iterator
 from xml.parsers import expat
 
@@ -17,7 +16,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding, SourceLocation
 from heuncli.base.records import replace
 from heuncli.base.units import Dimension, are_in_range, describe, is_in_range, range_error
-from heuncli.scene.file_format.column_layout import Columns, iter_rows
+from heuncli.scene.file_format.column_layout import Columns
 from heuncli.scene.file_format.format import ExpectEntry
 from heuncli.scene.file_format.format_shapes import MeshShape
 from heuncli.scene.file_format.models import Curve, Logo
@@ -60,7 +59,7 @@ def build_curve(
     if found is None or has_error(problems):
         return None, problems
     columns, sizes = found.numbers, [unit.size for unit in units]
-    lines = find_point_lines(files.read_text(item.curve), len(columns[0]))
+    lines = found.list_lines()
     first_error = next(check_curve_points(columns, sizes, None if x_of is not None else run), None)
     if first_error is not None:
         i, finding = first_error
@@ -80,19 +79,18 @@ def read_curve_columns(
     y_column = item.y if item.y is not None else 2
     file_problems: list[TableProblem] = []
     units = (item.x_unit, item.y_unit)
-    found = read_file_columns((x_column, y_column), units, item.curve, files, file_problems)
+    if item.skip is not None and item.skip < 0:
+        problems.append(TableProblem(("skip",), Finding("table-form", f"skip is {item.skip}", "give 0 or more")))
+        return None
+    reading = units, item.curve, files, file_problems, item.skip or 0, item.gaps or "refuse", item.sheet
+    found = read_file_columns((x_column, y_column), *reading)
     if x_of is not None and any(problem.keys == ("x",) for problem in file_problems):
-        file_problems = []
-        found = read_file_columns((1, y_column), units, item.curve, files, file_problems)
+        file_problems.clear()
+        found = read_file_columns((1, y_column), *reading)
     problems += [
         replace(problem, keys=("curve",)) if problem.keys == ("file",) else problem for problem in file_problems
     ]
     return found
-
-
-def find_point_lines(text: str, points: int) -> array[int]:
-    """Return the line numbers of the points of a text; a row of headings before them is skipped."""
-    return array("q", [n for n, _ in iter_rows(text)][-points:] if points else [])
 
 
 def check_curve_points(

@@ -26,6 +26,7 @@ from heuncli.scene.file_format.fields import (
     AreaMoment,
     BodyOrEnd,
     Count,
+    CutOff,
     Direction,
     Either,
     Expected,
@@ -225,11 +226,16 @@ class TableEntry(Entry):
     file: str | None = None
     skip: Count | None = None
     gaps: Literal["refuse", "skip", "linear"] = "refuse"
+    sheet: str | None = None
     x: Column | None = None
     y: Column | None = None
     x_unit: str | None = None
     y_unit: str | None = None
     period: Anything | None = None
+    smooth: CutOff | None = None
+    derivative: Count | None = None
+    integral: Count | None = None
+    drift: Literal["keep", "rest", "mean"] | None = None
     interpolation: Literal["linear", "cubic", "pchip"] = "linear"
     ends: Literal["not-a-knot", "natural"] | None = None
     outside: Literal["hold"] | None = None
@@ -276,6 +282,9 @@ class ExpectEntry(Entry):
     below: Either | None = None
     above: Either | None = None
     curve: str | None = None
+    skip: Count | None = None
+    gaps: Literal["refuse", "skip", "linear"] | None = None
+    sheet: str | None = None
     x: ColumnName | None = None
     y: ColumnName | None = None
     x_unit: str | None = None

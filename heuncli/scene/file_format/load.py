@@ -374,8 +374,9 @@ class SpecLoader:
         """Report what is wrong with an entry that names a file: at its keys, or at a location in the file."""
         for item in problems:
             finding = item.finding
-            if item.location is not None:
-                problem = Problem(finding.code, finding.message, item.location, finding.hint)
+            if item.location is not None or item.is_warning:
+                location = item.location or self.find_location((*path, *item.keys))
+                problem = Problem(finding.code, finding.message, location, finding.hint)
                 (self.warnings if item.is_warning else self.problems).append(problem)
             else:
                 self.report(finding.code, Violation((*path, *item.keys), finding.message, finding.hint))

@@ -75,8 +75,8 @@ class NamedFiles:
         hint = "copy it to the spec's folder, so that others can run the spec and see what it reads"
         return Finding("outside-folder", f"reads a file outside the spec's folder: {name}{link_note}", hint)
 
-    def read_text(self, name: str) -> str:
-        """Read the text of a file. Raises Finding."""
+    def read_text(self, name: str, sheet: str | None = None) -> str:
+        """Read the text of a data file; sheet: of an Excel file. Raises Finding."""
         try:
             content = self.read_content(name)
         except Finding as refused:
@@ -85,9 +85,11 @@ class NamedFiles:
             hint = "use a table of fewer points, or with these two columns only" if is_large else RELATIVE_PATH_HINT
             raise Finding(code, f"the file '{self.path(name)}' cannot be read: {reason}", hint) from None
         from heuncli.scene.file_format.column_layout import decode_text  # with csv 2 ms that meshes do not need
+        from heuncli.scene.file_format.data_files import convert_binary, convert_text
 
         try:
-            return decode_text(content)
+            text = convert_binary(content, sheet)
+            return convert_text(decode_text(content), name) if text is None else text
         except Finding as refused:
             message = f"the file '{self.path(name)}' cannot be read: {refused.message}"
             raise Finding(refused.code, message, refused.hint) from None

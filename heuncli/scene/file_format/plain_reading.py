@@ -16,6 +16,8 @@ from heuncli.base.named_tuples import NamedTuple
 CoreSchema = dict[str, Any]
 Reader = Callable[[Any, "ReadInfo"], Any]
 MISSING: Any = object()
+FIELD_KEYS = frozenset({"type", "schema", "validation_alias"})
+DEFAULT_KEYS = frozenset({"type", "schema", "default", "default_factory"})
 UNION_TYPES: dict[str, type] = {"str": str, "int": int}
 
 
@@ -30,8 +32,21 @@ class ReadInfo(NamedTuple):
 
 
 def make_reader(schema: CoreSchema) -> Reader:
-    """Make the reader of a schema; it raises DoubtfulError."""
-    return MAKERS[schema["type"]](schema)
+    """Make the reader of a schema; it raises DoubtfulError.
+
+    Raises NotImplementedError for a schema that it would read only in part, such as one with a bound.
+    """
+    maker, keys = MAKERS.get(schema["type"], (None, frozenset()))
+    if maker is None:
+        raise NotImplementedError(f"a schema of type '{schema['type']}'")
+    require_known_keys(schema, keys | {"type"})
+    return maker(schema)
+
+
+def require_known_keys(schema: CoreSchema, keys: frozenset[str]) -> None:
+    """Raise NotImplementedError if a part of a schema has other keys than these."""
+    if unknown := sorted(schema.keys() - keys):
+        raise NotImplementedError(f"{', '.join(unknown)} in a schema of type '{schema.get('type', 'field')}'")
 
 
 def read_anything(value: Any, info: ReadInfo) -> Any:
@@ -101,6 +116,8 @@ def make_dict_reader(schema: CoreSchema) -> Reader:
 def make_union_reader(schema: CoreSchema) -> Reader:
     """Make the reader of a text or a number: a value of exactly one of these types."""
     kinds = {UNION_TYPES[own["type"]] for own in schema["choices"] if own["type"] in UNION_TYPES}
+    for own in schema["choices"]:
+        require_known_keys(own, frozenset({"type"}) if own["type"] in UNION_TYPES else frozenset(own))
 
     def read(value: Any, info: ReadInfo) -> Any:
         if type(value) not in kinds:
@@ -140,7 +157,10 @@ def make_fields_reader(schema: CoreSchema) -> Reader:
     rows = []
     for name, field in schema["fields"].items():
         own = field["schema"]
+        require_known_keys(field, FIELD_KEYS)
         has_default = own["type"] == "default"
+        if has_default:
+            require_known_keys(own, DEFAULT_KEYS)
         reader = make_reader(own["schema"] if has_default else own)
         factory = own.get("default_factory") if has_default else None
         default = own.get("default", MISSING) if has_default else MISSING
@@ -182,20 +202,24 @@ def make_model_reader(schema: CoreSchema) -> Reader:
     return read
 
 
-MAKERS: dict[str, Callable[[CoreSchema], Reader]] = {
-    "any": lambda schema: read_anything,
-    "str": make_type_reader(str),
-    "int": make_type_reader(int),
-    "bool": make_type_reader(bool),
-    "literal": make_literal_reader,
-    "tuple": make_tuple_reader,
-    "list": make_list_reader,
-    "dict": make_dict_reader,
-    "nullable": make_nullable_reader,
-    "union": make_union_reader,
-    "tagged-union": make_tagged_reader,
-    "function-plain": make_function_reader,
-    "function-before": make_function_reader,
-    "model-fields": make_fields_reader,
-    "model": make_model_reader,
+# Of each type of schema: what makes its reader, and the keys that this reads besides `type`.
+MAKERS: dict[str, tuple[Callable[[CoreSchema], Reader], frozenset[str]]] = {
+    kind: (maker, frozenset(keys.split()))
+    for kind, maker, keys in (
+        ("any", lambda schema: read_anything, ""),
+        ("str", make_type_reader(str), ""),
+        ("int", make_type_reader(int), ""),
+        ("bool", make_type_reader(bool), "strict"),
+        ("literal", make_literal_reader, "expected"),
+        ("tuple", make_tuple_reader, "items_schema"),
+        ("list", make_list_reader, "items_schema"),
+        ("dict", make_dict_reader, "keys_schema values_schema"),
+        ("nullable", make_nullable_reader, "schema"),
+        ("union", make_union_reader, "choices"),
+        ("tagged-union", make_tagged_reader, "choices discriminator"),
+        ("function-plain", make_function_reader, "function"),
+        ("function-before", make_function_reader, "function schema"),
+        ("model-fields", make_fields_reader, "fields model_name"),
+        ("model", make_model_reader, "cls config schema"),
+    )
 }

@@ -9,8 +9,11 @@ from typing import Any
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
+from heuncli.base.spelling import find_similar
 from heuncli.base.units import (
+    UNITS,
     Dimension,
+    canonical_symbol,
     correct_unit,
     describe,
     is_in_range,
@@ -21,7 +24,15 @@ from heuncli.base.units import (
 )
 from heuncli.scene.expressions.grammar import compile_expression, require_length
 from heuncli.scene.expressions.programs import Expression
-from heuncli.scene.expressions.scope import RESERVED, WORDS, DependentError, Scope, describe_dimensions
+from heuncli.scene.expressions.scope import (
+    ARITY,
+    RESERVED,
+    WORDS,
+    DependentError,
+    Scope,
+    describe_dimensions,
+    unknown_name_finding,
+)
 
 # A number followed by something that begins like a unit; "2 if t < 1 else 3" is excluded separately.
 # The 1 of 1/s needs a blank before it: 21/s is not 2 1/s, and 9.81/2 is not 9.8 1/2.
@@ -30,6 +41,7 @@ FIGURE = r"\s*+([+-]?\s*+(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?+)\s*+"
 WITH_UNIT = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|(?<=\s)1/)[^,]*+)\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
 PLAIN_OR_WITH_UNIT = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
+CALL = re.compile(r"([^\W\d]\w*+)\s*+\(")  # a name before a parenthesis
 OVER_UNIT = re.compile(rf"{FIGURE}/\s*+([^\W\d]++)\s*\Z")
 USES_TIME = re.compile(r"(?<![\w.])t(?![\w.])")
 CONDITIONS_HINT = "for example guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
@@ -149,7 +161,7 @@ def require_dimension(expression: Expression, dimension: Dimension | None, scope
     if text in scope.given:
         description = f"{text} is {describe(own_dimension)} ({scope.given[text].text})"
     else:
-        hint = f"{describe_dimensions(text, scope)}; {hint}"
+        hint = "; ".join(filter(None, [describe_dimensions(text, scope), hint]))
         if WHOLE_NUMBER.search(text):
             hint += "; whole numbers are plain factors: write 3.0 for one with a unit"
         if USES_TIME.search(text):
@@ -182,11 +194,28 @@ def evaluate_quantity(number: WrittenQuantity, scope: Scope) -> tuple[float, Dim
     try:
         size, dimension = parse_unit(number.unit)
     except Finding as finding:
+        require_known_functions(number, scope)
         usual_spelling = correct_unit(number.unit)
         hint = f"write {number.figure.strip()} {usual_spelling}" if usual_spelling else product_hint(number, scope)
         hint = hint or expression_hint(number) or finding.hint
         raise Finding(finding.code, finding.message, hint) from None
     return require_finite(number.value * size), dimension
+
+
+def require_known_functions(number: WrittenQuantity, scope: Scope) -> None:
+    """Raise Finding [unknown-name] for '2 cycloide(t)': a misspelt function where a unit is expected."""
+    for name in CALL.findall(number.unit):
+        if name in ARITY or name in scope.parameters or name in RESERVED or canonical_symbol(name) in UNITS:
+            continue
+        finding = unknown_name_finding(scope, name, "function")
+        if find_similar(name, UNITS) is not None and not finding.hint.startswith("did you mean"):
+            continue
+        hint = finding.hint
+        for verb, mark in (("did you mean ", "?"), ("write ", "")):
+            if number.unit.startswith(name) and hint.startswith(verb):
+                function = hint.removeprefix(verb).removesuffix(mark)
+                hint = f"{verb}{number.figure.strip()}*{function}{number.unit.removeprefix(name)}{mark}"
+        raise Finding(finding.code, finding.message, hint)
 
 
 def product_hint(number: WrittenQuantity, scope: Scope) -> str | None:

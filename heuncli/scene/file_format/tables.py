@@ -29,6 +29,7 @@ from heuncli.scene.file_format.format import TableEntry
 from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.quantity import Scope, read_number
+from heuncli.scene.file_format.table_signals import KeyFinding, check_signal_keys, has_signal_keys, prepare_signal
 
 # hints
 SLOPES_HINT = "keep x and y within about ten powers of ten; x_unit and y_unit set their units"
@@ -68,11 +69,13 @@ class FileColumns(NamedTuple):
     """The columns of a CSV file in SI, with their units.
 
     locate: returns the place of a point in the file
+    list_lines: returns the lines of all points
     """
 
     numbers: Columns
     units: list[ColumnUnit]
     locate: Locate
+    list_lines: Callable[[], array[int]]
 
 
 def has_error(problems: list[TableProblem]) -> bool:
@@ -85,6 +88,7 @@ def build_table(
 ) -> tuple[TableFunction | None, list[TableProblem]]:
     """Build the table of an entry (None if it cannot be used) and list its problems."""
     problems = [TableProblem(("ends",), finding) for finding in check_ends(entry)]
+    problems += [TableProblem((key,), finding) for key, finding in check_signal_keys(entry)]
     columns, units, locate = read_columns_in_si(entry, scope, files, problems)
     if columns is None or has_error(problems):
         return None, problems
@@ -98,6 +102,15 @@ def build_table(
     curve = entry.ends if entry.ends == "natural" else entry.interpolation
     table = interpolate_points(name, x, y, curve, entry.outside, entry.period)
     table = replace(table, dimensions=(units[0].dimension, units[1].dimension))
+    if has_signal_keys(entry):
+        try:
+            table, warnings = prepare_signal(table, entry)
+        except KeyFinding as error:
+            return None, [*problems, TableProblem((error.key,), error.finding)]
+        problems += [TableProblem((key,), finding, is_warning=True) for key, finding in warnings]
+        problems += check_magnitudes([table.x, table.y], None)
+        if has_error(problems):
+            return None, problems
     if not np.isfinite(np.frombuffer(table.numbers)).all():
         message = "its points are too close together or too far apart to compute a slope"
         return None, [*problems, TableProblem((), Finding("table-shape", message, SLOPES_HINT))]
@@ -133,10 +146,12 @@ def read_columns_in_si(
             return None, [], None
         column_keys = (entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
         units_given = entry.x_unit, entry.y_unit
-        return read_file_columns(
-            column_keys, units_given, entry.file, files, problems, entry.skip or 0, entry.gaps
-        ) or (None, [], None)
-    for key in (("skip",) if entry.skip is not None else ()) + (("gaps",) if entry.gaps != "refuse" else ()):
+        found = read_file_columns(
+            column_keys, units_given, entry.file, files, problems, entry.skip or 0, entry.gaps, entry.sheet
+        )
+        return (None, [], None) if found is None else (found.numbers, found.units, found.locate)
+    keys = {"skip": entry.skip is not None, "gaps": entry.gaps != "refuse", "sheet": entry.sheet is not None}
+    for key in (key for key, is_given in keys.items() if is_given):
         problems.append(TableProblem((key,), Finding("table-form", f"{key} is given without a file", NO_FILE_HINT)))
     units = [parse_given_unit(key, getattr(entry, key), problems) or ColumnUnit(1.0, None) for key in UNIT_KEYS]
     if isinstance(entry.x, list) and isinstance(entry.y, list):
@@ -281,17 +296,19 @@ def read_file_columns(
     problems: list[TableProblem],
     skip: int = 0,
     gaps: str = "refuse",
+    sheet: str | None = None,
 ) -> FileColumns | None:
     """Read the columns x and y of a CSV file in SI, with their units.
 
     column_keys: names or numbers of the columns
     given_units: the units that the entry gives
     skip, gaps: as `read_columns` takes them
+    sheet: of an Excel file
 
     What is wrong is appended to `problems`; None if that prevents reading.
     """
     try:
-        text = files.read_text(file)
+        text = files.read_text(file, sheet)
     except Finding as finding:
         problems.append(TableProblem(("file",), finding))
         return None
@@ -314,7 +331,12 @@ def read_file_columns(
         values = np.frombuffer(column)  # the same memory
         with np.errstate(over="ignore"):  # the caller checks the range and knows the location
             values *= unit.size
-    return FileColumns(found.numbers, units, lambda i: SourceLocation(path, found.find_line(text, i), 1))
+    return FileColumns(
+        found.numbers,
+        units,
+        lambda i: SourceLocation(path, found.find_line(text, i), 1),
+        lambda: found.list_lines(text),
+    )
 
 
 def report_gaps(columns: ReadColumns, path: str, problems: list[TableProblem]) -> None:

@@ -17,6 +17,7 @@ from heuncli.scene.file_format.rotations import matrix_product
 EPS = 2.220446049250313e-16
 ROUNDING_ERROR = 4.0 * EPS  # relative to the largest term: error of a sum of three products of rounded numbers
 RIGHT_ANGLE_ERROR = 1e-15  # [rad] largest error of a double near a multiple of pi/2, up to a few turns
+LOCK_LIMIT = 1e-7  # cos(pitch) below this: roll and yaw turn about one axis, and yaw is taken as 0
 DOUBLE_DIGITS = 15  # any number of 15 digits survives as a double
 
 
@@ -39,6 +40,15 @@ def rotation_from_roll_pitch_yaw(angles: Vec) -> Matrix:
     """
     roll, pitch, yaw = (rotation_about_axis(axis, angle) for axis, angle in enumerate(angles))
     return compose_rotations(yaw, compose_rotations(pitch, roll))
+
+
+def compute_roll_pitch_yaw(R: Matrix) -> Vec:
+    """Return the roll, pitch and yaw of a rotation [rad]; the yaw is 0 where the pitch is a right angle."""
+    cosine = math.hypot(R[0][0], R[1][0])
+    pitch = math.atan2(-R[2][0], cosine)
+    if cosine < LOCK_LIMIT:
+        return math.atan2(-R[1][2], R[1][1]), pitch, 0.0
+    return math.atan2(R[2][1], R[2][2]), pitch, math.atan2(R[1][0], R[0][0])
 
 
 def compose_rotations(R: Matrix, S: Matrix) -> Matrix:

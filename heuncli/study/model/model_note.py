@@ -112,6 +112,11 @@ def describe_reductions(left_out: Sequence[str], scene: PreparedScene, reduction
     return {key: value for key, value in found.items() if value}
 
 
+def describe_tables(spec: Spec) -> list[str]:
+    """Say in sentences what was done to the points of tables: smoothing, derivatives, integrals."""
+    return [note for table in spec.tables.values() for note in table.notes]
+
+
 def add_rest_sentences(block: Block, sentences: Sequence[str]) -> Block:
     """Return the block `model` with sentences on the rest pose."""
     return block | {"rest": list(sentences), "notes": [*sentences, *block["notes"]]} if sentences else block

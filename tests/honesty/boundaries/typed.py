@@ -9,6 +9,7 @@ from heuncli.base.records import replace
 from heuncli.multibody.mechanism.build import build
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.prepare import prepare
+from heuncli.scene.expressions.measured_signals import differentiate_points, estimate_derivative_error
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.rotations import rotation_from_matrix
 from heuncli.study.queries.expectations import compare
@@ -52,6 +53,24 @@ def periodic(x: float) -> str:
     return read(bar(tail=f"tables: {{w: {{x: [0, 1, 2], y: [0, 1, 0], period: {2 * (1 + x)!r}}}}}"))
 
 
+def derivative(x: float) -> str:
+    """A line of slope 1 with one point off it, by so much that the part x of its derivative is uncertain."""
+    points = np.arange(20.0)
+
+    def uncertain_part(off: float) -> float:
+        y = points + off * (points == 11.0)
+        error = estimate_derivative_error(points, y, "cubic", False, 1, None)
+        assert error is not None
+        return error / float(np.abs(differentiate_points(points, y, "cubic", False, 1)).max())
+
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if uncertain_part(middle) < x else (low, middle)
+    y = (points + high * (points == 11.0)).tolist()
+    return read(bar(tail=f"tables: {{w: {{x: {points.tolist()}, y: {y}, interpolation: cubic, derivative: 1}}}}"))
+
+
 def moment(x: float) -> str:
     """A link of a robot of 1 m and 1 kg with one product of inertia of x."""
     names = ("ixx", "iyy", "izz", "ixy", "iyz")
@@ -93,6 +112,7 @@ PART = Part(
         Row("INERTIA_TYPED", principal, "fine", "warned: inertia-rounded"),
         Row("INERTIA_TYPED", unsymmetric, "fine", "refused: inertia-form"),
         Row("NO_IMPORTED_MOMENT", moment, "all moments of inertia are 0,", "a principal moment of inertia is negative"),
+        Row("DERIVATIVE_ERROR", derivative, "fine", "warned: table-derivative", (0.01, 1 / 3, 3.0)),
         Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),
         Row("LEAST_STRENGTH", strength, "warned: strength-small", "fine"),
         Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),

@@ -219,7 +219,7 @@ def describe_lengths(lengths: Lengths) -> str:
 
 # Curves
 
-CURVE_KEYS = ("x", "y", "x_unit", "y_unit", "within")
+CURVE_KEYS = ("skip", "gaps", "sheet", "x", "y", "x_unit", "y_unit", "within")
 KEYS_WITHOUT_CURVE = ("is", "at", "peak", "below", "above")
 
 

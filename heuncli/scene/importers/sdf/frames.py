@@ -9,6 +9,7 @@ them, so that a joint placed in its parent keeps the digits of the file.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Mapping
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import list_words, suggest
@@ -19,10 +20,11 @@ from heuncli.scene.importers.attitudes import (
     RIGHT_ANGLE_ERROR,
     add_vectors,
     compose_rotations,
+    compute_roll_pitch_yaw,
     rotate_vector,
     rotation_from_roll_pitch_yaw,
 )
-from heuncli.scene.importers.sdf.values import read_attribute_value, read_values
+from heuncli.scene.importers.sdf.values import read_attribute_flag, read_values
 from heuncli.scene.importers.urdf.document import LinkPose
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
@@ -30,14 +32,14 @@ from heuncli.scene.importers.xml_elements import XmlElement
 NO_POSE = LinkPose()
 MODEL = "__model__"  # the frame of the model that contains an element
 WORLD = "world"
-LOCK_LIMIT = 1e-7  # cos(pitch) below this: roll and yaw turn about one axis, and yaw is taken as 0
 
 
 class Frame(NamedTuple):
     """A frame with its pose in another.
 
     base: the scoped name of the frame in which its pose is given; None for the root
-    link: the scoped name of the link to which it is fixed, of a frame that it is attached to, or None
+    attached_to: the scoped name of the link or frame to which it is fixed; of a joint its child, of a model its
+    canonical link; None for links
     """
 
     name: str
@@ -53,6 +55,7 @@ class FrameTree:
     def __init__(self, fields: UrdfFields) -> None:
         self.fields = fields
         self.frames: dict[str, Frame] = {}
+        self.used_names: set[str] = set()  # of links and joints that the file does not have
 
     def add(self, frame: Frame, path: str) -> bool:
         """Add a frame; False, and a problem, if its name is used already."""
@@ -62,26 +65,52 @@ class FrameTree:
             self.fields.report("import-twice", frame.element, path, message, "give each its own name")
         return earlier is frame
 
-    def report_unknown_bases(self) -> None:
-        """Report poses relative to what is not there, and poses that depend on themselves."""
+    def choose_name(self, name: str) -> str:
+        """Choose a name like this one that no link, joint or frame has, and keep it for its new owner."""
+        while name in self.used_names or name in self.frames:
+            name += "_"
+        self.used_names.add(name)
+        return name
+
+    def report_wrong_bases(self, links: Collection[str]) -> None:
+        """Report frames that are relative or attached to what is not there, and those that depend on themselves.
+
+        links: the scoped names of all links
+        """
         for frame in self.frames.values():
-            if frame.base is not None and frame.base not in self.frames:
-                message = f"its pose is relative to '{frame.base}', which is not there"
-                hint = suggest(frame.base, self.frames, "frames")
-                self.fields.report("import-tree", frame.element, frame.name, message, hint)
-        if self.fields.problems:
-            return
+            name = "model" if frame.name == MODEL else frame.name
+            is_model = frame.element.tag == "model" and frame.name != WORLD and not frame.name.endswith(f"::{MODEL}")
+            if is_model and frame.attached_to is not None and frame.attached_to not in links:
+                message = f"its canonical link '{frame.attached_to}' is not there"
+                hint = suggest(frame.attached_to, links, "links")
+                self.fields.report("import-tree", frame.element, name, message, hint)
+            relations = {frame.base: "its pose is relative to"}
+            if frame.element.tag == "frame":
+                relations[frame.attached_to] = "it is attached to"
+            for base, relation in relations.items():
+                if base is not None and base not in self.frames:
+                    hint = suggest(base, self.frames, "frames")
+                    message = f"{relation} '{base}', which is not there"
+                    self.fields.report("import-tree", frame.element, name, message, hint)
+        if not self.fields.problems:
+            bases = {name: frame.base for name, frame in self.frames.items()}
+            self._report_circle(bases, "poses depend on each other", "give one of them relative to the model")
+        if not self.fields.problems:
+            attached = {name: frame.attached_to for name, frame in self.frames.items() if name != WORLD}
+            self._report_circle(attached, "frames are attached to each other", "attach one of them to a link")
+
+    def _report_circle(self, bases: Mapping[str, str | None], message: str, hint: str) -> None:
+        """Report the first frame that depends on itself. bases: what each frame depends on, or None."""
         sound: set[str] = set()
-        for name in self.frames:
+        for name in bases:
             chain: dict[str, None] = {}
             current: str | None = name
             while current is not None and current not in sound and current not in chain:
                 chain[current] = None
-                current = self.frames[current].base
+                current = bases.get(current)
             if current is not None and current in chain:
-                message = f"poses depend on each other: {list_words([*chain])}"
-                hint = "give one of them relative to the model"
-                self.fields.report("import-tree", self.frames[name].element, name, message, hint)
+                text = f"{message}: {list_words([*chain])}"
+                self.fields.report("import-tree", self.frames[name].element, name, text, hint)
                 return
             sound.update(chain)
 
@@ -145,15 +174,6 @@ def transpose(R: Matrix) -> Matrix:
     return a, b, c
 
 
-def compute_roll_pitch_yaw(R: Matrix) -> Vec:
-    """Return the roll, pitch and yaw of a rotation [rad]; the yaw is 0 where the pitch is a right angle."""
-    cosine = math.hypot(R[0][0], R[1][0])
-    pitch = math.atan2(-R[2][0], cosine)
-    if cosine < LOCK_LIMIT:
-        return math.atan2(-R[1][2], R[1][1]), pitch, 0.0
-    return math.atan2(R[2][1], R[2][2]), pitch, math.atan2(R[1][0], R[0][0])
-
-
 def read_pose(element: XmlElement, path: str, fields: UrdfFields) -> tuple[LinkPose, str | None] | None:
     """Read the <pose> of an element: the pose, and the frame it is relative to, or None; None if it is wrong."""
     part = fields.find_child(element, "pose", path)
@@ -177,7 +197,7 @@ def read_pose(element: XmlElement, path: str, fields: UrdfFields) -> tuple[LinkP
     x, y, z, *rest = numbers
     if form == "quat_xyzw":
         return _from_quaternion((x, y, z), rest, part, path, fields, base)
-    in_degrees = read_attribute_value(part, "degrees", path, fields)
+    in_degrees = read_attribute_flag(part, "degrees", path, fields)
     roll, pitch, yaw = (math.radians(angle) if in_degrees else angle for angle in rest)
     return LinkPose((x, y, z), fields.read_angles((roll, pitch, yaw), path)), base
 

@@ -209,13 +209,13 @@ def make_joints(
     world, and the frames, which are fixed to what they are attached to, and so become points.
     """
     fields, urdf_joints = frames.fields, dict[str, UrdfJoint]()
-    marks = {name for name, frame in frames.frames.items() if frame.element.tag == "frame"}
-    parts = {*links, WORLD}
+    frame_names = {name for name, frame in frames.frames.items() if frame.element.tag == "frame"}
+    link_names = {*links, WORLD}
     by_name = {joint.name: joint for joint in joints}
     for name, frame in frames.frames.items():
         if name in by_name:
             joint = by_name[name]
-            parent, child = (_find_end(end, tag, parts, marks, joint, frames) for end, tag in joint.ends)
+            parent, child = (_find_end(end, tag, link_names, frame_names, joint, frames) for end, tag in joint.ends)
             if parent is None or child is None:
                 continue
             if child == WORLD:
@@ -234,14 +234,13 @@ def make_joints(
                 if parent == WORLD and WORLD not in links:
                     links[WORLD] = make_massless_link(WORLD, model)
                 _make_joint(joint, parent, child, links, urdf_joints, frames)
-        elif name in marks and (link := frames.find_link(name, parts)) not in (None, WORLD):
-            attached_to = frame.attached_to if frame.attached_to in marks else link
+        elif name in frame_names and (link := frames.find_link(name, link_names)) not in (None, WORLD):
+            attached_to = frame.attached_to if frame.attached_to in frame_names else link
             assert attached_to is not None
             links[name] = make_massless_link(name, frame.element)
             pose = frames.compute_pose(name, attached_to)
-            urdf_joints[f"{name}_mount"] = UrdfJoint(
-                f"{name}_mount", frame.element, "fixed", attached_to, name, pose, X_AXIS
-            )
+            mount = frames.choose_name(f"{name}_mount")
+            urdf_joints[mount] = UrdfJoint(mount, frame.element, "fixed", attached_to, name, pose, X_AXIS)
     return urdf_joints
 
 
@@ -250,13 +249,15 @@ def make_massless_link(name: str, element: XmlElement) -> UrdfLink:
     return UrdfLink(name, XmlElement("link", {}, [], element.line, element.column), None)
 
 
-def _find_end(name: str, tag: str, parts: set[str], marks: set[str], joint: SdfJoint, frames: FrameTree) -> str | None:
+def _find_end(
+    name: str, tag: str, link_names: set[str], frame_names: set[str], joint: SdfJoint, frames: FrameTree
+) -> str | None:
     """Find the link, or for a parent the frame, that an end of a joint names; None, and a problem, if there is none."""
-    link = frames.find_link(name, parts)
+    link = frames.find_link(name, link_names)
     if link is None:
         hint = suggest(name, frames.frames, "frames")
         frames.fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is not there", hint)
-    return name if tag == "parent" and name in marks and link not in (None, WORLD) else link
+    return name if tag == "parent" and name in frame_names and link not in (None, WORLD) else link
 
 
 def _make_joint(
@@ -277,13 +278,9 @@ def _make_joint(
         axis = rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis)
     own_child = child
     if not is_at_child:
-        own_child = f"{joint.name}_frame"
-        while own_child in links:
-            own_child += "_"
-        links[own_child] = UrdfLink(
-            own_child, XmlElement("link", {}, [], joint.element.line, joint.element.column), None
-        )
-        name = f"{joint.name}_mount"
+        own_child = frames.choose_name(f"{joint.name}_frame")
+        links[own_child] = make_massless_link(own_child, joint.element)
+        name = frames.choose_name(f"{joint.name}_mount")
         urdf_joints[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
     part = joint.axis
     urdf_joints[joint.name] = UrdfJoint(

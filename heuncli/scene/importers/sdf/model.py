@@ -26,11 +26,10 @@ from heuncli.scene.importers.sdf.frames import (
 from heuncli.scene.importers.sdf.joints import SdfJoint, make_joints, make_massless_link, read_joint
 from heuncli.scene.importers.sdf.values import (
     as_attribute,
-    read_attribute_value,
+    read_attribute_flag,
     read_child_flag,
     read_child_number,
     read_moments,
-    read_values,
 )
 from heuncli.scene.importers.urdf.document import MOMENTS, Inertial, LinkPose, Robot, UrdfJoint, UrdfLink
 from heuncli.scene.importers.urdf.fields import UrdfFields
@@ -73,10 +72,10 @@ class RobotReader:
         """
         name = self.fields.read_word(model, "name", "model") or "model"
         self.frames.add(Frame(WORLD, model, None, NO_POSE, WORLD), f"model {name}")
-        self.frames.add(Frame(MODEL, model, WORLD, world_pose), f"model {name}")
+        self.frames.add(Frame(MODEL, model, WORLD, world_pose, find_canonical_link(model, "")), f"model {name}")
         self._read_model(model, "", f"model {name}")
         problem_count = len(self.fields.problems)
-        self.frames.report_unknown_bases()
+        self.frames.report_wrong_bases(self.links)
         links = dict(self.links)
         joints: dict[str, UrdfJoint] = {}
         if len(self.fields.problems) == problem_count == 0:
@@ -123,16 +122,14 @@ class RobotReader:
         if name is None:
             return
         path = f"model {scope}{name}"
-        first = next((one for one in part.children if one.tag == "link"), None)
-        canonical = part.attributes.get("canonical_link") or (first.attributes.get("name") if first else None)
-        link = None if canonical is None else f"{scope}{name}::{canonical}"
         placed = read_pose(part, path, self.fields)
         if placed is None:
             return
         base = make_scoped(placed[1] or MODEL, scope)
         inner = f"{scope}{name}::"
+        link = find_canonical_link(part, inner)
         if self.frames.add(Frame(f"{scope}{name}", part, base, placed[0], link), path):
-            self.frames.add(Frame(f"{inner}{MODEL}", part, f"{scope}{name}", NO_POSE, link), path)
+            self.frames.add(Frame(f"{inner}{MODEL}", part, f"{scope}{name}", NO_POSE, f"{scope}{name}"), path)
             self._read_model(part, inner, path)
 
     def _add_frame(self, part: XmlElement, scope: str, kind: str, base: str, attached_to: str | None) -> bool:
@@ -162,7 +159,9 @@ class RobotReader:
         self._leave_out_features(part, path)
         inertial = self.fields.find_child(part, "inertial", path)
         shapes = [shape for tag in ("collision", "visual") for shape in part.find_all(tag)]
-        element = XmlElement(part.tag, part.attributes, self._translate_shapes(shapes, path), part.line, part.column)
+        element = XmlElement(
+            part.tag, part.attributes, self._translate_shapes(shapes, part, path), part.line, part.column
+        )
         self.links[name] = UrdfLink(name, element, self._read_inertial(inertial, element, name, path))
 
     def _leave_out_features(self, part: XmlElement, path: str) -> None:
@@ -173,7 +172,7 @@ class RobotReader:
         if read_child_flag(part, "kinematic", path, self.fields, False):
             found.append(("kinematic", "the file moves the link; hold it by a drive"))
         decay = part.find_all("velocity_decay")
-        if any(float_or_none(one.text) != 0.0 for top in decay for one in top.children):
+        if any(read_float(one.text) != 0.0 for top in decay for one in top.children):
             found.append(("velocity_decay", "it is numerical damping; add a damper where there is one"))
         for tag, hint in found:
             element = part.find_all(tag)[0]
@@ -188,7 +187,7 @@ class RobotReader:
             self.links_of_default_mass.append(name)
             return Inertial(link, 1.0, NO_POSE, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), True)
         self.fields.report_unknown_parts(element, path, *INERTIAL_PARTS)
-        if read_attribute_value(element, "auto", path, self.fields):
+        if read_attribute_flag(element, "auto", path, self.fields):
             if not self.takes_shapes:
                 message = 'auto="true": the mass is to be that of the shapes'
                 self.fields.report("import-missing", element, path, message, "give its density: --density 1000")
@@ -203,29 +202,33 @@ class RobotReader:
         if inertia is not None:
             self.fields.report_unknown_parts(inertia, path, *MOMENTS)
         moments = read_moments(inertia or XmlElement("inertia", {}, [], 0, 0), MOMENTS, path, self.fields)
-        placed = read_pose(element, path, self.fields)
-        if mass is None or placed is None or None in moments:
-            return None
-        if placed[1] is not None and make_scoped(placed[1], "") != name:
-            message = f"the pose of <inertial> is relative to '{placed[1]}', not to its link"
-            self.fields.report("import-tree", element, path, message, "delete relative_to")
+        pose = self._read_pose_in_link(element, link, path)
+        if mass is None or pose is None or None in moments:
             return None
         known = tuple(moment for moment in moments if moment is not None)
-        return Inertial(inertia or element, mass, placed[0], known, True)
+        return Inertial(inertia or element, mass, pose, known, True)
 
-    def _translate_shapes(self, shapes: list[XmlElement], path: str) -> list[XmlElement]:
+    def _read_pose_in_link(self, element: XmlElement, link: XmlElement, path: str) -> LinkPose | None:
+        """Read the pose of a part of a link; None, and a problem, if it is relative to something else."""
+        placed = read_pose(element, path, self.fields)
+        if placed is None:
+            return None
+        if placed[1] not in (None, link.attributes.get("name")):
+            message = f"the pose of <{element.tag}> is relative to '{placed[1]}', not to its link"
+            self.fields.report("import-tree", element, path, message, "delete relative_to")
+            return None
+        return placed[0]
+
+    def _translate_shapes(self, shapes: list[XmlElement], link: XmlElement, path: str) -> list[XmlElement]:
         """Write collisions and visuals as URDF does, if their masses are asked for."""
         if not self.takes_shapes:
             return []
         translated: list[XmlElement] = []
         for shape in shapes:
-            placed = read_pose(shape, path, self.fields)
-            if placed is None:
+            pose = self._read_pose_in_link(shape, link, path)
+            if pose is None:
                 continue
-            if placed[1] is not None:
-                message = f"the pose of <{shape.tag}> is relative to '{placed[1]}', not to its link"
-                self.fields.report("import-tree", shape, path, message, "delete relative_to")
-            texts = {"xyz": _join_numbers(placed[0].xyz), "rpy": _join_numbers(placed[0].rpy)}
+            texts = {"xyz": _join_numbers(pose.xyz), "rpy": _join_numbers(pose.rpy)}
             origin = XmlElement("origin", texts, [], shape.line, shape.column)
             forms = [
                 _translate_form(form, self.fields, path) for top in shape.find_all("geometry") for form in top.children
@@ -235,12 +238,24 @@ class RobotReader:
         return translated
 
 
+def find_canonical_link(model: XmlElement, scope: str) -> str | None:
+    """Return the scoped name of the link to which the frame of a model is fixed: the one that the model names, else
+    its first, else the first of the models in it; None if there is none. scope: that of the names in the model.
+    """
+    if canonical := model.attributes.get("canonical_link", "").strip():
+        return f"{scope}{canonical}"
+    for link in model.find_all("link"):
+        return f"{scope}{link.attributes.get('name', '')}"
+    inner = (find_canonical_link(one, f"{scope}{one.attributes.get('name', '')}::") for one in model.find_all("model"))
+    return next((link for link in inner if link is not None), None)
+
+
 def make_scoped(name: str, scope: str) -> str:
     """Return the scoped name of a frame that is named in a scope."""
     return WORLD if name == WORLD else f"{scope}{name}"
 
 
-def float_or_none(text: str) -> float | None:
+def read_float(text: str) -> float | None:
     """Return the number of a text; None if it is none."""
     try:
         return float(text)
@@ -276,11 +291,5 @@ def _place_in_world(
     if pose == NO_POSE:
         return
     links[WORLD] = make_massless_link(WORLD, model)
-    name = f"{roots[0]}_on_ground"
+    name = frames.choose_name(f"{roots[0]}_on_ground")
     joints[name] = UrdfJoint(name, model, "floating" if is_free else "fixed", WORLD, roots[0], pose, (1.0, 0.0, 0.0))
-
-
-def read_gravity(world: XmlElement, fields: UrdfFields) -> list[float] | None:
-    """Read the gravity of a world [m/s^2]; SDF's default is 0 0 -9.8."""
-    part = fields.find_child(world, "gravity", "world")
-    return [0.0, 0.0, -9.8] if part is None else read_values(part, "world", fields, 3)

@@ -6,12 +6,13 @@ The file holds one model, or a world with one model that moves. Static models, s
 from __future__ import annotations
 
 from heuncli.base.errors import SpecError
+from heuncli.base.records import replace
 from heuncli.base.spelling import list_words, suggest
 from heuncli.scene.file_format.models import Vec
 from heuncli.scene.importers.description import LEFT_OUT_CODE, DescribedMachine, ImportOptions
 from heuncli.scene.importers.sdf.frames import NO_POSE, read_pose
-from heuncli.scene.importers.sdf.model import RobotReader, read_gravity
-from heuncli.scene.importers.sdf.values import read_child_flag
+from heuncli.scene.importers.sdf.model import RobotReader
+from heuncli.scene.importers.sdf.values import read_child_flag, read_values
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.urdf.reader import GRAVITY, translate_robot
 from heuncli.scene.importers.xml_elements import XmlElement
@@ -41,7 +42,7 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
     robot = reader.read_robot(model, pose, options.base_free)
     ignored = {**ignored_tags, **{tag: count for tag, count in robot.ignored_tags.items() if count}}
     is_placed = any(joint.kind == "floating" for joint in robot.joints.values())
-    robot = type(robot)(robot.element, robot.title, robot.links, robot.joints, ignored, robot.is_complete)
+    robot = replace(robot, ignored_tags=ignored)
     machine = translate_robot(
         robot, options._replace(base_free=False) if is_placed else options, fields, sha256, form="SDF"
     )
@@ -78,7 +79,10 @@ def _choose_model(
     """
     worlds, models = root.find_all("world"), root.find_all("model")
     if len(worlds) + bool(models) != 1:
-        message = "the file has no world and no model" if not worlds and not models else "the file has several worlds"
+        message = "the file has no world and no model"
+        if worlds:
+            what = "several worlds" if len(worlds) > 1 else "a world, and a model outside it"
+            message = f"the file has {what}"
         raise SpecError(fields.make_problem("import-tree", root, "", message, "give a file with one model"))
     ignored: dict[str, int] = {}
     gravity: Vec | None = None
@@ -99,6 +103,12 @@ def _choose_model(
         element = moving[1] if moving else root
         raise SpecError(fields.make_problem("import-tree", element, "", message, "choose one: --model NAME"))
     return moving[0], gravity, ignored
+
+
+def read_gravity(world: XmlElement, fields: UrdfFields) -> list[float] | None:
+    """Read the gravity of a world [m/s^2]; SDF's default is 0 0 -9.8."""
+    part = fields.find_child(world, "gravity", "world")
+    return [0.0, 0.0, -9.8] if part is None else read_values(part, "world", fields, 3)
 
 
 def _find_named(models: list[XmlElement], name: str, root: XmlElement, fields: UrdfFields) -> list[XmlElement]:

@@ -69,7 +69,7 @@ def read_child_flag(element: XmlElement, tag: str, path: str, fields: UrdfFields
     return _read_flag(part.text, part, f"<{tag}>", path, fields)
 
 
-def read_attribute_value(part: XmlElement, name: str, path: str, fields: UrdfFields) -> bool:
+def read_attribute_flag(part: XmlElement, name: str, path: str, fields: UrdfFields) -> bool:
     """Return whether an attribute says true."""
     text = part.attributes.get(name)
     return False if text is None else _read_flag(text.strip(), part, name, path, fields)
