@@ -12,7 +12,7 @@ from tests.shared.rest_told_again import TELLINGS
 EACH = 2
 ALL = (*KINDS, INDIFFERENT)
 # where nothing holds it the pose is known as the way there is, and a frequency with it
-ALONG_THE_WAY = [("friction", 14, "turned"), ("ropes", 1, "mirrored")]
+ALONG_THE_WAY = [("friction", 14, "turned"), pytest.param("ropes", 1, "mirrored", marks=pytest.mark.long)]
 CASES = [(kind, seed, WAYS[(seed + EACH * k) % len(WAYS)]) for k, kind in enumerate(ALL) for seed in range(EACH)]
 
 
