@@ -37,14 +37,25 @@ def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
             families[item.nodeid.split("[")[0], share].append(item)
     for (family, share), cases in families.items():
         # Another third for each file, so that a scene is met in one; families of one file share what they solve.
-        first = zlib.crc32(family.partition("::")[0].encode()) % share
+        first = zlib.crc32(family.partition("::")[0].encode())
         for start in range(0, len(cases), share):
             neighbours = cases[start : start + share]
             long.update(neighbours)
-            if start == 0 or first < len(neighbours):  # in place of a case marked long one of its neighbours
-                turned = neighbours[first:] + neighbours[:first]
+            # Of seeds those with every remainder, which chooses what is drawn.
+            place = (first + (start // share if has_seed(cases[0]) else 0)) % share
+            if start == 0 or place < len(neighbours):  # in place of a case marked long one of its neighbours
+                turned = neighbours[place:] + neighbours[:place]
                 long -= set([case for case in turned if case not in marked][:1])
     return long | marked
+
+
+def has_seed(item: pytest.Item) -> bool:
+    """Whether a case is one of a row of seeds."""
+    return (
+        isinstance(item, pytest.Function)
+        and hasattr(item, "callspec")
+        and split_seed(item.callspec.params)[0] is not None
+    )
 
 
 def list_long_seeds(items: Iterable[pytest.Item]) -> set[pytest.Item]:
