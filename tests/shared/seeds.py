@@ -27,7 +27,7 @@ SHARES = {"third": 3, "sixth": 6}  # of a family marked so, one case of so many 
 
 
 def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
-    """The cases that only a long run takes: tests marked long, most seeds, two of three cases of a costly family."""
+    """The cases that only a long run takes: tests marked long, most seeds, most cases of a costly family."""
     marked = {item for item in items if item.get_closest_marker("long")}
     long = list_long_seeds(items)
     families: defaultdict[tuple[str, int], list[pytest.Item]] = defaultdict(list)
