@@ -15,7 +15,7 @@ NO_NUMBER = re.compile(r"\b(NaN|nan|Infinity|undefined|null|\[object)")
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in SPECS.glob("*.yaml")))
-@pytest.mark.third
+@pytest.mark.sixth
 def test_it_opens_and_shows_its_machine(name: str, browser: Chromium, page: Callable[..., Path]) -> None:
     with browser.open(page(SPECS / f"{name}.yaml"), width=800, height=600) as tab:
         for key in ("Home", "End"):

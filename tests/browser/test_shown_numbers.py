@@ -41,7 +41,7 @@ def compare(tab: Tab, results: dict[str, Any], k: int) -> int:
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_numbers_of_a_frame_are_those_of_the_run(name: str, browser: Chromium, page: Pages, results: Runs) -> None:
     spec = SPECS / f"{name}.yaml"
     path, run = page(spec), results(spec, "--only", ",".join(REPORTS))

@@ -36,7 +36,9 @@ def many(folder: Path) -> Path:
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("form", ["table", "json", "markdown", "github"])
+@pytest.mark.parametrize(
+    "form", ["table", "json", *(pytest.param(form, marks=pytest.mark.long) for form in ("markdown", "github"))]
+)
 def test_what_is_told_does_not_depend_on_the_number_of_processes(heun: Heun, many: Path, form: str) -> None:
     one, *others = (heun("check", "many", "--format", form, "--jobs", n) for n in ("1", "2", "5"))
     assert one.returncode == 2

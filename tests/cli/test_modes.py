@@ -212,7 +212,7 @@ def test_no_false_digits_beside_what_is_stiff(heun: Heun, folder: Path, stiffnes
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_every_spec_has_modes_or_a_reason(heun: Heun, path: Path) -> None:
     done = heun("modes", str(path))
     assert done.returncode == 0 or (done.returncode == 3 and "[no" in done.stderr and not done.stdout)

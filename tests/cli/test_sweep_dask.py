@@ -181,6 +181,7 @@ def test_workers_without_this_heun_are_named_and_not_used(dask: DaskCluster, rec
     dask.there(0)
 
 
+@pytest.mark.long
 def test_a_variant_that_ends_its_workers_is_found_out(
     dask: DaskCluster, recipe: Recipe, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -290,7 +290,12 @@ class ManyNumbers(Sequence[float]):
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(
-    ("form", "fewer", "more"), [("csv", 24_000, 40_000), ("json", 8_000, 13_000), ("parquet", 4_000, 9_000)]
+    ("form", "fewer", "more"),
+    [
+        pytest.param("csv", 24_000, 40_000, marks=pytest.mark.long),
+        ("json", 8_000, 13_000),
+        ("parquet", 4_000, 9_000),
+    ],
 )
 def test_memory_does_not_grow_with_the_rows(
     form: str, fewer: int, more: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -318,14 +323,15 @@ def test_memory_does_not_grow_with_the_rows(
 def test_statistics_take_floats_alone(tmp_path: Path) -> None:
     """Of each measure a value and an error, and the number of the variant: 24 bytes."""
     importlib.import_module("scipy.special")  # whose code is no part of it
-    plan = make_axes_plan([], draws=make_draws([RandomVariable("d", "uniform", 0.0, 1.0, "")], 20_000))
+    count = 10_000
+    plan = make_axes_plan([], draws=make_draws([RandomVariable("d", "uniform", 0.0, 1.0, "")], count))
     answer = VariantResult((MeasureValue(1.5, 1e-9, 0.25),))
-    rows = (SweptRow(k, plan.find_values(k), answer) for k in range(20_000))
+    rows = (SweptRow(k, plan.find_values(k), answer) for k in range(count))
     tracemalloc.start()
     writer.write_sweep(head_of(plan, "N"), rows, SweepOutput("json", str(tmp_path / "out.json")))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert peak < 20_000 * 150, peak
+    assert peak < count * 150, peak
 
 
 def test_parquet_goes_to_a_file_and_needs_its_extra(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

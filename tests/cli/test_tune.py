@@ -121,9 +121,9 @@ def test_half_of_the_box_does_not_close(heun: Heun) -> None:
 
 @pytest.mark.heavy
 def test_nothing_can_be_solved(heun: Heun) -> None:
-    done = heun("tune", "gable.yaml", "b=0.2:0.9m", "--minimise", "joints.k.force", "--evaluations", "9")
+    done = heun("tune", "gable.yaml", "b=0.2:0.9m", "--minimise", "joints.k.force", "--evaluations", "3")
     assert done.returncode == 3 and done.stdout == ""
-    assert "none of 8 variants could be solved; 8 of them for this reason: joint k" in done.stderr
+    assert "none of 3 variants could be solved; 3 of them for this reason: joint k" in done.stderr
     assert "hint: " in done.stderr
 
 
@@ -170,6 +170,7 @@ def test_what_is_asked_of_a_constraint_that_is_just_met(heun: Heun) -> None:
 @pytest.mark.heavy
 def test_units_of_the_table(heun: Heun) -> None:
     words = ["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z > 12 N", "--units", "kN"]
+    words += ["--evaluations", "16"]
     done = heun("tune", *words)
     assert "joints.pivot.force.z [kN]" in done.stdout and "> 0.012" in done.stdout and done.stderr == ""
     done = heun("tune", *words, "--format", "json")
@@ -197,8 +198,9 @@ def test_the_spec_from_standard_input_and_the_result_to_a_file(heun: Heun, folde
 
 @pytest.mark.heavy
 def test_several_processes_give_the_same(heun: Heun) -> None:
-    words = ["gable.yaml", "b=0.5:1.9m", "m=1:4kg", "--minimise", "joints.k.force", "--evaluations", "40"]
-    assert found_by(heun, *words) == found_by(heun, *words, "--jobs", "3")
+    words = ["gable.yaml", "b=0.9:1.9m", "m=1:4kg", "--minimise", "joints.k.force", "--evaluations", "24"]
+    found = found_by(heun, *words)
+    assert found["unsolved"] and found == found_by(heun, *words, "--jobs", "3")
 
 
 @pytest.mark.heavy
@@ -278,10 +280,10 @@ analysis: {{type: state}}
     ("law", "place"),
     [
         ("1 if x < 0.437 else 3", 0.437),
-        ("x if x < 0.6 else 2+x", 0.6),
-        ("tanh(1e4*(x-0.437))+2", None),
+        pytest.param("x if x < 0.6 else 2+x", 0.6, marks=pytest.mark.long),
+        pytest.param("tanh(1e4*(x-0.437))+2", None, marks=pytest.mark.long),
         ("2+sign(x-0.437)*sqrt(abs(x-0.437))", None),
-        ("4*x", None),
+        pytest.param("4*x", None, marks=pytest.mark.long),
     ],
 )
 def test_a_limit_that_jumps_is_told(heun: Heun, folder: Path, law: str, place: float | None) -> None:

@@ -16,7 +16,7 @@ EVERYTHING = "motion,points,foundation,joints,sections,forces,energy,impulses"
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("spec", SPECS, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_no_line_is_wider_than_a_page(spec: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", str(spec), "--by-cause", "--only", EVERYTHING]) == 0
     lines = capsys.readouterr().out.splitlines()

@@ -47,6 +47,7 @@ def erred(name: str, scene: str) -> list[Array]:
 
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.third
 def test_the_largest_error_is_seen(name: str, scene: str) -> None:
     errors = erred(name, scene)
     assert errors or name == "Gauss6"

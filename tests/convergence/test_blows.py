@@ -63,6 +63,7 @@ def as_started(measured: dict[str, Any], state: dict[str, Placed]) -> dict[str, 
 
 # ---- replays
 @pytest.mark.parametrize("name", MAKERS)
+@pytest.mark.third
 def test_just_before_at_and_after(name: str) -> None:
     """At its own instant all is as after the blow; one double before as before it; poses do not jump."""
     run = run_of(name)
@@ -89,6 +90,7 @@ def test_just_before_at_and_after(name: str) -> None:
 
 @pytest.mark.parametrize("name", MAKERS)
 @pytest.mark.parametrize("samples", [(0.0, AT, END), (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, END)])
+@pytest.mark.third
 def test_samples_do_not_change_the_run(name: str, samples: tuple[float, ...]) -> None:
     """The blow stands where it stands, asked for or not; the blocks have the same bits."""
     few, many = run_of(name), run_of(name, 1e-9, samples)
@@ -104,6 +106,7 @@ def test_samples_do_not_change_the_run(name: str, samples: tuple[float, ...]) ->
 
 
 @pytest.mark.parametrize("name", MAKERS)
+@pytest.mark.third
 def test_energy_goes_on_through_it(name: str) -> None:
     """Kinetic + potential − work stays, the work of the blow and of the drives in it included."""
     run = run_of(name, 1e-11)
@@ -159,7 +162,7 @@ class Later:
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-9, 1e-11])
 @pytest.mark.parametrize("name", MAKERS)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_the_estimate_covers_what_comes_behind_a_blow(name: str, tolerance: float) -> None:
     run = run_of(name, tolerance)
     found = run.resample(np.array([(AT + END) / 2, END]))

@@ -50,6 +50,7 @@ def height(t: Array, e: float) -> Array:
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("e", [0.0, 0.5, 0.9, 1.0])
+@pytest.mark.third
 def test_bounces_are_as_exact_as_is_said(e: float, tolerance: float) -> None:
     """Also those at the end of infinitely many, and at rest behind them."""
     run = bouncing(e, tolerance)
@@ -108,6 +109,7 @@ analysis: {{duration: {duration!r}, samples: 2}}
 
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("depth", [-1e-12, 0.0, 1e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6])
+@pytest.mark.third
 def test_a_limit_that_is_grazed(depth: float, e: float) -> None:
     """Thrown up at 3 m/s against a stop just below the apex: struck at sqrt(2 g depth), or by rounding missed.
 

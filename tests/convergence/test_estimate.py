@@ -117,6 +117,7 @@ def test_never_below_the_true_error(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.third
 def test_the_tolerance_is_kept(name: str) -> None:
     """It bounds the estimate, and so the error; where rounding stands against it, a warning says what was reached."""
     for tolerance in TOLERANCES:

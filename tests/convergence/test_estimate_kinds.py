@@ -68,6 +68,7 @@ def true_error(kind: str, run: Study, told: Results, exact: Results, size: float
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.third
 def test_never_below_the_true_error(name: str, kind: str) -> None:
     """At a loose tolerance, so that rounding is far below, and every kind is there somewhere."""
     run, told = studied(name, LOOSE)

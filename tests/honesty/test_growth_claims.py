@@ -7,7 +7,7 @@ import pytest
 from tests.honesty.growth_claims import drawn, faults, right, told
 
 
-@pytest.mark.parametrize("seed", [0, 5, 6, 15])
+@pytest.mark.parametrize("seed", [0, 5, pytest.param(6, marks=pytest.mark.long), 15])
 @pytest.mark.third
 def test_the_growth_of_a_chain(seed: int) -> None:
     of = drawn(seed)

@@ -29,7 +29,7 @@ def test_right_before_the_horizon_and_told_where_it_is(seed: int) -> None:
     assert worst <= stated, f"{chaotic_scene(seed)[0]}: {worst:.1e} before the horizon {horizon}, {stated:.1e} stated"
 
 
-@pytest.mark.heavy
+@pytest.mark.long
 def test_the_scenes_are_chaotic() -> None:
     """Some of them have a horizon even so."""
     told = [run_of(seed).results.accuracy["horizon"] for seed in list_daily_seeds(range(200))]

@@ -13,11 +13,15 @@ EACH = 2
 ALL = (*KINDS, INDIFFERENT)
 # where nothing holds it the pose is known as the way there is, and a frequency with it
 ALONG_THE_WAY = [("friction", 14, "turned"), ("ropes", 1, "mirrored")]
+SLOW = {case[:2] for case in ALONG_THE_WAY}  # 7 to 15 s each
 CASES = [(kind, seed, WAYS[(seed + EACH * k) % len(WAYS)]) for k, kind in enumerate(ALL) for seed in range(EACH)]
+ALL_CASES = [
+    pytest.param(*case, marks=pytest.mark.long) if case[:2] in SLOW else case for case in [*CASES, *ALONG_THE_WAY]
+]
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize(("kind", "seed", "way"), [*CASES, *ALONG_THE_WAY])
+@pytest.mark.parametrize(("kind", "seed", "way"), ALL_CASES)
 @pytest.mark.third
 def test_it_swings_as_told_before(kind: str, seed: int, way: str) -> None:
     """As many of each kind, frequencies and growths within what both tellings state; refused where the first is."""

@@ -70,7 +70,7 @@ def looked_at(run: Trajectory) -> Array:
 
 
 @pytest.mark.parametrize(("name", "scene"), [pair for pair in product(NAMES, SCENES) if pair != LONG])
-@pytest.mark.third
+@pytest.mark.sixth
 def test_other_instants_are_the_runs_own(name: str, scene: str) -> None:
     runner, end = runner_of(scene)
     method = load_method_by_name(name)

@@ -11,11 +11,16 @@ from tests.shared.rest_told_again import resting
 
 EACH = 2
 WAYS = list(TELLINGS)
+SLOW = ("ropes", 1)  # 5 s
+CASES = [
+    pytest.param(kind, seed, marks=pytest.mark.long) if (kind, seed) == SLOW else (kind, seed)
+    for kind in KINDS
+    for seed in range(EACH)
+]
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("seed", range(EACH))
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "seed"), CASES)
 @pytest.mark.third
 def test_it_rests_as_told_before(kind: str, seed: int) -> None:
     """Pose, verdicts and loads within what both tellings state; refused where the first is."""

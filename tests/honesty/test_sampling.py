@@ -53,7 +53,7 @@ def shares(law: Law, n: int) -> tuple[float, float, list[float]]:
     return of_mean, of_deviation, of_percentiles
 
 
-@pytest.mark.parametrize("n", [20, 100, 400])
+@pytest.mark.parametrize("n", [20, 100, pytest.param(400, marks=pytest.mark.long)])
 @pytest.mark.parametrize("law", ["normal", "uniform"])
 @pytest.mark.third
 def test_intervals_hold_the_truth_as_often_as_they_say(law: str, n: int) -> None:

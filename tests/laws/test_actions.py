@@ -98,6 +98,7 @@ def test_what_comes_from_outside_ends_in_the_ground(of: tuple[object, int]) -> N
 
 
 @pytest.mark.parametrize("seed", spared(doubles.SEEDS[:36], doubles.QUICK))
+@pytest.mark.third
 def test_closure_rows_do_no_work(seed: int) -> None:
     """A row's wrench does no power on the relative motion that its joint leaves free; a driven rod's moves its end."""
     c, r = recovery(doubles.redundant, seed)

@@ -71,6 +71,7 @@ def test_bars_upright_move_alike() -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
+@pytest.mark.third
 def test_rates_of_random_loops_are_the_least(seed: int) -> None:
     """One body's rates held: no other rates that fit have less Σσ², nor less Σv² with the same σ."""
     s = random_loop(seed, 0.0, ("ball", "pin", "universal", "cylinder"), 9)

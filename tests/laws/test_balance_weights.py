@@ -51,7 +51,7 @@ def sum_of(found: BalanceResults, what: str, lever: float) -> float:
 @pytest.mark.parametrize("what", ["force", "moment", "mix"])
 @pytest.mark.parametrize("places", PLACES)
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_a_weight_leaves_what_it_promised(seed: int, places: str, what: str) -> None:
     scene = linkage(seed)
     found = balance_of(scene, weights=PLACES[places], minimise=what, lever=0.1)

@@ -26,6 +26,7 @@ SLOPES = (
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_every_body_balances(seed: int) -> None:
     """d'Alembert from the JSON alone: what `from` exerts on `to`, the opposite on `from`, and the applied loads."""
     c = tree(seed)
@@ -106,6 +107,7 @@ def around(c: Case, t: float) -> Results:
 
 
 @pytest.mark.parametrize("seed", SOME)
+@pytest.mark.third
 def test_foundation_is_the_outer_loads_less_the_rate_of_momentum(seed: int) -> None:
     """(55), its mass effects (56) by differences of the motion."""
     c = tree(seed)

@@ -92,7 +92,7 @@ def free_motions(layout: Layout, at: Poses) -> list[tuple[int, Array, Array]]:
 
 
 @pytest.mark.parametrize("of", CASES)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_the_jacobian_is_the_rate_of_the_gaps(of: tuple[Callable[[int], Case], int]) -> None:
     """One freedom moved a little either way, all that hangs on it rigidly along."""
     c, setup, recovered = solved(*of)

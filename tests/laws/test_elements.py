@@ -80,6 +80,7 @@ def told_on(found: Results, read: Model, body: str, k: int, about: Array) -> Arr
 
 
 @pytest.mark.parametrize("kind", kinds())
+@pytest.mark.third
 def test_every_body_balances(kind: str) -> None:
     """d'Alembert body by body, from what joints and elements are told to exert."""
     scene, told = run(kind, 100 + list(ELEMENTS).index(kind))

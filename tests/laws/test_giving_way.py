@@ -36,6 +36,7 @@ def loads(results: Results) -> np.ndarray[Any, Any]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS[::7])
+@pytest.mark.third
 def test_the_limit_of_a_small_stiffness(seed: int) -> None:
     """What is told is that limit, whatever the ratio of the small ones; what is open depends on it, or may."""
     scene = redundant_scene(seed)[1]

@@ -43,6 +43,7 @@ def same(told: Block, world: Block, R: Array) -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("axes", ["from", "to"])
 @pytest.mark.parametrize("name", SOLVED)
+@pytest.mark.third
 def test_the_vectors_are_the_same(name: str, axes: str) -> None:
     world, told = (solved(SPECS / f"{name}.yaml", which).results for which in ("world", axes))
     labels = make_labels(load(str(SPECS / f"{name}.yaml")))

@@ -48,6 +48,7 @@ def differences(
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "seed"), CASES)
+@pytest.mark.third
 def test_against_differences(kind: str, seed: int) -> None:
     """Trees and loops of every kind of joint and load, in motion: along random displacements, and changes of rates."""
     run = OF_KIND[kind](seed).study

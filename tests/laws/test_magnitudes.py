@@ -63,6 +63,7 @@ def numbers(found: Results, l: float, m: float, t: float) -> dict[str, Array]:
 @pytest.mark.parametrize(("l", "m", "t"), [
     (1e-20, 1.0, 1.0), (1e20, 1e-9, 1.0), (1.0, 1e-30, 1e-12), (1e9, 1e20, 1e12), (1e-9, 1e-12, 1e-15),
 ])  # fmt: skip
+@pytest.mark.third
 def test_the_same_in_other_units(loop: str, l: float, m: float, t: float) -> None:
     wanted = numbers(run(loop), 1.0, 1.0, 1.0)
     assert len(wanted["struck"]) == 2

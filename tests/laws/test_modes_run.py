@@ -54,7 +54,7 @@ def moved(here: LinearisedState, state: Array, y0: Array) -> Array:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", SPECS)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_a_run_follows_its_modes(name: str) -> None:
     """Of all specs at rest: a quarter of a period, or until exp(l t) has grown or died by a third."""
     setup = set_up(load(ROOT / "specs" / name), reduce=False)

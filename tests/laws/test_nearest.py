@@ -17,7 +17,7 @@ pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, 
 
 
 @pytest.mark.parametrize("seed", range(500))
-@pytest.mark.third
+@pytest.mark.sixth
 def test_loops_close_near_their_drawing(seed: int) -> None:
     """Off by up to 3 %, in every way of drawing by turns; the closed pose is known by construction."""
     d = drawn(known(seed), 0.03, MODES[seed % 5 % len(MODES)])
@@ -44,6 +44,7 @@ def test_how_a_body_is_drawn_does_not_matter(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(1, 40, 3))
+@pytest.mark.third
 def test_a_small_loop_in_a_large_scene_is_fitted_as_it_is_alone(seed: int) -> None:
     """A thousandth of its size, beside a boom of a hundred metres that it has nothing to do with."""
     d = drawn(known(seed), 0.03, "world")

@@ -87,6 +87,7 @@ some = pytest.mark.parametrize("seed", SEEDS)
 
 
 @heavy
+@pytest.mark.third
 def test_states(seed: int) -> None:
     """Motion, loads, reactions in the plane, multipliers, drives, gaps; with a column a cause."""
     scene = both(seed)

@@ -119,6 +119,7 @@ def component(wrenches: Hand, path: str) -> float:
 
 
 @pytest.mark.parametrize("seed", SEEDS[::9])
+@pytest.mark.third
 def test_whichever_split_what_is_certain_stays(seed: int) -> None:
     """Two splits by any stiffness differ by self-stresses: in what was open, and in nothing else."""
     scene, rng = redundant_scene(seed)[1], np.random.default_rng(seed)

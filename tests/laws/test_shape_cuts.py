@@ -33,6 +33,7 @@ ROUNDING = 2e-15
 
 
 @pytest.mark.parametrize("name", SOLIDS)
+@pytest.mark.third
 def test_two_halves_make_the_whole(name: str) -> None:
     shape = SOLIDS[name]
     f = make_composite_solid([shape])

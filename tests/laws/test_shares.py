@@ -62,6 +62,7 @@ def size_of(found: Results) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize(("kind", "seed"), CASES)
+@pytest.mark.third
 def test_shares_add_up(kind: str, seed: int) -> None:
     """All that is told of a wrench by cause, its resultants, drives and tensions too; what is open is open in each."""
     found = run(kind, seed)
@@ -136,6 +137,7 @@ def test_a_share_is_what_its_cause_does_alone(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize(("kind", "seed"), CASES)
+@pytest.mark.third
 def test_the_share_of_motion_grows_with_the_square_of_the_speed(kind: str, seed: int) -> None:
     scene, found = scene_of(kind, seed), run(kind, seed)
     state = state_at(found.bodies, 0)

@@ -42,6 +42,7 @@ def at_rates(at: Instant, names: tuple[str, ...], dq: Any, rates: Any) -> Any:
 
 
 @pytest.mark.parametrize(("kind", "seed"), [*(("tree", k) for k in range(10)), *(("loop", k) for k in range(10))])
+@pytest.mark.third
 def test_by_differences(kind: str, seed: int) -> None:
     scene, _ = tree_scene(seed, **PINS) if kind == "tree" else loop_scene(seed, **PINS)
     spec = load("scene.yaml", to_yaml({**scene, "analysis": {"type": "state"}}))

@@ -48,6 +48,7 @@ def with_axial(scene: dict[str, Any], ratio: float) -> dict[str, Any]:
 @pytest.mark.heavy
 @pytest.mark.parametrize("ratio", [1e-3, 1e-6, 1e-9])
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_any_axial_inertia_gives_the_same(seed: int, ratio: float) -> None:
     """Centres, reactions and foundation do not know the axial inertia, be it nothing or 1e-3 of the transverse one.
 
@@ -224,6 +225,7 @@ PUSH = "forces: {f: {type: force, on: lo.b, vector: [3, -1, 2]}}"
 
 @pytest.mark.parametrize("joint", [UNIVERSAL, AWAY], ids=["crossed", "slanting"])
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.third
 def test_a_universal_between_thin_rods_is_a_ball(joint: str, seed: int) -> None:
     """What it holds of one spin the other one gives way to: it carries no couple, and the rods move as on a ball."""
     run = f"{PUSH}\nanalysis: {{duration: 0.5, samples: 5}}"

@@ -68,7 +68,7 @@ def tree(seed: int, **more: Any) -> tuple[dict[str, Any], Results]:
 
 @pytest.mark.heavy
 @each(("turned", "mirrored", "inches, pounds", "faster", "renamed", "other origins"), TREES)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_a_tree(seed: int, way: str) -> None:
     scene, first = tree(seed)
     other = told(scene, way, seed)
@@ -96,7 +96,7 @@ def loop(seed: int) -> tuple[dict[str, Any], Results]:
 
 @pytest.mark.heavy
 @each(("turned", "mirrored", "mm, t, ms", "renamed", "renamed again", "other origins", "other ends"), LOOPS)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_a_loop(seed: int, way: str) -> None:
     scene, first = loop(seed)
     other = told(scene, way, seed)
@@ -146,6 +146,7 @@ def test_what_is_open_in_other_axes(seed: int, way: str) -> None:
 
 
 @each(("mm, t, ms", "renamed"), DOUBLES)
+@pytest.mark.third
 def test_what_is_open(seed: int, way: str) -> None:
     """The same is open, the same sums are certain; under the same names they have the same terms, and all."""
     scene, before = redundant(seed)[0], redundant(seed)[1].results

@@ -61,6 +61,7 @@ def draw(ranges: dict[str, tuple[float, float]], seed: Any) -> dict[str, str]:
 
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family[0].stem)
 @pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.third
 def test_a_variant_measures_what_a_single_run_does(family: Any, seed: int) -> None:
     path, ranges, words = family
     requests = tuple(MeasureRequest(how, what) for how, what in words)

@@ -120,7 +120,7 @@ def values_of(spec: Spec) -> Iterator[dict[str, str]]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
-@pytest.mark.third
+@pytest.mark.sixth
 def test_a_variant_has_the_bits_of_a_fresh_run(path: Path) -> None:
     short = shortened(path)
     variants = VariantSolver(path, overrides=short)

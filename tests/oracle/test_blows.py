@@ -74,6 +74,7 @@ def test_jumps_and_impulses(make: type, name: str) -> None:
 
 
 @NAMED
+@pytest.mark.third
 def test_energy(make: type, name: str) -> None:
     """Of the blow: ½ H·(V⁺ + V⁻), the drives' part included."""
     c = make(name)
@@ -123,6 +124,7 @@ def test_certain_sums(make: type, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [n for n in SCENES if n.startswith(("tree", "loop"))][::2])
+@pytest.mark.third
 def test_the_state_before_a_blow_is_the_start(name: str) -> None:
     """The states that the jumps start from are those of the scene, not only what the results say of themselves."""
     c = case(name)
@@ -182,6 +184,7 @@ def test_a_cut_carries_what_its_weld_would(kind: str, seed: int) -> None:
 
 # ---- drives whose rates jump
 @pytest.mark.parametrize("name", [f"tree {s}" for s in (0, 5, 6, 7, 11)] + [f"loop {s}" for s in range(1000, 1010)])
+@pytest.mark.third
 def test_rates_of_drives_jump(name: str) -> None:
     """In the middle of a motion; where the loops do not let all drives jump so, the scene is passed over."""
     make, seed, more = SCENES[name]

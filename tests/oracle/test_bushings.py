@@ -47,6 +47,7 @@ def elastic_scene(seed: int) -> Case:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_motion_and_reactions(seed: int) -> None:
     """Accelerations, and all that is certain of the joints' loads."""
     c = elastic_scene(seed)

@@ -18,6 +18,7 @@ ALL = spared(range(12), frozenset({0, 4}))
 
 
 @pytest.mark.parametrize("seed", ALL)
+@pytest.mark.third
 def test_motion_and_loads_of_what_a_cam_moves(seed: int) -> None:
     """Accelerations of all bodies, reactions of joints, and what the disc exerts ON its follower, and where."""
     c = cammed(seed)

@@ -140,6 +140,7 @@ def test_strikes_are_those_of_the_oracle(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_what_bears_is_that_of_the_oracle(seed: int) -> None:
     """Accelerations at instants between strikes, what rests on stops among them."""
     found, states = dense(seed)
@@ -159,6 +160,7 @@ def test_what_bears_is_that_of_the_oracle(seed: int) -> None:
         assert min(apart) <= 1e-7, (found.time[k], apart, [m.pushes for m in allowed])
 
 
+@pytest.mark.long
 def test_the_family_is_what_it_should_be() -> None:
     """Most are struck, some rest, several have ropes."""
     runs = [run_of(seed).results for seed in list_daily_seeds(SEEDS)]

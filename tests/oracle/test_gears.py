@@ -72,6 +72,7 @@ def test_what_is_coupled_twice(kind: str) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(14))
+@pytest.mark.third
 def test_trains_with_more_meshes_than_hold_them(seed: int) -> None:
     """Planets between suns, a ring and each other, in closed loops of meshes; certain sums against the dense matrix."""
     c = train(seed)

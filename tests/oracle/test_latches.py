@@ -89,6 +89,7 @@ def size_of(found: Solution) -> float:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_catches_are_the_blows_of_drives_that_stop(seed: int) -> None:
     """Jumps of all bodies, the latch's impulse, those of the joints, and what energy is lost: ½ ΔV·M ΔV."""
     found, states = run_of(seed)

@@ -18,6 +18,7 @@ def test_accelerations(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", ALL)
+@pytest.mark.third
 def test_reactions_and_what_is_open(seed: int) -> None:
     checks.same_reactions(loop(seed))
 

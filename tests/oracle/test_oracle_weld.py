@@ -14,6 +14,7 @@ from tests.oracle.weld import section
 
 
 @pytest.mark.parametrize("seed", range(16))
+@pytest.mark.third
 def test_sawn_body(seed: int) -> None:
     """Against d'Alembert on the piece from the whole body's own accelerations; both sides add to nothing."""
     scene, state = some_scene(seed, masses="shapes")

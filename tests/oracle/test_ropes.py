@@ -20,6 +20,7 @@ READ = 1e-8  # of gammas by differences
 
 
 @pytest.mark.parametrize("seed", ALL)
+@pytest.mark.third
 def test_motion_and_loads_of_what_a_rope_pulls(seed: int) -> None:
     """Accelerations of all bodies, reactions of joints, the foundation; and the tension, ON every body."""
     c = roped(seed)

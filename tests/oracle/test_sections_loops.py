@@ -56,6 +56,7 @@ def test_cut_bodies(seed: int) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", THESE)
+@pytest.mark.third
 def test_components_of_a_cut(seed: int) -> None:
     """N, Q1, Q2, T, M1, M2 in the cut's own axes: numbers where the self-stress has no part along that axis."""
     c = sawn(seed)

@@ -78,6 +78,7 @@ def test_a_cut_carries_what_its_weld_would(seed: int) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_both_sides_add_to_nothing(seed: int) -> None:
     c = sawn(seed)
     found = c.study.results.sections

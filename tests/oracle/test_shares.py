@@ -102,6 +102,7 @@ def compared(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", TREES)
+@pytest.mark.third
 def test_trees(seed: int) -> None:
     compared("tree", seed)
 
@@ -113,6 +114,7 @@ def test_closed_chains(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", LOOPS)
+@pytest.mark.third
 def test_a_split_by_least_norm(seed: int) -> None:
     """Of redundant joints, with moments by the length that the split is told with."""
     scene = scene_of("loop", seed)

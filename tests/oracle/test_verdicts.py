@@ -31,7 +31,7 @@ def test_verdicts(seed: int) -> None:
     checks.free_directions_carry_nothing(c)
 
 
-@pytest.mark.heavy
+@pytest.mark.long
 def test_scenes_are_what_they_should_be() -> None:
     """Every kind is doubled and doubles; drives are in; one to many loads are held twice."""
     kinds: Counter[str] = Counter()

@@ -33,7 +33,7 @@ def paths_of(spec: Spec) -> list[str]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("file", SPECS, ids=lambda file: file.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_it_is_drawn(file: str) -> None:
     spec = load(str(file), checking=False)
     paths = paths_of(spec)

@@ -76,6 +76,7 @@ def test_bodies_stand_where_the_run_has_them(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", FILES)
+@pytest.mark.third
 def test_another_program_finds_each_shape_closed_and_of_its_volume(name: str) -> None:
     spec, machine, _, content = drawn(name)
     told = trimesh.load(io.BytesIO(content), file_type="glb")
@@ -164,11 +165,12 @@ def parts(glb: Glb, body: str) -> list[dict[str, int]]:
     return glb.head["meshes"][mesh]["primitives"] if mesh is not None else []
 
 
-def test_between_its_instants_no_body_turns_so_far_that_the_shortest_way_is_another() -> None:
-    for name in FILES:
-        for turns in drawn(name)[2].quaternions.values():
-            near = np.abs(np.sum(turns[1:] * turns[:-1], axis=1)).min(initial=1.0)
-            assert 2.0 * math.acos(min(near, 1.0)) < math.pi / 4.0, name
+@pytest.mark.parametrize("name", FILES)
+@pytest.mark.third
+def test_between_its_instants_no_body_turns_so_far_that_the_shortest_way_is_another(name: str) -> None:
+    for turns in drawn(name)[2].quaternions.values():
+        near = np.abs(np.sum(turns[1:] * turns[:-1], axis=1)).min(initial=1.0)
+        assert 2.0 * math.acos(min(near, 1.0)) < math.pi / 4.0
 
 
 def test_bytes_repeat_and_say_when_the_run_begins() -> None:

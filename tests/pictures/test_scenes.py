@@ -81,7 +81,7 @@ def numbers_in(figure: Figure) -> Iterator[np.ndarray]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_every_spec_is_drawn(path: Path) -> None:
     solved = solve(load(str(path)), Options(requested_reports=REPORTS))
     source = FigureSource("", solved)

@@ -25,7 +25,7 @@ UNIT = re.compile(r"\[[^\]]+\]|\b[\d.]+ (mm|m|km|in|N|kN|MN|N·m|kN·m)\b")  # o
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_reports_of_all_examples(name: str) -> None:
     of = solve_report_cases(ReportRequest(spec=str(FOLDER / f"{name}.yaml"), quiet=True))
     of = replace(of, chapters=CHAPTER_NAMES)  # with those that are printed on request

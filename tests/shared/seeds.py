@@ -23,21 +23,39 @@ SHARE = 4  # one seed of so many runs every time
 LEAST, LEAST_OF_A_WAY = 13, 6
 
 
-THIRD = 3  # of a family marked so, one case of so many runs every time
+SHARES = {"third": 3, "sixth": 6}  # of a family marked so, one case of so many runs every time
 
 
 def list_long_cases(items: Iterable[pytest.Item]) -> set[pytest.Item]:
-    """The cases that only a long run takes: tests marked long, most seeds, two of three cases of a costly family."""
-    long = {item for item in items if item.get_closest_marker("long")} | list_long_seeds(items)
-    families: defaultdict[str, list[pytest.Item]] = defaultdict(list)
+    """The cases that only a long run takes: tests marked long, most seeds, most cases of a costly family."""
+    marked = {item for item in items if item.get_closest_marker("long")}
+    long = list_long_seeds(items)
+    families: defaultdict[tuple[str, int], list[pytest.Item]] = defaultdict(list)
     for item in items:
-        if item not in long and item.get_closest_marker("third"):
-            families[item.nodeid.split("[")[0]].append(item)
-    for family, cases in families.items():
+        share = next((share for mark, share in SHARES.items() if item.get_closest_marker(mark)), None)
+        if item not in long and share is not None:
+            families[item.nodeid.split("[")[0], share].append(item)
+    for (family, share), cases in families.items():
         # Another third for each file, so that a scene is met in one; families of one file share what they solve.
-        first = zlib.crc32(family.partition("::")[0].encode()) % THIRD
-        long.update(case for index, case in enumerate(cases) if index % THIRD != first)
-    return long
+        first = zlib.crc32(family.partition("::")[0].encode())
+        for start in range(0, len(cases), share):
+            neighbours = cases[start : start + share]
+            long.update(neighbours)
+            # Of seeds those with every remainder, which chooses what is drawn.
+            place = (first + (start // share if has_seed(cases[0]) else 0)) % share
+            if start == 0 or place < len(neighbours):  # in place of a case marked long one of its neighbours
+                turned = neighbours[place:] + neighbours[:place]
+                long -= set([case for case in turned if case not in marked][:1])
+    return long | marked
+
+
+def has_seed(item: pytest.Item) -> bool:
+    """Whether a case is one of a row of seeds."""
+    return (
+        isinstance(item, pytest.Function)
+        and hasattr(item, "callspec")
+        and split_seed(item.callspec.params)[0] is not None
+    )
 
 
 def list_long_seeds(items: Iterable[pytest.Item]) -> set[pytest.Item]:

@@ -620,7 +620,7 @@ SPECS = sorted((ROOT / "specs").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_no_damage_to_a_spec_gives_anything_but_errors(path: Path) -> None:
     text = path.read_text()
     for seed in range(12):

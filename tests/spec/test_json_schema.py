@@ -155,7 +155,7 @@ def test_lists_keep_one_entry_of_each_kind() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_every_result_is_what_the_schema_of_results_says(path: Path) -> None:
     wanted = frozenset({*REPORTS, SHARES})
     results = json.loads(to_json(solve(load(str(path)), Options(requested_reports=wanted)).results))

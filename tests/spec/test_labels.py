@@ -70,7 +70,7 @@ def numbers(spec: Spec) -> str:
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_labels_on_everything_change_no_scene(path: Path) -> None:
     data, labels = label_everything(read_source(str(path), None).data)
     plain, plain_cases = load_with_cases(str(path))
