@@ -224,6 +224,8 @@ def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
     turn.
     """
     for name, cam in iter_cams(draft):
+        if cam.lift is None:
+            continue
         if cam.lift.kind != PERIODIC:
             yield from check_partial_lift(draft, name, cam)
             continue
