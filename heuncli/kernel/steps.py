@@ -49,11 +49,13 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     i: cython.Py_ssize_t
     h: cython.double
     scene.pivot_of_step = 1.0
+    if run.following and scene.held_count:
+        hold_branches(scene, run.track.branches[0])
+    if not run.following:
+        scene.programs.holding = FREE  # what was held belongs to another piece
     if scene.closure_count:
         choose_rows_again(scene, run.t, run.y)
         project_state(scene, run.t, run.y)
-    if run.following and scene.held_count:
-        hold_branches(scene, run.track.branches[0])
     if not run.following:
         scene.programs.holding = TAKEN
     evaluate(scene, run.t, run.y, run.K[0])

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Literal
 
 from heuncli.base import tolerances
 from heuncli.base import units as u
@@ -175,15 +174,17 @@ def _iter_law_problems(
     if entry.law not in LAW_NAMES:
         yield SegmentProblem((*place, "law"), f"unknown law '{entry.law}'", suggest(entry.law, LAW_NAMES, "laws"))
         return
-    needed = LIMITS.get(entry.law, ()) if isinstance(entry, DriveSegmentEntry) else ()
-    for name in limited:
-        if name not in needed:
-            yield SegmentProblem((*place, name), f"{entry.law} takes no {name}", "it fills its segment: leave it out")
+    if entry.law == "scurve" and isinstance(entry, CamSegmentEntry):
+        yield SegmentProblem((*place, "law"), "scurve is for drives alone", known)
+        return
+    needed = LIMITS.get(entry.law, ())
+    if surplus := [name for name in limited if name not in needed]:
+        message = f"{entry.law} takes no {surplus[0]}"
+        yield SegmentProblem((*place, surplus[0]), message, "it fills its segment: leave it out")
+        return
     if limited or entry.law == "scurve":
         missing = [name for name in needed if name not in limited]
-        if not needed:
-            yield SegmentProblem((*place, "law"), f"{entry.law} is for drives alone", known)
-        elif missing:
+        if missing:
             yield SegmentProblem(place, f"{entry.law} has no {missing[0]}", f"give {', '.join(needed)}")
         elif given:
             hint = "leave it out, and add a dwell; or use a law without limits"
@@ -242,37 +243,18 @@ def iter_cam_problems(motion: SegmentMotion) -> Iterator[SegmentProblem]:
         return
     rows = motion.make_rows()
     ends = [row.evaluate(x)[1] for row, x in zip(rows.rows, rows.knots[1:], strict=True)]
-    fastest = max(map(abs, ends), default=0.0)
+    fastest = max(abs(x.rise) / (x.end - x.begin) for x in motion.segments)
     for k, row in enumerate(rows.rows):
-        before, after = ends[k - 1], row.evaluate(row.begin)[1]
-        if abs(after - before) > tolerances.TABLE_ENDS * max(fastest, abs(after)):
-            message = f"at {math.degrees(row.begin):.6g} deg the slope of the lift jumps from {before:.6g} to {after:.6g}"
-            yield SegmentProblem(place, f"{message} per rad", "such a cam strikes its follower: use a law from rest to rest")
+        jump = row.evaluate(row.begin)[1] - ends[k - 1]
+        if abs(jump) > tolerances.TABLE_ENDS * fastest:
+            message = f"at {math.degrees(row.begin):.6g} deg the slope of the lift jumps by {jump:.6g} per rad"
+            yield SegmentProblem(place, message, "it would strike its follower: use a law that begins and ends at rest")
             return
 
 
 def close_revolution(motion: SegmentMotion) -> MotionRows:
     """Return the rows of a cam, which end after exactly one revolution."""
     return motion.make_rows()._replace(end=math.tau)
-
-
-def find_motion_dimension(entries: Sequence[SegmentEntry], base: Expression | None) -> u.Dimension | None:
-    """Return the dimension of the first value of segments that has one."""
-    values = (base, *(x for entry in entries for x in (entry.rise, entry.at)))
-    return next((x.dimension for x in values if x is not None and x.dimension is not None), None)
-
-
-Quantity = Literal["angle", "travel", "length"]
-
-
-def find_segment_quantity(
-    entries: Sequence[SegmentEntry], base: Expression | None, quantities: Sequence[Quantity]
-) -> Quantity | None:
-    """Return which of a joint's coordinates segments are of: its only one, or the one of their dimension."""
-    if len(quantities) == 1:
-        return quantities[0]
-    dimension = find_motion_dimension(entries, base)
-    return next((x for x in quantities if dimension == QUANTITY_DIMENSIONS[x]), None)
 
 
 QUANTITY_DIMENSIONS: dict[str, u.Dimension] = {"angle": u.ANGLE, "travel": u.LENGTH, "length": u.LENGTH}

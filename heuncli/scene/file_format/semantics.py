@@ -27,13 +27,7 @@ from heuncli.scene.file_format import loads, rotations
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.rotations import unit_vector
-from heuncli.scene.file_format.segments import (
-    QUANTITY_DIMENSIONS,
-    Quantity,
-    SegmentMotion,
-    find_segment_quantity,
-    read_segments,
-)
+from heuncli.scene.file_format.segments import QUANTITY_DIMENSIONS, SegmentMotion, read_segments
 
 # Semantics
 
@@ -126,11 +120,10 @@ def find_driven_coordinate(drive: f.DriveEntry, joint_type: str | None) -> Drive
     key = given_keys[0]
     value = getattr(drive, key)
     if key == "segments":
-        quantity = find_driven_quantity(drive, joint_type)
-        motion = None if quantity is None else read_drive_segments(drive, quantity)
-        if quantity is None or motion is None or motion.problems:
+        motion = read_drive_segments(drive, joint_type)
+        if motion is None or motion.problems:
             return None
-        return DrivenCoordinate("segments", motion.make_expression(drive.repeat), quantity)
+        return DrivenCoordinate("segments", motion.make_expression(drive.repeat), TYPES[joint_type or ""].drives[0])
     if key not in DRIVEN_RATES.values():
         return DrivenCoordinate(key, value, key)  # type: ignore[arg-type]
     kind = TYPES.get(joint_type or "")
@@ -138,16 +131,12 @@ def find_driven_coordinate(drive: f.DriveEntry, joint_type: str | None) -> Drive
     return DrivenCoordinate(key, value, quantities[0]) if quantities else None  # type: ignore[arg-type]
 
 
-def find_driven_quantity(drive: f.DriveEntry, joint_type: str | None) -> Quantity | None:
-    """Return which coordinate a drive in segments prescribes, if that is known."""
+def read_drive_segments(drive: f.DriveEntry, joint_type: str | None) -> SegmentMotion | None:
+    """Read the segments of a drive; None if its joint cannot be driven."""
     kind = TYPES.get(joint_type or "")
-    quantities = () if kind is None else kind.drives
-    return find_segment_quantity(drive.segments or (), drive.base, quantities)
-
-
-def read_drive_segments(drive: f.DriveEntry, quantity: Quantity) -> SegmentMotion:
-    """Read the segments of a drive."""
-    return read_segments(drive.segments or (), drive.base, QUANTITY_DIMENSIONS[quantity])
+    if kind is None or not kind.drives:
+        return None
+    return read_segments(drive.segments or (), drive.base, QUANTITY_DIMENSIONS[kind.drives[0]])
 
 
 def find_limits(stop: f.StopEntry) -> tuple[Literal["angle", "travel", "length"], Limits] | None:

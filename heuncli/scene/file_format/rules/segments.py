@@ -15,7 +15,7 @@ from heuncli.scene.file_format.segments import (
     iter_cam_problems,
     read_segments,
 )
-from heuncli.scene.file_format.semantics import find_driven_quantity, read_drive_segments
+from heuncli.scene.file_format.semantics import read_drive_segments
 
 
 @rule("segments")
@@ -36,15 +36,9 @@ def iter_drive_problems(drive: f.DriveEntry, joint_type: str | None) -> Iterator
             if getattr(drive, key):
                 yield SegmentProblem((key,), f"{key} given without segments", f"{key} belongs to segments")
         return
-    kind = TYPES.get(joint_type or "")
-    if kind is None or not kind.drives:
-        return  # told by other rules
-    quantity = find_driven_quantity(drive, joint_type)
-    if quantity is None:
-        message = f"a {kind.name} has {' and '.join(kind.drives)}: the segments do not tell which"
-        yield SegmentProblem(("segments",), message, "give the rises units: 20 mm, or 90 deg")
-        return
-    yield from read_drive_segments(drive, quantity).problems
+    motion = read_drive_segments(drive, joint_type)
+    if motion is not None:  # other rules report a joint that cannot be driven
+        yield from motion.problems
 
 
 def iter_lift_problems(draft: DraftDocument, cam: CamEntry) -> Iterator[SegmentProblem]:
@@ -57,6 +51,6 @@ def iter_lift_problems(draft: DraftDocument, cam: CamEntry) -> Iterator[SegmentP
     follower = draft.document.joints.get(cam.of[1]) if len(cam.of) == 2 else None
     kind = None if follower is None else TYPES[follower.type]
     if kind is None or not kind.coordinates:
-        return  # told by other rules
+        return  # other rules report it
     motion = read_segments(cam.segments, cam.base, QUANTITY_DIMENSIONS[kind.coordinates[0]])
     yield from motion.problems or iter_cam_problems(motion)
