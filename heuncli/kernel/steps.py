@@ -17,7 +17,13 @@ from heuncli.kernel.evaluator import evaluate_program
 from heuncli.kernel.events import hold_branches
 from heuncli.kernel.following import follow_drives, is_determined, prepare_step
 from heuncli.kernel.judging import assess_step, weighted_norm
-from heuncli.kernel.landing import begin_step_extremes, count_flurry_event, find_events_of_step, is_in_flurry, record_stage
+from heuncli.kernel.landing import (
+    begin_step_extremes,
+    count_flurry_event,
+    find_events_of_step,
+    is_in_flurry,
+    record_stage,
+)
 from heuncli.kernel.paths import hold_lift_pieces
 from heuncli.kernel.response import evaluate, project_state
 from heuncli.kernel.row_choice import choose_rows_again

@@ -26,9 +26,9 @@ PI = math.pi
 SCOPE = Scope(in_time=True)
 # Norton, Cam Design and Manufacturing Handbook, tables of peak factors; VDI 2143: velocity and acceleration
 PEAKS = {
-    "cycloid": (2.0, 6.283), "modsine": (1.760, 5.528), "modtrap": (2.0, 4.888), "poly345": (1.875, 5.777),
-    "poly4567": (2.188, 7.526), "harmonic": (1.571, 4.945), "parabola": (2.0, 4.0), "linear": (1.0, 0.0),
-    "trapezoid": (1.5, 4.5),
+    "cycloid": (2.000, 6.283), "modsine": (1.760, 5.528), "modtrap": (2.000, 4.888), "poly345": (1.875, 5.774),
+    "poly4567": (2.188, 7.513), "harmonic": (1.571, 4.935), "parabola": (2.000, 4.000), "linear": (1.000, 0.000),
+    "trapezoid": (1.500, 4.500),
 }  # fmt: skip
 
 
@@ -69,10 +69,10 @@ def test_a_segment_is_the_function_of_its_law(name: str) -> None:
 
 @pytest.mark.parametrize("name", SEGMENT_LAWS)
 def test_peak_factors_of_the_literature(name: str) -> None:
-    """Velocity and acceleration relative to those of a rise of 1 in a time of 1; the books give three decimals."""
+    """Velocity and acceleration relative to those of a rise of 1 in a time of 1; the books give three digits behind the point."""
     samples = np.array(make_lift_path(law(name), 0.0).evaluate(np.linspace(0.0, 1.0, 20001)))[:, :, 0]
     velocity, acceleration = np.abs(samples[1:]).max(axis=1)
-    assert (velocity, acceleration) == pytest.approx(PEAKS[name], rel=3e-3, abs=1e-12)
+    assert (velocity, acceleration) == pytest.approx(PEAKS[name], abs=6e-4)
     assert samples[0, [0, -1]] == pytest.approx([0.0, 1.0], abs=1e-14)
     assert np.trapezoid(samples[1], dx=1.0 / 20000) == pytest.approx(1.0, abs=1e-8)
     for (a, b), row in zip(pairwise(law(name).knots), law(name).rows, strict=True):  # v and s by integrals of a and v
@@ -119,7 +119,9 @@ def test_a_profile_within_limits_takes_as_long_as_it_needs() -> None:
                            "jerk: 40 m/s^3}, {dwell: 0.05}, {for: 0.1, at: 0, law: trapezoid}]")  # fmt: skip
     text = "-scurve(t - 0.1, 0.03, 0.2, 2, 40)"
     profile = compile_expression(text, SCOPE)
-    duration = 0.1 + 0.03 / 0.2 + 0.15  # limits reached: rate/acceleration + acceleration/jerk to rise, the same to fall
+    duration = (
+        0.1 + 0.03 / 0.2 + 0.15
+    )  # limits reached: rate/acceleration + acceleration/jerk to rise, the same to fall
     end = 0.1 + 0.03 / 0.2 + 0.2 / 2 + 2 / 40
     assert end == pytest.approx(duration)
     for t in np.linspace(0.0, end + 0.05, 77):
@@ -216,7 +218,9 @@ def test_a_follower_leaves_in_the_middle_of_a_parabola() -> None:
     lands = leaves + (speed + math.sqrt(speed**2 - 9.81 * 0.02)) / 9.81
     (impulse,) = [x for x in results.impulses if abs(x["bodies"]["follower"]["center_velocity_jump"][1]) > 1e-6]
     assert impulse["time"] == pytest.approx(lands, rel=1e-10)
-    assert impulse["bodies"]["follower"]["center_velocity_jump"][1] == pytest.approx(9.81 * (lands - leaves) - speed, rel=1e-9)
+    assert impulse["bodies"]["follower"]["center_velocity_jump"][1] == pytest.approx(
+        9.81 * (lands - leaves) - speed, rel=1e-9
+    )
 
 
 def test_bounces_before_an_end_of_a_piece_are_no_chatter() -> None:
@@ -275,7 +279,7 @@ def test_what_is_refused_of_a_cam(segments: str, words: str) -> None:
     scene = cam_text()
     begin = scene.index("    segments:")
     with pytest.raises(SpecError) as caught:
-        load("scene.yaml", f"{scene[:begin]}    segments: [{segments}]\n{scene[scene.index('analysis'):]}")
+        load("scene.yaml", f"{scene[:begin]}    segments: [{segments}]\n{scene[scene.index('analysis') :]}")
     (problem,) = caught.value.problems
     assert problem.code == "segments"
     assert words in problem.message

@@ -94,9 +94,7 @@ class SegmentMotion(NamedTuple):
         return make_drive_expression(self.make_rows(), self.base, self.last, is_repeated, text)
 
 
-def read_segments(
-    entries: Sequence[SegmentEntry], base: Expression | None, dimension: u.Dimension
-) -> SegmentMotion:
+def read_segments(entries: Sequence[SegmentEntry], base: Expression | None, dimension: u.Dimension) -> SegmentMotion:
     """Read the segments of a coordinate of a dimension; each that is wrong counts as if it were not there."""
     problems: list[SegmentProblem] = []
     segments: list[LawSegment] = []
@@ -218,8 +216,12 @@ def _describe_backwards(i: int, entry: SegmentEntry, x: float) -> SegmentProblem
                 "rise")  # fmt: skip
     factor, unit = (math.degrees(1.0), "deg") if isinstance(entry, CamSegmentEntry) else (1.0, "s")
     if name == "to":
-        message = f"the segment ends at {factor * getattr(entry, name):.6g} {unit}, but begins at {factor * x:.6g} {unit}"
-        return SegmentProblem(("segments", i, name), message, "to: counts from the first segment on; for: from this one")
+        message = (
+            f"the segment ends at {factor * getattr(entry, name):.6g} {unit}, but begins at {factor * x:.6g} {unit}"
+        )
+        return SegmentProblem(
+            ("segments", i, name), message, "to: counts from the first segment on; for: from this one"
+        )
     return SegmentProblem(("segments", i, name), "the segment takes no time", "it must be longer than 0")
 
 
