@@ -163,7 +163,7 @@ def term(resolver: ReferenceResolver, word: str, factor: float = 1.0) -> c.Term:
 def resolve_cam(resolver: ReferenceResolver, name: str, entry: f.CamEntry) -> c.Cam:
     """Resolve a disc and its follower."""
     shaft, follower = entry.of
-    lift = entry.lift
+    lift: Any = entry.lift
     if entry.segments is not None:
         dimension = QUANTITY_DIMENSIONS[TYPES[resolver.document.joints[follower].type].coordinates[0]]
         lift = close_revolution(read_segments(entry.segments, entry.base, dimension))
