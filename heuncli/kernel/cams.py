@@ -24,7 +24,7 @@ from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
 
 def cam_lift(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> PathPoint:
     """Return the lift: L, L', L'' and L''' in the first components."""
-    if row.held:
+    if row.piece_branch:
         return evaluate_lift(scene, row)
     return evaluate_path(scene, row.lift, row.pieces, row.period, scene.freedoms[row.freedom].q)
 

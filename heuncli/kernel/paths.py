@@ -64,7 +64,7 @@ def evaluate_lift(scene: cython.pointer[Scene], row: cython.pointer[Closure]) ->
     """
     number: cython.double = find_lift_piece(scene, row)
     if scene.programs.holding == HELD:
-        number = scene.programs.branches[row.held - 1]
+        number = scene.programs.branches[row.piece_branch - 1]
     turns: cython.double = floor(number / row.pieces) if row.period > 0.0 else 0.0
     number = number - turns * row.pieces
     k: cython.int = int(number) if number >= 0.0 and number < row.pieces else -1
@@ -96,8 +96,10 @@ def hold_lift_pieces(scene: cython.pointer[Scene]) -> cython.void:
     """Hold the pieces of the lifts in segments in which their discs are."""
     i: cython.int
     for i in range(scene.part_count):
-        if scene.parts[i].held:
-            scene.programs.branches[scene.parts[i].held - 1] = find_lift_piece(scene, cython.address(scene.parts[i]))
+        if scene.parts[i].piece_branch:
+            scene.programs.branches[scene.parts[i].piece_branch - 1] = find_lift_piece(
+                scene, cython.address(scene.parts[i])
+            )
 
 
 def combine_lift(piece: cython.pointer[PathPiece], h: cython.double) -> PathPoint:

@@ -119,7 +119,7 @@ def hold_lifts(mechanism: Mechanism, frame: LayoutFrame, pack: Pack) -> dict[str
     table = frame.tables["parts"].copy()
     for i, part in enumerate(parts):
         if part.cam is not None and part.cam.piece_number is not None:
-            table[i]["held"] = 1 + held[id(part.cam.piece_number)]
+            table[i]["piece_branch"] = 1 + held[id(part.cam.piece_number)]
     return {"parts": table}
 
 
