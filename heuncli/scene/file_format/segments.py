@@ -28,6 +28,7 @@ from heuncli.scene.file_format.fields import Angle, Either, Time
 
 # Format segments
 
+END_FIELDS = {"to": "to", "for": "for_", "dwell": "dwell"}
 LIMIT_KEYS = ("rate", "acceleration", "jerk")
 MAX_SEGMENTS = 1000
 
@@ -141,14 +142,16 @@ def _is_limited(entry: SegmentEntry) -> bool:
 def _iter_entry_problems(place: tuple[str | int, ...], entry: SegmentEntry, dimension: u.Dimension,
                          ) -> Iterator[SegmentProblem]:  # fmt: skip
     """Yield what is wrong with one segment by itself."""
-    given = [name for name in ("to", "for", "dwell") if getattr(entry, "for_" if name == "for" else name) is not None]
+    end_keys = [
+        name for name in ("to", "for", "dwell") if getattr(entry, "for_" if name == "for" else name) is not None
+    ]
     limited = [name for name in LIMIT_KEYS if getattr(entry, name, None) is not None]
     changes = [name for name in ("rise", "at") if getattr(entry, name) is not None]
-    if len(given) != 1 and not (limited and not given):
-        message = f"the segment has {' and '.join(given)}" if given else "the segment has no end"
+    if len(end_keys) != 1 and not (limited and not end_keys):
+        message = f"the segment has {' and '.join(end_keys)}" if end_keys else "the segment has no end"
         yield SegmentProblem(place, message, "give one of: to (where it ends), for (how long it is), dwell")
         return
-    if given == ["dwell"]:
+    if end_keys == ["dwell"]:
         for name in (*changes, *limited, *(["law"] if entry.law is not None else [])):
             yield SegmentProblem((*place, name), f"{name} given for a dwell", "a dwell has no other keys")
         return
@@ -157,11 +160,11 @@ def _iter_entry_problems(place: tuple[str | int, ...], entry: SegmentEntry, dime
         yield SegmentProblem(place, message, "rise: by how much it changes; or at: the value at its end; or dwell")
     values = {name: getattr(entry, name) for name in changes}
     yield from _iter_wrong_dimensions(place, values, dict.fromkeys(changes, dimension))
-    yield from _iter_law_problems(place, entry, given, limited, dimension)
+    yield from _iter_law_problems(place, entry, end_keys, limited, dimension)
 
 
 def _iter_law_problems(
-    place: tuple[str | int, ...], entry: SegmentEntry, given: list[str], limited: list[str], dimension: u.Dimension
+    place: tuple[str | int, ...], entry: SegmentEntry, end_keys: list[str], limited: list[str], dimension: u.Dimension
 ) -> Iterator[SegmentProblem]:
     """Yield what is wrong with the law of a segment that is no dwell."""
     known = f"one of {', '.join(LAW_NAMES)}"
@@ -184,9 +187,12 @@ def _iter_law_problems(
         missing = [name for name in needed if name not in limited]
         if missing:
             yield SegmentProblem(place, f"{entry.law} has no {missing[0]}", f"give {', '.join(needed)}")
-        elif given:
+        elif end_keys:
+            message = f"{end_keys[0]} given, but the limits decide how long it takes"
             hint = "leave it out, and add a dwell; or use a law without limits"
-            yield SegmentProblem((*place, given[0]), f"{given[0]} given, but the limits decide how long it takes", hint)
+            yield SegmentProblem(
+                (*place, end_keys[0]), f"{end_keys[0]} end_keys, but the limits decide how long it takes", hint
+            )
     x, y, z = dimension
     values = {name: getattr(entry, name) for name in limited}
     yield from _iter_wrong_dimensions(place, values, {name: (x, y, z - 1 - LIMIT_KEYS.index(name)) for name in limited})
