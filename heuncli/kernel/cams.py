@@ -18,12 +18,14 @@ from __future__ import annotations
 from heuncli.kernel.carried_points import point_motion, world_place
 from heuncli.kernel.declarations import *
 from heuncli.kernel.libm import NAN
-from heuncli.kernel.paths import evaluate_path
+from heuncli.kernel.paths import evaluate_lift, evaluate_path
 from heuncli.kernel.tangent_motion import point_tangent, vector_tangent
 
 
 def cam_lift(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> PathPoint:
     """Return the lift: L, L', L'' and L''' in the first components."""
+    if row.piece_branch:
+        return evaluate_lift(scene, row)
     return evaluate_path(scene, row.lift, row.pieces, row.period, scene.freedoms[row.freedom].q)
 
 

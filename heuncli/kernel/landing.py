@@ -139,7 +139,7 @@ def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], 
         least_distance = scene.limits.near_kink * run.h
     if run.landing.attempts and (distance <= least_distance or run.landing.attempts >= MAX_LANDINGS):
         run.landing.turns = 1
-        return EVENT_CHATTER if count_flurry_event(scene, run, run.stop) else NO_EVENT
+        return NO_EVENT  # counted when the step is accepted: a contact may end it earlier
     if event_time >= run.end:
         return NO_EVENT  # the event is after the end of the piece
     run.landing.attempts += 1

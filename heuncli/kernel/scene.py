@@ -215,6 +215,7 @@ class Closure(Record):
     lift: int = ZERO  # for a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
     pieces: int = ZERO
     period: float = ZERO
+    piece_branch: int = ZERO  # of a lift in segments: 1 + the branch that is the number of its piece
     swings: int = ZERO  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
     faced: int = ZERO  # 1: touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
     radius: float = ZERO  # radius of the roller; 0: a point
@@ -282,7 +283,9 @@ class Contact(Record):
 
 
 class PathPiece(Record):
-    """A piece of a path: c0 + c1 h + c2 h^2 + c3 h^3, h measured from the coordinate `begin`."""
+    """A piece of a path: c0 + c1 h + c2 h^2 + c3 h^3, h measured from the coordinate `begin`; of a lift in segments
+    see kernel/paths.py.
+    """
 
     begin: float
     c0: Vec3

@@ -17,7 +17,14 @@ from heuncli.kernel.evaluator import evaluate_program
 from heuncli.kernel.events import hold_branches
 from heuncli.kernel.following import follow_drives, is_determined, prepare_step
 from heuncli.kernel.judging import assess_step, weighted_norm
-from heuncli.kernel.landing import begin_step_extremes, find_events_of_step, is_in_flurry, record_stage
+from heuncli.kernel.landing import (
+    begin_step_extremes,
+    count_flurry_event,
+    find_events_of_step,
+    is_in_flurry,
+    record_stage,
+)
+from heuncli.kernel.paths import hold_lift_pieces
 from heuncli.kernel.response import evaluate, project_state
 from heuncli.kernel.row_choice import choose_rows_again
 from heuncli.kernel.stages import estimate_stiffness, evaluate_explicit_stages, is_stability_limited
@@ -47,17 +54,20 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     i: cython.Py_ssize_t
     h: cython.double
     scene.pivot_of_step = 1.0
+    if run.following and scene.held_count:
+        hold_branches(scene, run.track.branches[0])
+    if not run.following:
+        scene.programs.holding = FREE  # what was held belongs to another piece
     if scene.closure_count:
         choose_rows_again(scene, run.t, run.y)
         project_state(scene, run.t, run.y)
-    if run.following and scene.held_count:
-        hold_branches(scene, run.track.branches[0])
     if not run.following:
         scene.programs.holding = TAKEN
     evaluate(scene, run.t, run.y, run.K[0])
     if not run.following:
         for i in range(scene.watch_count):  # `evaluate` does not evaluate the watched conditions
             evaluate_program(scene.programs, scene.watches[i].program)
+        hold_lift_pieces(scene)
     scene.programs.holding = HELD
     run.evaluations += 1
     start_contacts(scene, run.t)
@@ -278,6 +288,8 @@ def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: 
             )  # branches changed at the start
         if event == CONTACT_EVENT and run.stop <= run.t:
             return find_contact_code(scene, run)
+        if run.landing.turns and count_flurry_event(scene, run, run.stop):
+            return CHATTERING
     code = accept_step(scene, method, run)
     return find_exit_code(scene, run, event) if code == REACHED else code
 

@@ -52,7 +52,8 @@ from heuncli.multibody.mechanism.loads import GROUND, Load, ThreadLoad
 from heuncli.multibody.mechanism.model import Body, Joint
 from heuncli.multibody.mechanism.strands import belt_row, pretension_load
 from heuncli.results.results import Array
-from heuncli.scene.expressions.paths import make_path
+from heuncli.scene.expressions.motion_segments import MotionRows, make_piece_number
+from heuncli.scene.expressions.paths import Path, make_lift_path, make_path
 from heuncli.scene.file_format import couplings as c
 from heuncli.scene.file_format.models import End, Spec
 from heuncli.scene.shapes.rotations import cross_vectors, perpendicular_pair
@@ -285,9 +286,11 @@ def cam_rows(entry: c.Cam, k: int, shaft: Joint, n: int, follower: Joint) -> tup
     only pulls.
     """
     swings = JOINTS[follower.kind].coordinates[0] == "angle"
+    lift = make_lift(entry)
     shape = CamShape(
-        make_path((entry.lift, 0.0, 0.0)).shift_parameter(entry.phase), swings, follower.p, entry.radius,
-        None if entry.normal is None else unit_vector(entry.normal),
+        lift, swings, follower.p, entry.radius, None if entry.normal is None else unit_vector(entry.normal),
+        make_piece_number(lift.knots.tolist(), lift.period, shaft.name, f"the lift of {shaft.name}")
+        if isinstance(entry.lift, MotionRows) else None,
     )  # fmt: skip
     coordinates = Coordinate(k, "angle", 1.0), Coordinate(n, "angle" if swings else "travel", 1.0)
     part = CouplingPart(
@@ -295,6 +298,13 @@ def cam_rows(entry: c.Cam, k: int, shaft: Joint, n: int, follower: Joint) -> tup
         1.0 if entry.is_two_sided else -1.0, shaft.a, coordinates, cam=shape,
     )  # fmt: skip
     return (CoupledRow((part,), 0.0, SCENE_SIZE if swings else 1.0, not entry.is_two_sided, entry.restitution),)
+
+
+def make_lift(entry: c.Cam) -> Path:
+    """Make the lift over the disc's angle, from a table or from segments, which are a whole revolution."""
+    if isinstance(entry.lift, MotionRows):
+        return make_lift_path(entry.lift, math.tau).shift_parameter(entry.phase)
+    return make_path((entry.lift, 0.0, 0.0)).shift_parameter(entry.phase)
 
 
 def build_wheel(entry: c.RollingWheel, drawing: CoupledDrawing) -> tuple[CoupledRow, ...]:

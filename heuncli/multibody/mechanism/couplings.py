@@ -44,6 +44,7 @@ class CamShape:
     swings: whether the follower turns, about g through `pivot` of the carrier (3,), or slides along g
     radius: of its roller about q, 0: a point
     face: the normal of its flat face through q, its axes (3,), or None
+    piece_number: of a lift in segments, the number of its piece at the disc's angle, else None
     """
 
     lift: Path
@@ -51,6 +52,7 @@ class CamShape:
     pivot: Array
     radius: float
     face: Array | None
+    piece_number: Expression | None = None
 
 
 @record

@@ -128,6 +128,12 @@ class Mechanism:
                 found.append(Law(owner, coupling.name, "length", coupling.law, is_rope=True))
         return tuple(found)
 
+    @property
+    def piece_numbers(self) -> tuple[Expression, ...]:
+        """The piece numbers of the lifts in segments, whose changes end a step."""
+        parts = (part for coupling in self.couplings for row in coupling.rows for part in row.parts)
+        return tuple(part.cam.piece_number for part in parts if part.cam is not None and part.cam.piece_number)
+
     def iter_load_rows(self) -> Iterator[tuple[Load, slice]]:
         """Yield the loads, each with its rows in the kernel's table of loads: one per motion for a load in a joint.
 
@@ -175,13 +181,16 @@ class Mechanism:
         return load.path + (f" in joints.{self.joints[load.joint].name}" if isinstance(load, JointLoad) else "")
 
     def iter_expressions(self) -> Iterator[Expression]:
-        """Yield the values in time of the loads, then the laws of drives and ropes, then the conditions."""
+        """Yield the values in time of the loads, then the laws of drives and ropes, the conditions, and the piece
+        numbers of cams' lifts.
+        """
         for load in self.loads:
             yield from load.values
         for law in self.laws:
             yield law.value
         for condition in self.conditions:
             yield condition.value
+        yield from self.piece_numbers
 
 
 @record

@@ -70,8 +70,9 @@ def drive_programs(mechanism: Mechanism, by_identity: dict[int, Program]) -> tup
 
 
 def applied_expressions(mechanism: Mechanism) -> list[Expression]:
-    """Return the values of the loads, then of the conditions."""
-    return [*(e for load in mechanism.loads for e in load.values), *(c.value for c in mechanism.conditions)]
+    """Return the values of the loads, then of the conditions, then the piece numbers of cams."""
+    values = (e for load in mechanism.loads for e in load.values)
+    return [*values, *(c.value for c in mechanism.conditions), *mechanism.piece_numbers]
 
 
 def find_used_names(mechanism: Mechanism) -> frozenset[str]:
@@ -103,9 +104,23 @@ def lay_out_loads(
     tables = empty_load_tables() | {"loads": loads}
     if programs.pack.code:
         tables["watches"] = make_table(kernel.Watch, make_watch_rows(mechanism, programs, left_out))
+        tables |= hold_lifts(mechanism, frame, programs.pack)
     if len(programs.pack.variables) > 1:
         tables["variables"] = make_table(kernel.Variable, make_variable_rows(frame, mechanism, programs.pack.variables))
     return make_layout(frame, mechanism, programs.pack, tables)
+
+
+def hold_lifts(mechanism: Mechanism, frame: LayoutFrame, pack: Pack) -> dict[str, Table]:
+    """Return the table of parts in which cams with lifts in segments know the branch that holds their piece."""
+    if not mechanism.piece_numbers:
+        return {}
+    held = {id(e): i for i, (e, _) in enumerate(pack.branches)}
+    parts = [part for coupling in mechanism.couplings for row in coupling.rows for part in row.parts]
+    table = frame.tables["parts"].copy()
+    for i, part in enumerate(parts):
+        if part.cam is not None and part.cam.piece_number is not None:
+            table[i]["piece_branch"] = 1 + held[id(part.cam.piece_number)]
+    return {"parts": table}
 
 
 def make_load_table(mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> Table:
@@ -314,8 +329,10 @@ def make_watch_rows(
         for key, e in (loads | law_values).items()
         if e.constant is None and (e.held_branches or key not in rope_values)
     ]
-    conditions = (programs.by_identity[id(condition.value)] for condition in mechanism.conditions)
-    return watched + [kernel.Watch(program=program, curved=0, condition=1, load=-1) for program in conditions]
+    switching = (*(condition.value for condition in mechanism.conditions), *mechanism.piece_numbers)
+    return watched + [
+        kernel.Watch(program=programs.by_identity[id(e)], curved=0, condition=1, load=-1) for e in switching
+    ]
 
 
 def make_variable_rows(

@@ -15,6 +15,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.results.results import Array
+from heuncli.scene.expressions.motion_segments import MotionRows
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.expressions.roller_path import bound_derivatives, project_to_plane, roller_centre
 
@@ -232,6 +233,44 @@ class Path:
         bends = np.stack([2.0 * b, 2.0 * b + 6.0 * c]) / (h * h)
         r, slope, second = (float(np.sqrt(np.max(np.sum(x * x, axis=-1)))) for x in (places, slopes, bends))
         return r, slope, second
+
+
+class LiftPath(Path):
+    """The lift of a cam in segments over the disc's angle, in the first component.
+
+    coefficients (n, 4, 3): of a piece, as its polynomial of degree 7 and its sine (motion_segments.py) lie in the
+    kernel's rows: a0 to a3, a4 to a7, and amplitude, frequency and phase in one column each
+    """
+
+    def evaluate_track(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
+        """Return the lift and its derivatives in the first of three components, (..., 3) each; s of any shape."""
+        s = np.asarray(s, dtype=float)
+        inside = self.first + np.mod(s - self.first, self.period) if self.period else s
+        k = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, len(self.knots) - 2)
+        h = inside - self.knots[k]
+        rows = self.coefficients[k]
+        polynomial = np.concatenate([rows[..., 0], rows[..., 1]], axis=-1)
+        amplitude, frequency, phase = np.moveaxis(rows[..., :3, 2], -1, 0)
+        found = []
+        for order in range(4):
+            total = np.zeros(h.shape)
+            for a in np.moveaxis(polynomial, -1, 0)[::-1]:
+                total = a + h * total
+            wave = amplitude * frequency**order * np.sin(frequency * h + phase + 0.5 * np.pi * order)
+            found.append(np.stack([total + wave, np.zeros(h.shape), np.zeros(h.shape)], axis=-1))
+            polynomial = polynomial[..., 1:] * np.arange(1.0, polynomial.shape[-1])
+        return found[0], found[1], found[2], found[3]
+
+
+def make_lift_path(motion: MotionRows, period: float) -> LiftPath:
+    """Make the lift of a cam in segments; period: 0 if it is open."""
+    coefficients = np.zeros((len(motion.rows), 4, 3))
+    for piece, row in zip(coefficients, motion.rows, strict=True):
+        polynomial = np.zeros(8)
+        polynomial[: len(row.coefficients)] = row.coefficients
+        piece[:, 0], piece[:, 1] = polynomial[:4], polynomial[4:]
+        piece[:3, 2] = row.amplitude, row.frequency, row.phase
+    return LiftPath(np.array(motion.knots), coefficients, period)
 
 
 def make_roller_path(path: Path, radius: float, normal: Sequence[float]) -> Path:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Literal
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.scene.expressions.motion_segments import MotionRows
 from heuncli.scene.expressions.programs import Expression, TableFunction
 
 # Ends
@@ -178,7 +179,7 @@ class Cam(NamedTuple):
 
     shaft: str
     follower: str
-    lift: TableFunction
+    lift: TableFunction | MotionRows
     at: tuple[float, float, float]
     contact: Literal["roller", "flat", "point"]
     radius: float = 0.0

@@ -124,7 +124,7 @@ MISSING_KEY_HINTS = {  # explanation of required keys
     "inner_radius": "in m, or with a unit: 9 mm", "size": "its three edges: [x, y, z]", "at": "the point: [x, y, z]",
     "curve": "its torque over its speed: a table, or an expression of rate",
     "radii": "of both pulleys: [50 mm, 100 mm]", "pretension": "the tension of each strand at rest, in N",
-    "lift": "the name of a table: the lift over the disc's angle", "contact": "roller, flat or point",
+    "lift": "a table of the lift over the disc's angle, or segments", "contact": "roller, flat or point",
     "set": "for example {n: 1500 rpm}", "file": "the file with its triangles: rod.stl",
     "diameter": "in m, or with a unit",
     "factors": "one number for each joint in of: [1, 2]", "lead": "the travel per revolution, for example 5 mm",

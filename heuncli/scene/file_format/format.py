@@ -58,6 +58,7 @@ from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry,
 from heuncli.scene.file_format.format_joints import JOINTS, JointEntry
 from heuncli.scene.file_format.format_loads import LOADS, LoadEntry
 from heuncli.scene.file_format.format_shapes import Frame, Orientation, ShapeEntry
+from heuncli.scene.file_format.segments import DriveSegmentEntry
 
 Report = Literal[
     "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"
@@ -133,6 +134,9 @@ class BodyEntry(Entry):
 
 class DriveEntry(Entry):
     joint: str
+    segments: list[DriveSegmentEntry] | None = None
+    base: Either | None = None
+    repeat: Switch = False
     angle: AngleInTime | None = None
     travel: LengthInTime | None = None
     length: LengthInTime | None = None

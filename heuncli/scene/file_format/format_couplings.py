@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
+from heuncli.base.errors import Finding
 from heuncli.scene.file_format.entries import Entry, Preprocessor, key
 from heuncli.scene.file_format.fields import (
     AnEnd,
@@ -13,6 +14,7 @@ from heuncli.scene.file_format.fields import (
     Anything,
     Damping,
     Direction,
+    Either,
     EndEntry,
     Force,
     Length,
@@ -24,6 +26,8 @@ from heuncli.scene.file_format.fields import (
     Switch,
     TextOrMapping,
 )
+from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
+from heuncli.scene.file_format.segments import CamSegmentEntry
 
 # Format couplings
 
@@ -92,7 +96,9 @@ class CamEntry(Entry):
 
     type: Literal["cam"]
     of: list[str]
-    lift: Lift
+    lift: Lift | None = None
+    segments: list[CamSegmentEntry] | None = None
+    base: Either | None = None
     at: AnEnd
     contact: Literal["roller", "flat", "point"]
     radius: Length | None = None
@@ -100,6 +106,13 @@ class CamEntry(Entry):
     phase: Angle = 0.0
     two_sided: Switch = False
     restitution: Number | None = None
+
+    @classmethod
+    def before(cls, data: Any) -> Any:
+        """Require a lift or segments. Raises Finding [missing-key]."""
+        if type(data) is dict and not {"lift", "segments"} & data.keys():
+            raise Finding("missing-key", "'lift' is missing", MISSING_KEY_HINTS["lift"])
+        return data
 
 
 class PassageEntry(Entry):

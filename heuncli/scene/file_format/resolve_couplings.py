@@ -19,6 +19,7 @@ from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.format_couplings import RollingEntry, find_axle_direction, find_centre
 from heuncli.scene.file_format.loads import Vector
 from heuncli.scene.file_format.models import End, ResultCondition, Z
+from heuncli.scene.file_format.segments import QUANTITY_DIMENSIONS, close_revolution, read_segments
 
 SLACK_BELT_MESSAGE = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
 
@@ -162,8 +163,12 @@ def term(resolver: ReferenceResolver, word: str, factor: float = 1.0) -> c.Term:
 def resolve_cam(resolver: ReferenceResolver, name: str, entry: f.CamEntry) -> c.Cam:
     """Resolve a disc and its follower."""
     shaft, follower = entry.of
+    lift: Any = entry.lift
+    if entry.segments is not None:
+        dimension = QUANTITY_DIMENSIONS[TYPES[resolver.document.joints[follower].type].coordinates[0]]
+        lift = close_revolution(read_segments(entry.segments, entry.base, dimension))
     return c.Cam(
-        shaft, follower, entry.lift, resolver.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
+        shaft, follower, lift, resolver.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
         entry.phase, entry.two_sided, entry.restitution,
     )  # fmt: skip
 

@@ -27,6 +27,7 @@ from heuncli.scene.file_format import loads, rotations
 from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.rotations import unit_vector
+from heuncli.scene.file_format.segments import QUANTITY_DIMENSIONS, SegmentMotion, read_segments
 
 # Semantics
 
@@ -34,6 +35,7 @@ DEFAULT_SAMPLES = 201
 # what a drive may prescribe: a coordinate, or its rate of change
 DRIVEN_RATES = RATES | {"length": "speed"}
 DRIVE_KEYS = tuple(dict.fromkeys((*DRIVEN_RATES, *DRIVEN_RATES.values())))
+DRIVE_FORMS = (*DRIVE_KEYS, "segments")
 Limits = tuple[float | None, float | None]
 ORIENTATIONS: dict[str, tuple[str, ...]] = {
     "axis": ("axis", "angle"),
@@ -92,14 +94,14 @@ def inertia_tensor(owner: f.BodyEntry | f.PieceEntry) -> loads.Matrix:
 class DrivenCoordinate(NamedTuple):
     """What a drive prescribes: the key (the coordinate or its rate), its value in time, and the coordinate."""
 
-    key: Literal["angle", "travel", "length", "rate", "speed"]
+    key: Literal["angle", "travel", "length", "rate", "speed", "segments"]
     value: Expression
     quantity: Literal["angle", "travel", "length"]
 
     @property
     def by_rate(self) -> bool:
         """Whether the value is the coordinate's rate of change."""
-        return self.key != self.quantity
+        return self.key in DRIVEN_RATES.values()
 
 
 def list_drive_keys(kind: JointKind) -> tuple[str, ...]:
@@ -112,16 +114,29 @@ def find_driven_coordinate(drive: f.DriveEntry, joint_type: str | None) -> Drive
 
     joint_type: type of its joint, or None if unknown
     """
-    given_keys = [key for key in DRIVE_KEYS if getattr(drive, key) is not None]
+    given_keys = [key for key in DRIVE_FORMS if getattr(drive, key) is not None]
     if len(given_keys) != 1:
         return None
     key = given_keys[0]
     value = getattr(drive, key)
+    if key == "segments":
+        motion = read_drive_segments(drive, joint_type)
+        if motion is None or motion.problems:
+            return None
+        return DrivenCoordinate("segments", motion.make_expression(drive.repeat), TYPES[joint_type or ""].drives[0])
     if key not in DRIVEN_RATES.values():
         return DrivenCoordinate(key, value, key)  # type: ignore[arg-type]
     kind = TYPES.get(joint_type or "")
     quantities = [quantity for quantity in (kind.drives if kind is not None else ()) if DRIVEN_RATES[quantity] == key]
     return DrivenCoordinate(key, value, quantities[0]) if quantities else None  # type: ignore[arg-type]
+
+
+def read_drive_segments(drive: f.DriveEntry, joint_type: str | None) -> SegmentMotion | None:
+    """Read the segments of a drive; None if its joint cannot be driven."""
+    kind = TYPES.get(joint_type or "")
+    if kind is None or not kind.drives:
+        return None
+    return read_segments(drive.segments or (), drive.base, QUANTITY_DIMENSIONS[kind.drives[0]])
 
 
 def find_limits(stop: f.StopEntry) -> tuple[Literal["angle", "travel", "length"], Limits] | None:

@@ -15,6 +15,7 @@ from heuncli.scene.file_format.rules import (  # noqa: F401 (each registers its 
     references,
     rolling,
     sections,
+    segments,
     stops,
 )
 from heuncli.scene.file_format.rules.registry import RULES, DraftDocument, Rule, Violation, iter_violations

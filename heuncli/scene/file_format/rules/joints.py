@@ -18,7 +18,7 @@ from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import (
-    DRIVE_KEYS,
+    DRIVE_FORMS,
     DrivenCoordinate,
     find_driven_coordinate,
     find_point,
@@ -120,7 +120,7 @@ def check_drive_form(draft: DraftDocument) -> Iterator[Violation]:
     driven: dict[str, str] = {}
     for name, drive in draft.document.drives.items():
         path = ("drives", name)
-        quantities = [key for key in DRIVE_KEYS if getattr(drive, key) is not None]
+        quantities = [key for key in DRIVE_FORMS if getattr(drive, key) is not None]
         kind = TYPES.get(draft.names.joints.get(drive.joint, ""))
         allowed_keys = list_drive_keys(kind) if kind is not None else ()
         if len(quantities) != 1:
@@ -128,20 +128,20 @@ def check_drive_form(draft: DraftDocument) -> Iterator[Violation]:
             hint = (
                 drive_keys_hint(kind.name, allowed_keys)
                 if kind is not None and allowed_keys
-                else f"give one of {', '.join(DRIVE_KEYS)}"
+                else f"give one of {', '.join(DRIVE_FORMS)}"
             )
             yield Violation(path, f"the drive prescribes {description}", hint, key=True)
             continue
         quantity = quantities[0]
         if kind is not None:
-            if quantity not in allowed_keys:
+            if quantity not in (*allowed_keys, *(["segments"] if allowed_keys else ())):
                 driven_kinds = format_kind_names([kind for kind in TYPES.values() if kind.drives], "and")
                 hint = drive_keys_hint(kind.name, allowed_keys) if allowed_keys else f"drives act on {driven_kinds}"
                 yield Violation((*path, quantity), f"a {kind.name} has no {quantity} to drive", hint, key=True)
             elif kind.keeps_distance and drive.zero is not None:
                 yield Violation((*path, "zero"), "zero is not for a length", "zero is for angle and travel")
         value = getattr(drive, quantity)
-        if value.uses:
+        if isinstance(value, Expression) and value.uses:
             joint, coordinate = value.uses[0]
             yield Violation(
                 (*path, quantity), f"a drive may depend on time alone, not on {joint}.{coordinate}", "use t"

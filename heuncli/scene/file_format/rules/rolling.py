@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli.base import tolerances
+from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format import format_joints as fj
 from heuncli.scene.file_format.format_couplings import AXLES, CamEntry, RollingEntry, find_axle_direction, find_centre
 from heuncli.scene.file_format.names import GROUND
@@ -224,8 +225,10 @@ def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
     turn.
     """
     for name, cam in iter_cams(draft):
+        if cam.lift is None:
+            continue
         if cam.lift.kind != PERIODIC:
-            yield from check_partial_lift(draft, name, cam)
+            yield from check_partial_lift(draft, name, cam, cam.lift)
             continue
         period = cam.lift.numbers[0]
         turns = math.tau / period if period > 0.0 else 0.0
@@ -238,13 +241,13 @@ def check_cam_lift(draft: DraftDocument) -> Iterator[Violation]:
             )
 
 
-def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterator[Violation]:
+def check_partial_lift(draft: DraftDocument, name: str, cam: CamEntry, lift: TableFunction) -> Iterator[Violation]:
     """Yield what is wrong with a lift over part of a turn: at most one turn, and a prescribed start angle lies within
     it.
     """
-    first, last = cam.lift.x[0], cam.lift.x[-1]
+    first, last = lift.x[0], lift.x[-1]
     if last - first > math.tau * (1.0 + tolerances.TABLE_ENDS):
-        message = f"table {cam.lift.name} covers {math.degrees(last - first):.6g} deg, more than one revolution"
+        message = f"table {lift.name} covers {math.degrees(last - first):.6g} deg, more than one revolution"
         yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
         return
     shaft = draft.document.joints.get(cam.of[0]) if cam.of else None
