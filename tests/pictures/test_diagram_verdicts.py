@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.loads.kinetostatics.section_axes import make_first_axis
+from heuncli.scene.shapes.section_axes import make_first_axis
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.figure import Arrow, Blank, Symbol, Trace
 from heuncli.output.drawing.letters import draw_text as in_letters

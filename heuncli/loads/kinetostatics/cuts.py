@@ -19,7 +19,7 @@ from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.section_axes import make_first_axis
+from heuncli.scene.shapes.section_axes import make_first_axis
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array

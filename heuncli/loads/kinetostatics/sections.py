@@ -23,6 +23,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses
 from heuncli.results.results import SIDE_WORDS, Array, Block, Mask
+from heuncli.scene.file_format.profiles import FAMILIES
 from heuncli.scene.shapes.rotations import cross_rows
 
 
@@ -398,7 +399,12 @@ def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
         from heuncli.loads.kinetostatics.auto_properties import make_stress_block
 
         return make_stress_block(cuts.auto_properties, cuts.points.shape[:-1], loads, cuts.strength)
-    return compute_stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
+    kind, values = cuts.properties
+    if kind in FAMILIES:
+        from heuncli.loads.kinetostatics.member_stress import compute_member_stresses, find_given_factors
+
+        return compute_member_stresses(find_given_factors(kind, values), loads, cuts.strength)
+    return compute_stresses(MODULI[kind](values), loads, cuts.strength)
 
 
 def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:

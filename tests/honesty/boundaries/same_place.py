@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.base.errors import Finding
 from heuncli.loads.kinetostatics.auto_properties import CutForm, combine_rectangles, find_cut_properties
-from heuncli.loads.kinetostatics.section_axes import find_nearest_axis
+from heuncli.scene.shapes.section_axes import find_nearest_axis
 from heuncli.results.cut_rows import find_cut_rows
 from heuncli.results.results import Results
 from heuncli.scene.file_format.models import Shape
