@@ -20,7 +20,13 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.member_stress import MemberFactors, compute_member_stresses, make_factors
+from heuncli.loads.kinetostatics.member_stress import (
+    UPRIGHT,
+    Frame,
+    MemberFactors,
+    compute_member_stresses,
+    make_factors,
+)
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses, torsion_constant
 from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.shapes.composite_solid import CompositeSolid
@@ -40,14 +46,16 @@ SectionValues = Mapping[str, float]
 
 @record
 class CutGroup:
-    """Cuts of one kind: which ones, (k,), and their properties, numbers or arrays over all cuts; of a member its
-    factors.
+    """Cuts of one kind: which ones, (k,), and their properties, numbers or arrays over all cuts.
+
+    member, frame: of a member, its factors and its axes instead
     """
 
     cut_mask: Mask
     kind: str
     values: Mapping[str, float | Array]
     member: MemberFactors | None = None
+    frame: Frame = UPRIGHT
 
 
 @record
@@ -93,7 +101,7 @@ def find_areas(properties: CutProperties, count: int) -> Array:
     area = np.full(count, np.nan)
     for group in properties.groups:
         if group.member is not None:
-            area[group.cut_mask] = group.member.area
+            area[group.cut_mask] = group.member.section.area
             continue
         values = {name: np.broadcast_to(value, count)[group.cut_mask] for name, value in group.values.items()}
         area[group.cut_mask] = AREAS[group.kind](values)
@@ -167,9 +175,9 @@ def make_member_groups(figure: MemberFigure, cut_mask: Mask) -> list[CutGroup]:
     a, b, c, d = (np.round(figure.frame, 12) + 0.0).ravel().tolist()
     groups: dict[MemberFactors, list[int]] = {}
     for k in np.flatnonzero(cut_mask).tolist():
-        groups.setdefault(make_factors(figure.family, figure.measures[k], (a, b, c, d)), []).append(k)
+        groups.setdefault(make_factors(figure.family, figure.measures[k]), []).append(k)
     planes = np.arange(len(cut_mask))
-    return [CutGroup(np.isin(planes, cuts), figure.family, {}, factors) for factors, cuts in groups.items()]
+    return [CutGroup(np.isin(planes, cuts), figure.family, {}, factors, (a, b, c, d)) for factors, cuts in groups.items()]
 
 
 def combine_figures(figures: Sequence[Figure], k: int, cut: CutForm) -> tuple[str, SectionValues] | str:
@@ -261,8 +269,16 @@ def make_stress_block(
         group_stresses = (
             compute_stresses(MODULI[group.kind](values), group_loads, strength)
             if group.member is None
-            else compute_member_stresses(group.member, group_loads, strength)
+            else compute_member_stresses(group.member, group_loads, strength, group.frame)
         )
-        for name, stress in group_stresses.items():
-            block.setdefault(name, np.full(shape, np.nan))[group_mask] = stress
+        fill_block(block, group_stresses, group_mask)
     return block
+
+
+def fill_block(block: Block, values: Block, mask: Mask) -> None:
+    """Fill in the numbers of some cuts; in others a number that they alone have is nan."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            fill_block(block.setdefault(name, {}), value, mask)
+        else:
+            block.setdefault(name, np.full(mask.shape, np.nan))[mask] = value

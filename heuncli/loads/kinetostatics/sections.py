@@ -387,9 +387,14 @@ def section_block(
         for key in ({"point", "energy"} & block.keys()) | components.keys():
             block[key] = block[key][:, 0]
         for part in {"line", "stress"} & block.keys():
-            block[part] = {key: value[:, 0] for key, value in block[part].items()}
+            block[part] = take_first_cut(block[part])
         return block
     return {"s": cuts.s, "side": [SIDE_WORDS[x] for x in cuts.side.tolist()]} | block
+
+
+def take_first_cut(block: Block) -> Block:
+    """Return the numbers of a single cut without the axis of cuts."""
+    return {key: take_first_cut(value) if isinstance(value, dict) else value[:, 0] for key, value in block.items()}
 
 
 def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:

@@ -52,6 +52,11 @@ class NamedProfile(NamedTuple):
     inner_radius: float = 0.0
 
 
+# the corners of the outlines, by name, and the middle of the web: where stresses are reported
+STRESS_POINTS = (
+    "bottom_left", "bottom_right", "top_right", "top_left", "left_tip", "right_tip", "heel", "right_tip_inside",
+    "top_tip_inside", "top_tip", "web",
+)  # fmt: skip
 # name: height, width, web, flange, radius [mm]
 I_PROFILES = """
 IPE 80 46 3.8 5.2 5; 100 55 4.1 5.7 7; 120 64 4.4 6.3 7; 140 73 4.7 6.9 7; 160 82 5 7.4 9; 180 91 5.3 8 9;

@@ -73,6 +73,12 @@ def make_member_solid(member: Member, start: Array, end: Array, density: float) 
     )  # fmt: skip
 
 
+def make_unrounded(member: Member) -> Member:
+    """Make the member without its fillets and roundings, as it is drawn."""
+    start, end = (measures._replace(radius=0.0, toe_radius=0.0) for measures in (member.start, member.end))
+    return member._replace(start=start, end=end)
+
+
 def _find_centroid(polygons: list[Array]) -> Array:
     """Find the centroid (2,) of a polygon with its hole."""
     moments = sum((RoundedPolygon(ring, np.zeros(len(ring))).compute_moments() for ring in polygons), np.zeros(6))
