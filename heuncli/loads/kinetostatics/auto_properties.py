@@ -152,9 +152,7 @@ def find_one_sided(cut: CutForm, side: float) -> CutProperties:
     return CutProperties(tuple(groups), missing)
 
 
-def make_groups(
-    figure: RoundFigure | RectangleFigure | MemberFigure | ProfileFigure, cut_mask: Mask
-) -> list[CutGroup]:
+def make_groups(figure: RoundFigure | RectangleFigure | MemberFigure | ProfileFigure, cut_mask: Mask) -> list[CutGroup]:
     """Make the groups of cuts through one shape alone."""
     if isinstance(figure, MemberFigure):
         return make_member_groups(figure, cut_mask)
@@ -177,7 +175,9 @@ def make_member_groups(figure: MemberFigure, cut_mask: Mask) -> list[CutGroup]:
     for k in np.flatnonzero(cut_mask).tolist():
         groups.setdefault(make_factors(figure.family, figure.measures[k]), []).append(k)
     planes = np.arange(len(cut_mask))
-    return [CutGroup(np.isin(planes, cuts), figure.family, {}, factors, (a, b, c, d)) for factors, cuts in groups.items()]
+    return [
+        CutGroup(np.isin(planes, cuts), figure.family, {}, factors, (a, b, c, d)) for factors, cuts in groups.items()
+    ]
 
 
 def combine_figures(figures: Sequence[Figure], k: int, cut: CutForm) -> tuple[str, SectionValues] | str:

@@ -20,6 +20,7 @@ LIST_TITLES = (
     ("chosen", "Initial values chosen by heun"),
     ("moved", "Moved from the given start position"),
     ("started", "Start of the motion"),
+    ("members", "Cross-sections of members"),
     ("notes", "Notes"),
 )
 

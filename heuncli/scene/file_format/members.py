@@ -8,7 +8,14 @@ from heuncli.base.errors import Finding
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.models import Member, Properties, Vec
-from heuncli.scene.file_format.profiles import Family, Measures, NamedProfile, check_measures, compute_area, find_profile
+from heuncli.scene.file_format.profiles import (
+    Family,
+    Measures,
+    NamedProfile,
+    check_measures,
+    compute_area,
+    find_profile,
+)
 from heuncli.scene.file_format.rotations import IDENTITY
 from heuncli.scene.file_format.semantics import orientation_matrix
 

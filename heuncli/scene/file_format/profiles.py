@@ -17,7 +17,7 @@ from typing import Literal, get_args
 
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.spelling import suggest
+from heuncli.base.spelling import find_similar
 
 Family = Literal["I", "C", "L", "T", "box"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
@@ -95,7 +95,7 @@ STEEP, FLAT = 0.08, 0.05
 MM = 1e-3
 HOLLOW = re.compile(r"(CF)?(RHS|SHS|CHS)(\d+(?:\.\d+)?)((?:X\d+(?:\.\d+)?)+)")
 H_BEAM = re.compile(r"HE(\d+)([ABM])")
-KNOWN = "IPE 200, HEA 200, HEB 200, HEM 200, UPN 200, RHS 100x50x4, SHS 80x5, CHS 60.3x3.2"
+KNOWN = "IPE, HEA, HEB, HEM and UPN by size, such as IPE 200; RHS 100x50x4, SHS 80x5, CHS 60.3x3.2"
 
 
 def _read_rows(text: str) -> list[list[float]]:
@@ -134,9 +134,18 @@ def find_profile(name: str) -> NamedProfile:
     if hollow is not None:
         sizes = [float(hollow[3]), *map(float, hollow[4][1:].split("X"))]
         return _make_hollow(name, hollow[2], sizes, is_cold=hollow[1] is not None)
-    split_word = re.sub(r"^([A-Z]+)(\d)", r"\1 \2", word)
-    hint = suggest(split_word, [*read_tables()], "profiles")
-    raise Finding("unknown-profile", f"'{name}' is not a known profile", f"{hint} (for example {KNOWN})")
+    raise Finding("unknown-profile", f"'{name}' is not a known profile", _suggest_profiles(word))
+
+
+def _suggest_profiles(word: str) -> str:
+    """Suggest the nearest sizes of a series, or else a similar name."""
+    sized = re.fullmatch(r"([A-Z]+)(\d+)", word)
+    series = [known for known in read_tables() if sized is not None and known.split()[0] == sized[1]]
+    if sized is None or not series:
+        similar = find_similar(word, [*read_tables()])
+        return f"known: {KNOWN}" if similar is None else f"did you mean {similar}?"
+    nearest = sorted(series, key=lambda known: abs(int(known.split()[1]) - int(sized[2])))[:2]
+    return f"the nearest are {' and '.join(nearest)}"
 
 
 def _make_hollow(name: str, kind: str, sizes: list[float], is_cold: bool) -> NamedProfile:
@@ -172,7 +181,9 @@ def check_measures(family: Family, m: Measures) -> None:
             raise Finding("member-form", f"{key} must be greater than 0, but is {getattr(m, key):g}", "in m, or 5 mm")
     for key in ("radius", "toe_radius", "slope"):
         if getattr(m, key) < 0.0:
-            raise Finding("member-form", f"{key} must not be negative, but is {getattr(m, key):g}", "leave it out for 0")
+            raise Finding(
+                "member-form", f"{key} must not be negative, but is {getattr(m, key):g}", "leave it out for 0"
+            )
     webs, flanges = (2 if family == "box" else 1), (1 if family in ("L", "T") else 2)
     for count, wall, size, name in ((webs, m.web, m.width, "width"), (flanges, m.flange, m.height, "height")):
         if count * wall >= size:

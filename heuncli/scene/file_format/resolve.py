@@ -201,6 +201,7 @@ class Resolver:
         )
         if is_member(shape):
             return resolve_member(shape)
+        assert not isinstance(shape, fs.MemberShape | fs.ProfileShape)
         rotation = None
         if isinstance(shape, fs.BoxShape | fs.MeshShape):
             rotation = orientation_matrix(shape.orientation) if shape.orientation is not None else IDENTITY
@@ -386,8 +387,9 @@ def resolve_member(shape: fs.ShapeEntry) -> m.Shape:
     member, (start, end) = find_member(shape), find_ends(shape)
     mass, density = getattr(shape, "mass", None), getattr(shape, "density", None)
     if not isinstance(member, m.Member):
-        radii = {"radius": member.radius, "inner_radius": member.inner_radius}
-        return m.Shape("cylinder", mass, density, from_=start, to=end, **radii)
+        return m.Shape(
+            "cylinder", mass, density, from_=start, to=end, radius=member.radius, inner_radius=member.inner_radius
+        )
     return m.Shape("member", mass, density, from_=start, to=end, member=member)
 
 

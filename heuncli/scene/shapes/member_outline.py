@@ -77,7 +77,9 @@ class RoundedPolygon:
             angles = step * np.arange(CHORDS + 1)
             arm = start[k] - center[k]
             across = np.array([-arm[1], arm[0]])
-            points.append(center[k] + scale[:, None] * (np.cos(angles)[:, None] * arm + np.sin(angles)[:, None] * across))
+            points.append(
+                center[k] + scale[:, None] * (np.cos(angles)[:, None] * arm + np.sin(angles)[:, None] * across)
+            )
         return np.concatenate(points)
 
 
@@ -105,15 +107,14 @@ def make_outline(family: Family, m: Measures) -> tuple[RoundedPolygon, ...]:
         rows = [(0, 0, 0), (b, 0, 0), (b, f, toe), (t, f, r), (t, h, toe), (0, h, 0)]
     elif family == "C":
         root, tip = f + m.slope * (0.5 * b - t), f - 0.5 * m.slope * b
-        rows = [
-            (0, 0, 0), (b, 0, 0), (b, tip, toe), (t, root, r), (t, h - root, r), (b, h - tip, toe), (b, h, 0), (0, h, 0),
-        ]  # fmt: skip
+        lower = [(0.0, 0.0, 0.0), (b, 0.0, 0.0), (b, tip, toe), (t, root, r)]
+        rows = [*lower, *((u, h - v, radius) for u, v, radius in reversed(lower))]
     else:
         top = [
             (0.5 * t, h - f, r), (0.5 * b, h - f, toe), (0.5 * b, h, 0), (-0.5 * b, h, 0), (-0.5 * b, h - f, toe),
             (-0.5 * t, h - f, r),
         ]  # fmt: skip
-        foot = [(-0.5 * t, 0, 0), (0.5 * t, 0, 0)]
+        foot: list[tuple[float, float, float]] = [(-0.5 * t, 0, 0), (0.5 * t, 0, 0)]
         if family == "I":
             foot = [(-0.5 * t, f, r), (-0.5 * b, f, toe), (-0.5 * b, 0, 0), (0.5 * b, 0, 0), (0.5 * b, f, toe),
                     (0.5 * t, f, r)]  # fmt: skip

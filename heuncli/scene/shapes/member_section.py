@@ -8,16 +8,17 @@ wall with s along it, from the end that the flow q of a shear force Q comes from
 q of the walls that end at a node goes into the one that begins there; in a box a constant makes int q/t ds = 0. The
 shear centre is where Q has the moment of q.
 
-The torsion constant of I, C and T is that of EN 10365's tables, by Trayer and March (1930): strips, and circles of
+The torsion constant of I and T is that of EN 10365's tables, by Trayer and March (1930): strips, and circles of
 diameter D in the junctions of web and flanges,
 
     J = 2/3 (b - 0.63 f) f^3 + (h - 2 f) t^3/3 + 2 (t/f) (0.145 + 0.1 r/f) D^4,
     D = ((r + t/2)^2 + (r + f)^2 - r^2)/(2 r + f)
-with f/t in place of t/f where the web is the thicker one, for which it was not made; of L and C that of El Darwish and Johnston (1965), with D of the corner and
+with f/t in place of t/f where the web is the thicker one, for which it was not made; of L and C that of El Darwish and
+Johnston (1965), with D of the circle in the corner and
 
     alpha = -0.0908 + 0.2621 w + 0.1231 q - 0.0752 w q - 0.0945 w^2,   w = t/f, q = r/f
-and of a box that of EN 10210-2: J = t^3 h/3 + 4 A_h^2 t/h, with the middle line's length h and the area A_h in it.
-All of them are within 6 % of the solution of Saint-Venant's equation (tests/closed_forms/test_member_torsion.py).
+and of a box that of EN 10210-2: J = t^3 h/3 + 4 A_h^2 t/h, with the middle line's length h and the area A_h in it. All
+of them are within 6 % of the solution of Saint-Venant's equation (tests/closed_forms/test_member_torsion.py).
 """
 
 from __future__ import annotations

@@ -48,6 +48,8 @@ class MemberSolid(Polyhedron):
     def find_measures(self, fraction: float) -> Measures:
         """Return the measures at a fraction of the length, 0 to 1."""
         first, last = self.measures
+        if first == last:
+            return first
         return Measures(*((1.0 - fraction) * a + fraction * b for a, b in zip(first, last, strict=True)))
 
 

@@ -2,36 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.members import find_ends, find_member, find_section_measures, is_member
+from heuncli.scene.file_format.profiles import find_profile
 from heuncli.scene.file_format.rotations import cross_product, unit_vector, vector_length
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 
 
 def iter_findings(draft: DraftDocument, code: str) -> Iterator[Violation]:
     """Yield what is wrong with the members, as far as it has this code."""
+    checks: list[tuple[Path_, Callable[[], object]]] = []
     for name, body in draft.document.bodies.items():
         for i, shape in enumerate(body.shapes or ()):
             path: Path_ = ("bodies", name, "shapes", i)
-            if not is_member(shape):
-                continue
-            try:
-                find_member(shape)
-            except Finding as finding:
-                if finding.code == code:
-                    yield Violation(path, finding.message, finding.hint)
+            names = [key for key in ("profile", "to_profile") if getattr(shape, key, None) is not None]
+            checks += [((*path, key), partial(find_profile, getattr(shape, key))) for key in names]
+            if is_member(shape):
+                checks.append((path, partial(find_member, shape)))
     for name, section in draft.document.sections.items():
-        if section.properties is None or isinstance(section.properties, str):
-            continue
+        if section.properties is not None and not isinstance(section.properties, str):
+            checks.append((("sections", name, "properties"), partial(find_section_measures, section.properties)))
+    found: dict[Path_, Violation] = {}
+    for path, check in checks:
         try:
-            find_section_measures(section.properties)
+            check()
         except Finding as finding:
-            if finding.code == code:
-                yield Violation(("sections", name, "properties"), finding.message, finding.hint)
+            if finding.code == code and not any(earlier[: len(path)] == path for earlier in found):
+                found[path] = Violation(path, finding.message, finding.hint)
+    yield from found.values()
 
 
 @rule("unknown-profile")
