@@ -42,10 +42,11 @@ PRINTED = {
     "RHS 200x100x8": ("44.8", "2234", "739", "1804", "223"),
     "SHS 100x5": ("18.7", "279", "279", "439", "55.9"),
 }
-# of the table of channels, calculated by hand in 1963, with three digits: 0.7 % of Iz of UPN 400 is the largest deviation
+# three digits; the largest deviation is 0.7 %, of Iz of UPN 400
 CHANNELS = {
     "UPN 80": (11.0, 106.0, 19.4, 2.16), "UPN 100": (13.5, 206.0, 29.3, 2.81), "UPN 200": (32.2, 1910.0, 148.0, 11.9),
-    "UPN 300": (58.8, 8030.0, 495.0, 37.4), "UPN 350": (77.3, 12840.0, 570.0, 61.2), "UPN 400": (91.5, 20350.0, 846.0, 81.6),
+    "UPN 300": (58.8, 8030.0, 495.0, 37.4), "UPN 350": (77.3, 12840.0, 570.0, 61.2),
+    "UPN 400": (91.5, 20350.0, 846.0, 81.6),
 }  # fmt: skip
 SHEAR_CENTRES = {"UPN 80": 2.67, "UPN 100": 2.93, "UPN 200": 3.94, "UPN 300": 5.41}  # from the centroid [cm]
 LINES = 12000
@@ -112,8 +113,8 @@ def test_names() -> None:
 
 
 @pytest.mark.parametrize(("name", "hint"), [
-    ("IPE 210", "the nearest are IPE 200 and IPE 220"), ("HEC 100", "did you mean HEM 100?"), ("SHS 80x60x5", "SHS 80x5"),
-    ("RHS 80x5", "RHS 100x50x4"), ("XYZ", "IPE 200"),
+    ("IPE 210", "the nearest are IPE 200 and IPE 220"), ("HEC 100", "did you mean HEM 100?"),
+    ("SHS 80x60x5", "SHS 80x5"), ("RHS 80x5", "RHS 100x50x4"), ("XYZ", "IPE 200"),
 ])  # fmt: skip
 def test_unknown_names(name: str, hint: str) -> None:
     with pytest.raises(Finding) as caught:
@@ -164,7 +165,7 @@ def is_inside(family: Family, m: Measures) -> Callable[[Array, Array], Array]:
 
 
 def integrate(inside: Callable[[Array, Array], Array], m: Measures, low: float, left: float) -> Array:
-    """1, x, y, x^2, x y, y^2 over a cross-section: along 12,000 lines, from crossing to crossing, which are bisected."""
+    """1, x, y, x^2, x y, y^2 over a cross-section: along 12,000 lines, between crossings, which are bisected."""
     y = low + m.height * (np.arange(LINES) + 0.5) / LINES
     x = left + m.width * np.linspace(-1e-9, 1.0 + 1e-9, 400)
     flags = inside(x[None] + 0.0 * y[:, None], y[:, None] + 0.0 * x[None])
