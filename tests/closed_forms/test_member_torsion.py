@@ -2,7 +2,7 @@
 
     phi_xx + phi_yy = -2 inside, phi = 0 on the edge, of a hole a constant with int phi_n ds = 2 A(hole); J = 2 int phi
 A point next to the edge has the distance to it along the lines of the grid, found by bisection of what is inside
-(Shortley and Weller); what is inside is told by tests/closed_forms/test_members.py. Two grids, extrapolated, have J to
+(Shortley and Weller); what is inside is told by tests/shared/member_regions.py. Two grids, extrapolated, have J to
 0.5 %, as the circle and the rectangle show.
 """
 
@@ -18,7 +18,7 @@ from scipy.sparse.linalg import spsolve
 from heuncli.results.results import Array
 from heuncli.scene.file_format.profiles import Family, Measures, find_profile
 from heuncli.scene.shapes.member_section import make_member_section
-from tests.closed_forms.test_members import is_inside
+from tests.shared.member_regions import is_inside
 
 Inside = Callable[[Array, Array], Array]
 GRID_ERROR = 0.006

@@ -22,6 +22,7 @@ from heuncli.scene.shapes.composite_solid import make_composite_solid
 from heuncli.scene.shapes.member_section import MemberSection, make_member_section
 from heuncli.scene.shapes.member_solid import make_member_solid
 from heuncli.study.workflow import solve
+from tests.shared.member_regions import is_inside
 
 # name: A, I about the width, I about the height, J, W about the width
 PRINTED = {
@@ -121,47 +122,6 @@ def test_unknown_names(name: str, hint: str) -> None:
         find_profile(name)
     assert caught.value.code == "unknown-profile"
     assert hint in caught.value.hint
-
-
-def is_inside(family: Family, m: Measures) -> Callable[[Array, Array], Array]:
-    """Whether places are in a cross-section, by what it is and not by its outline; origin as the outline's."""
-    b, h, t, f, r, toe, slope = m
-    phi = math.atan(slope)
-
-    def rounded_box(x: Array, y: Array, width: float, height: float, radius: float) -> Array:
-        dx, dy = np.abs(x) - 0.5 * width + radius, np.abs(y) - 0.5 * height + radius
-        return np.where((dx > 0) & (dy > 0), dx * dx + dy * dy < radius**2, (dx < radius) & (dy < radius))
-
-    def with_flange(x: Array, y: Array) -> Array:
-        """A web along y to a flange on y = 0, x from the web's face, y upwards; half of it."""
-        face = f + slope * (0.5 * b - x_of(x))
-        cx, cy = r, f + slope * (0.5 * b - x_of(r)) + r / math.cos(phi)
-        fillet = (x < cx - r * math.sin(phi)) & (y < cy) & ((x - cx) ** 2 + (y - cy) ** 2 > r * r)
-        inside = (x < 0.0) | (y < face) | fillet
-        end = overhang
-        qx, qy = end - toe, f + slope * (0.5 * b - x_of(end - toe)) - toe / math.cos(phi)
-        cut = (x > qx + toe * math.sin(phi)) & (y > qy) & ((x - qx) ** 2 + (y - qy) ** 2 > toe * toe)
-        return np.asarray(inside & (x < end) & (y > 0.0) & ~(cut & (toe > 0.0)))
-
-    overhang = b - t if family in ("C", "L") else 0.5 * (b - t)
-
-    def x_of(x: Array | float) -> Array | float:
-        return x + t if family in ("C", "L") else x + 0.5 * t
-
-    if family == "box":
-        return lambda x, y: rounded_box(x, y, b, h, r) & ~rounded_box(x, y, b - 2 * t, h - 2 * f, toe)
-    if family == "I":
-        return lambda x, y: with_flange(np.abs(x) - 0.5 * t, np.minimum(y, h - y))
-    if family == "T":
-        return lambda x, y: with_flange(np.abs(x) - 0.5 * t, h - y) & (y > 0.0)
-    if family == "C":
-        return lambda x, y: with_flange(x - t, np.minimum(y, h - y)) & (x > 0.0)
-
-    def angle(x: Array, y: Array) -> Array:
-        cut = (y > h - toe) & (x > t - toe) & ((x - t + toe) ** 2 + (y - h + toe) ** 2 > toe * toe)
-        return with_flange(x - t, y) & (x > 0.0) & (y < h) & ~cut
-
-    return angle
 
 
 def integrate(inside: Callable[[Array, Array], Array], m: Measures, low: float, left: float) -> Array:
