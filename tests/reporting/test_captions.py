@@ -78,6 +78,7 @@ def test_numbers_of_one_thing_have_different_words() -> None:
     ("path", "words"),
     [
         ("joints.main.radial", "Main bearing, radial force"),
+        ("sections.root.stress.points.top_left.normal", "root, normal stress at top left"),
         ("joints.main.force", "Main bearing, force"),
         ("joints.main.force.x", "Main bearing, Fx"),
         ("joints.front_left.moment.z", "front left, Mz"),
