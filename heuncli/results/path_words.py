@@ -58,7 +58,10 @@ TRAVELS = ("travel", "speed", "acceleration")  # along a path by whatever its ta
 LOAD_ERROR_KINDS = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.fromkeys(("shift", "turn"), "strains")
 
 
-NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
+NAMES = (
+    "BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "CORNER", "FORCE", "CAUSE", "EVENT",
+    "NUMBER",
+)  # fmt: skip
 
 
 BY_CAUSE = "by cause"  # of kinds of errors

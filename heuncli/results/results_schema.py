@@ -234,6 +234,8 @@ ROWS: tuple[Quantity, ...] = (
     *rows("sections.SECTION.stress",
         "extremes over the section, [on the safe side](stresses.md); `utilisation` is `mises` over `strength`",
         *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES)),
+    *rows("sections.SECTION.stress.points.CORNER", "at a corner of a [member](stresses.md#members), in its `web`",
+        cut_scalar("normal", "Pa"), cut_scalar("shear", "Pa")),
     *rows("sections.SECTION", "kinetic energy of the far side", cut_scalar("energy", "J")),
     *rows("sections.SECTION", "for a series of cuts: distance from its first point to each cut",
         scalar("s", "m", (CUT,), is_timed=False)),

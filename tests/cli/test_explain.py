@@ -124,7 +124,7 @@ def test_each_section_is_found_by_its_request(page: str) -> None:
     [
         ("formt", 'there is no manual page "formt"', "did you mean: heun explain format?"),
         ("xyzzy", 'there is no manual page "xyzzy"', "heun explain lists the pages"),
-        ("wall", 'there is no manual page "wall"', "The word occurs in: heun explain "),
+        ("ladder", 'there is no manual page "ladder"', "The word occurs in: heun explain "),
         ("format stopps", 'the manual page "format" has no section "stopps"', 'heun explain "format stops"?'),
         ("methods xyzzy", 'the manual page "methods" has no section "xyzzy"', "its sections: auto, the list"),
     ],

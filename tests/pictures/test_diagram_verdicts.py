@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.output.drawing.canvas import TerminalStyle
 from heuncli.output.drawing.figure import Arrow, Blank, Symbol, Trace
 from heuncli.output.drawing.letters import draw_text as in_letters
 from heuncli.output.figures.courses import FigureSource
 from heuncli.output.figures.diagrams import make_diagrams
 from heuncli.scene.shapes.rotations import cross_vectors
+from heuncli.scene.shapes.section_axes import make_first_axis
 from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.queries.bars import WholeBar
 from tests.shared.drawn_bars import HELD_TWICE, SI, diagrams, drawn, panels_of

@@ -20,7 +20,8 @@ from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels
 
 NAMES = {
     "POINT": "left_arm.upper_eye", "ELEMENT": "drives.main_motor", "JOINT": "front_left", "BODY": "left_arm",
-    "SECTION": "long_bar", "FORCE": "gas_spring", "CAUSE": "gas_spring", "STOP": "end_stop", "COUPLING": "first_gear",
+    "SECTION": "long_bar", "CORNER": "top_left", "FORCE": "gas_spring", "CAUSE": "gas_spring", "STOP": "end_stop",
+    "COUPLING": "first_gear",
     "END": "left_arm", "EVENT": "is_open", "NUMBER": "2",
 }  # fmt: skip
 LABELS = Labels(
@@ -78,6 +79,7 @@ def test_numbers_of_one_thing_have_different_words() -> None:
     ("path", "words"),
     [
         ("joints.main.radial", "Main bearing, radial force"),
+        ("sections.root.stress.points.top_left.normal", "root, normal stress at top left"),
         ("joints.main.force", "Main bearing, force"),
         ("joints.main.force.x", "Main bearing, Fx"),
         ("joints.front_left.moment.z", "front left, Mz"),

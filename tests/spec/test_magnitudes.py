@@ -10,6 +10,7 @@ from heuncli.base.units import are_in_range, is_in_range
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.entries import fields_of
 from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.resolve import resolve_member
 from heuncli.scene.file_format.rules.products import shape_mass
 from heuncli.scene.shapes.composite_solid import make_composite_solid
 from tests.shared.solids import SOLIDS
@@ -79,8 +80,28 @@ def test_masses_of_shapes_are_those_that_are_computed_with(name: str) -> None:
     assert shape_mass(written.model_construct(**keys)) == pytest.approx(mass, rel=1e-13)
 
 
+ENDS = {"from_": (0.1, 0.2, 0.3), "to": (1.1, 0.4, 0.6), "density": 1.5}
+MEMBERS = {
+    "I": {"height": 0.2, "width": 0.1, "web": 0.01, "flange": 0.012, "radius": 0.01, "to_height": 0.1, "to_web": 0.005},
+    "C": {"height": 0.2, "width": 0.1, "web": 0.01, "flange": 0.012, "radius": 0.01, "toe_radius": 0.004},
+    "L": {"height": 0.2, "width": 0.1, "web": 0.01, "flange": 0.012, "toe_radius": 0.004, "to_width": 0.15},
+    "T": {"height": 0.2, "width": 0.1, "web": 0.01, "flange": 0.012, "radius": 0.01},
+    "profile": {"profile": "UPN 200", "to_profile": "UPN 100"},
+    "box": {"center": (0.1, 0.2, 0.3), "size": (0.1, 0.5, 0.2), "wall": 0.01},
+}
+
+
+@pytest.mark.parametrize("kind", MEMBERS)
+def test_masses_of_members_are_those_that_are_computed_with(kind: str) -> None:
+    written = fs.SHAPES[kind]
+    keys = MEMBERS[kind] | {key: value for key, value in ENDS.items() if key in fields_of(written)}
+    entry = written.model_construct(**{"type": kind} | keys)
+    mass = float(make_composite_solid([resolve_member(entry)]).whole_inertia()[3, 3])
+    assert shape_mass(entry) == pytest.approx(mass, rel=1e-12)
+
+
 def test_all_kinds_of_shapes_are_among_them() -> None:
-    assert {shape.type for shape in SOLIDS.values()} | {"point", "mesh"} == set(fs.SHAPES)
+    assert {shape.type for shape in SOLIDS.values()} | {"point", "mesh"} | MEMBERS.keys() == set(fs.SHAPES)
 
 
 def test_many_numbers_are_judged_as_one() -> None:

@@ -19,13 +19,21 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.records import record
+from heuncli.base.records import record, replace
+from heuncli.loads.kinetostatics.member_stress import (
+    UPRIGHT,
+    Frame,
+    MemberFactors,
+    compute_member_stresses,
+    make_factors,
+)
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses, torsion_constant
 from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.shapes.composite_solid import CompositeSolid
 from heuncli.scene.shapes.figures import (
     CuttingPlanes,
     Figure,
+    MemberFigure,
     ProfileFigure,
     RectangleFigure,
     RoundFigure,
@@ -38,11 +46,16 @@ SectionValues = Mapping[str, float]
 
 @record
 class CutGroup:
-    """Cuts of one kind: which ones, (k,), and their properties, numbers or arrays over all cuts."""
+    """Cuts of one kind: which ones, (k,), and their properties, numbers or arrays over all cuts.
+
+    member, frame: of a member, its factors and its axes instead
+    """
 
     cut_mask: Mask
     kind: str
     values: Mapping[str, float | Array]
+    member: MemberFactors | None = None
+    frame: Frame = UPRIGHT
 
 
 @record
@@ -74,7 +87,7 @@ def find_cut_properties(cut: CutForm) -> CutProperties:
     area_before, area_after = find_areas(before, len(cut.d)), find_areas(after, len(cut.d))
     takes_before = takes_before | (is_undecided & np.isfinite(area_before) & ~(area_after < area_before))
     groups = [
-        CutGroup(group.cut_mask & is_chosen, group.kind, group.values)
+        replace(group, cut_mask=group.cut_mask & is_chosen)
         for properties, is_chosen in ((before, takes_before), (after, ~takes_before))
         for group in properties.groups
         if (group.cut_mask & is_chosen).any()
@@ -87,6 +100,9 @@ def find_areas(properties: CutProperties, count: int) -> Array:
     """Return the areas of the cuts; nan where they are not known."""
     area = np.full(count, np.nan)
     for group in properties.groups:
+        if group.member is not None:
+            area[group.cut_mask] = group.member.section.area
+            continue
         values = {name: np.broadcast_to(value, count)[group.cut_mask] for name, value in group.values.items()}
         area[group.cut_mask] = AREAS[group.kind](values)
     return area
@@ -136,8 +152,10 @@ def find_one_sided(cut: CutForm, side: float) -> CutProperties:
     return CutProperties(tuple(groups), missing)
 
 
-def make_groups(figure: RoundFigure | RectangleFigure | ProfileFigure, cut_mask: Mask) -> list[CutGroup]:
+def make_groups(figure: RoundFigure | RectangleFigure | MemberFigure | ProfileFigure, cut_mask: Mask) -> list[CutGroup]:
     """Make the groups of cuts through one shape alone."""
+    if isinstance(figure, MemberFigure):
+        return make_member_groups(figure, cut_mask)
     if isinstance(figure, ProfileFigure):
         return [CutGroup(cut_mask, "general", figure.values)]
     if isinstance(figure, RectangleFigure):
@@ -150,11 +168,25 @@ def make_groups(figure: RoundFigure | RectangleFigure | ProfileFigure, cut_mask:
     ]
 
 
+def make_member_groups(figure: MemberFigure, cut_mask: Mask) -> list[CutGroup]:
+    """Make the groups of cuts through a member: those of equal measures together."""
+    a, b, c, d = (np.round(figure.frame, 12) + 0.0).ravel().tolist()
+    groups: dict[MemberFactors, list[int]] = {}
+    for k in np.flatnonzero(cut_mask).tolist():
+        groups.setdefault(make_factors(figure.family, figure.measures[k]), []).append(k)
+    planes = np.arange(len(cut_mask))
+    return [
+        CutGroup(np.isin(planes, cuts), figure.family, {}, factors, (a, b, c, d)) for factors, cuts in groups.items()
+    ]
+
+
 def combine_figures(figures: Sequence[Figure], k: int, cut: CutForm) -> tuple[str, SectionValues] | str:
     """Return kind and properties of a cut through several shapes, or why they are not known."""
     unknown = next((figure.reason for figure in figures if isinstance(figure, UnknownFigure)), None)
     if unknown is not None:
         return unknown
+    if any(isinstance(figure, MemberFigure) for figure in figures):
+        return "the cut meets a member and other shapes, and heun cannot tell whether they touch"
     if any(isinstance(figure, ProfileFigure) for figure in figures):
         return "the cut meets a mesh and other shapes, and heun cannot tell whether they touch"
     tolerance = tolerances.TOUCHING * cut.form.tolerance
@@ -233,9 +265,20 @@ def make_stress_block(
             name: np.broadcast_to(value.reshape(cuts), shape)[group_mask] if isinstance(value, np.ndarray) else value
             for name, value in group.values.items()
         }
-        group_stresses = compute_stresses(
-            MODULI[group.kind](values), {name: load[group_mask] for name, load in loads.items()}, strength
+        group_loads = {name: load[group_mask] for name, load in loads.items()}
+        group_stresses = (
+            compute_stresses(MODULI[group.kind](values), group_loads, strength)
+            if group.member is None
+            else compute_member_stresses(group.member, group_loads, strength, group.frame)
         )
-        for name, stress in group_stresses.items():
-            block.setdefault(name, np.full(shape, np.nan))[group_mask] = stress
+        fill_block(block, group_stresses, group_mask)
     return block
+
+
+def fill_block(block: Block, values: Block, mask: Mask) -> None:
+    """Fill in the numbers of some cuts; in others a number that they alone have is nan."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            fill_block(block.setdefault(name, {}), value, mask)
+        else:
+            block.setdefault(name, np.full(mask.shape, np.nan))[mask] = value

@@ -19,14 +19,15 @@ from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.section_axes import make_first_axis
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array
 from heuncli.scene.file_format.models import Properties, Section, Spec
+from heuncli.scene.file_format.profiles import FAMILIES
 from heuncli.scene.shapes.composite_solid import NO_MATTER, CompositeSolid
 from heuncli.scene.shapes.inertia import pseudo_inertia
 from heuncli.scene.shapes.rotations import cross_vectors
+from heuncli.scene.shapes.section_axes import make_first_axis
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
@@ -82,6 +83,13 @@ class Cuts:
         from heuncli.loads.kinetostatics.auto_properties import find_cut_properties  # few scenes ask for them
 
         return find_cut_properties(self.cut_form)
+
+    @property
+    def cuts_members(self) -> bool:
+        """Whether stresses are those of members, with their named points."""
+        if self.properties is None or self.form is None or self.properties.kind != "auto":
+            return self.properties is not None and self.properties.kind in FAMILIES
+        return any(hasattr(part, "family") for part in self.form.parts)
 
     @property
     def cut_form(self) -> CutForm:
@@ -261,7 +269,7 @@ def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
     if missing:
         k = min(missing, key=lambda k: float(cut_form.d[k]))
         where = f" at s = {float(cut_form.d[k] - cuts.points[0] @ cuts.n):.6g} m" if cuts.s is not None else ""
-        hint = "give them: circle, tube, rectangle, or area, I1, I2, J, c1, c2; or cut at right angles to the bar"
+        hint = "give a profile, circle, tube, rectangle, or area, I1, I2, J, c1, c2; or cut at right angles to the bar"
         message = f"properties: auto cannot be determined from the shapes{where}: {missing[k]}"
         raise SpecError(Problem("no-properties", message, location, hint=hint))
 

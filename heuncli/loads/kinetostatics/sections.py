@@ -23,6 +23,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses
 from heuncli.results.results import SIDE_WORDS, Array, Block, Mask
+from heuncli.scene.file_format.profiles import FAMILIES
 from heuncli.scene.shapes.rotations import cross_first_axis, cross_rows
 
 
@@ -381,9 +382,14 @@ def section_block(
         for key in ({"point", "energy"} & block.keys()) | components.keys():
             block[key] = block[key][:, 0]
         for part in {"line", "stress"} & block.keys():
-            block[part] = {key: value[:, 0] for key, value in block[part].items()}
+            block[part] = take_first_cut(block[part])
         return block
     return {"s": cuts.s, "side": [SIDE_WORDS[x] for x in cuts.side.tolist()]} | block
+
+
+def take_first_cut(block: Block) -> Block:
+    """Return the numbers of a single cut without the axis of cuts."""
+    return {key: take_first_cut(value) if isinstance(value, dict) else value[:, 0] for key, value in block.items()}
 
 
 def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
@@ -393,7 +399,12 @@ def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
         from heuncli.loads.kinetostatics.auto_properties import make_stress_block
 
         return make_stress_block(cuts.auto_properties, cuts.points.shape[:-1], loads, cuts.strength)
-    return compute_stresses(MODULI[cuts.properties.kind](cuts.properties.values), loads, cuts.strength)
+    kind, values = cuts.properties
+    if kind in FAMILIES:
+        from heuncli.loads.kinetostatics.member_stress import compute_member_stresses, find_given_factors
+
+        return compute_member_stresses(find_given_factors(kind, values), loads, cuts.strength)
+    return compute_stresses(MODULI[kind](values), loads, cuts.strength)
 
 
 def find_moment_arm(cuts: Cuts) -> float:

@@ -52,6 +52,8 @@ def make_surfaces(shape: Shape, faces: int = ROUND_FACES) -> tuple[Surface, ...]
         return (_make_box(shape),)
     if shape.type == "mesh":
         return (_make_mesh_surface(shape),)
+    if shape.type == "member":
+        return (_make_member_surface(shape),)
     if shape.type == "sphere":
         radius = shape.radius or 0.0
         return (
@@ -97,6 +99,8 @@ def find_nearest_place(shape: Shape, point: Array) -> tuple[Array, float]:
     radial = float(np.linalg.norm(point - start - fraction * axis))
     axial = max(fraction - 1.0, -fraction, 0.0) * float(np.linalg.norm(axis))
     first = shape.radius or 0.0
+    if shape.member is not None:
+        first = 0.5 * max(max(m.width, m.height) for m in (shape.member.start, shape.member.end))
     last = first if shape.to_radius is None else shape.to_radius
     return place, max(axial, radial - max(first, last))
 
@@ -109,6 +113,20 @@ def compute_mesh_corners(mesh: Shape) -> Array:
     """Compute the corners of a mesh, (n, 3), in body axes."""
     assert mesh.mesh is not None and mesh.scale is not None
     return np.asarray(_to_array(mesh.at) + (mesh.scale * mesh.mesh.corners) @ np.array(mesh.rotation).T)
+
+
+def _make_member_surface(shape: Shape) -> Surface:
+    """Make a member: its faces, its outlines at both ends, and the edges along it that are not of a fillet."""
+    from heuncli.scene.shapes.member_solid import make_member_solid, make_unrounded  # few scenes have them
+
+    assert shape.member is not None
+    solid = make_member_solid(make_unrounded(shape.member), _to_array(shape.from_), _to_array(shape.to), 1.0)
+    half = len(solid.vertices) // 2
+    low, high = solid.vertices[:half], solid.vertices[half:]
+    parts = [slice(0, half)] if shape.member.family != "box" else [slice(0, half // 2), slice(half // 2, half)]
+    rims = [_close_ring(ring[part]) for ring in (low, high) for part in parts]
+    edges = (*rims, *np.stack([low, high], axis=1))
+    return Surface(solid.vertices, tuple(map(tuple, solid.triangles.tolist())), edges, convex=False)
 
 
 def _make_box(shape: Shape) -> Surface:

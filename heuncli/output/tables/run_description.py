@@ -35,6 +35,7 @@ LIST_TITLES = (
     ("chosen", "Initial values chosen by heun"),
     ("moved", "Moved from the given start position"),
     ("started", "Start of the motion"),
+    ("members", "Cross-sections of members"),
     ("notes", "Notes"),
 )
 

@@ -190,12 +190,36 @@ class RectangleEntry(Entry):
     height: Length
 
 
+class MemberEntry(Entry):
+    """The measures of an I, C, L or T, its width along e1 and its height along e2."""
+
+    height: Length
+    width: Length
+    web: Length
+    flange: Length
+    radius: Length = 0.0
+    toe_radius: Length = 0.0
+
+
+class HollowEntry(Entry):
+    height: Length
+    width: Length
+    wall: Length
+    radius: Length = 0.0
+
+
 class PropertiesEntry(Entry):
     """Of a section: one of the named shapes, or all of the numbers."""
 
     circle: CircleEntry | None = None
     tube: TubeEntry | None = None
     rectangle: RectangleEntry | None = None
+    I: MemberEntry | None = None
+    C: MemberEntry | None = None
+    L: MemberEntry | None = None
+    T: MemberEntry | None = None
+    box: HollowEntry | None = None
+    profile: str | None = None
     area: Area | None = None
     I1: AreaMoment | None = None
     I2: AreaMoment | None = None

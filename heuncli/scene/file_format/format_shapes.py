@@ -65,6 +65,56 @@ class BoxShape(Entry):
     center: Position
     size: Position
     orientation: Orientation | None = None
+    wall: Length | None = None
+    mass: Mass | None = None
+    density: Density | None = None
+
+
+class MemberShape(Entry):
+    """A straight member by its measures, at its other end those with `to_` where they differ."""
+
+    from_: Position = key(alias="from")
+    to: Position
+    height: Length
+    width: Length
+    web: Length
+    flange: Length
+    radius: Length | None = None
+    toe_radius: Length | None = None
+    to_height: Length | None = None
+    to_width: Length | None = None
+    to_web: Length | None = None
+    to_flange: Length | None = None
+    first_axis: Direction | None = None
+    mass: Mass | None = None
+    density: Density | None = None
+
+
+class IShape(MemberShape):
+    type: Literal["I"]
+
+
+class CShape(MemberShape):
+    type: Literal["C"]
+
+
+class LShape(MemberShape):
+    type: Literal["L"]
+
+
+class TShape(MemberShape):
+    type: Literal["T"]
+
+
+class ProfileShape(Entry):
+    """A straight member by its name, at its other end by another one of its family."""
+
+    type: Literal["profile"]
+    from_: Position = key(alias="from")
+    to: Position
+    profile: str
+    to_profile: str | None = None
+    first_axis: Direction | None = None
     mass: Mass | None = None
     density: Density | None = None
 
@@ -93,8 +143,10 @@ class MeshShape(Entry):
     density: Density | None = None
 
 
-ShapeEntry = RodShape | CylinderShape | ConeShape | BoxShape | SphereShape | PointShape | MeshShape
+ShapeEntry = (
+    RodShape | CylinderShape | ConeShape | BoxShape | MemberShape | ProfileShape | SphereShape | PointShape | MeshShape
+)
 SHAPES: dict[str, type[ShapeEntry]] = {
-    "rod": RodShape, "cylinder": CylinderShape, "cone": ConeShape, "box": BoxShape, "sphere": SphereShape,
-    "point": PointShape, "mesh": MeshShape,
+    "rod": RodShape, "cylinder": CylinderShape, "cone": ConeShape, "box": BoxShape, "I": IShape, "C": CShape,
+    "L": LShape, "T": TShape, "profile": ProfileShape, "sphere": SphereShape, "point": PointShape, "mesh": MeshShape,
 }  # fmt: skip

@@ -76,6 +76,8 @@ INLINE: dict[type[Entry], tuple[str, str]] = {
     f.CircleEntry: ("Properties", "circle"),
     f.TubeEntry: ("Properties", "tube"),
     f.RectangleEntry: ("Properties", "rectangle"),
+    f.MemberEntry: ("Properties", "I"),
+    f.HollowEntry: ("Properties", "box"),
 }
 
 

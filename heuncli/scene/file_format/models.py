@@ -36,6 +36,7 @@ from heuncli.scene.file_format.loads import (
     TurnSpring,
     V,
 )
+from heuncli.scene.file_format.profiles import Family, Measures
 
 if TYPE_CHECKING:
     from heuncli.scene.expressions.paths import Path
@@ -59,13 +60,22 @@ class Ground(NamedTuple):
     points: Mapping[str, Vec]
 
 
+class Member(NamedTuple):
+    """A straight member: its measures at its two ends, and the direction of its width, body axes."""
+
+    family: Family
+    start: Measures
+    end: Measures
+    first_axis: Vec | None
+
+
 class Shape(NamedTuple):
     """A part of a body: one of mass, density and line_density is given, and the dimensions of its type.
 
     A mesh is in the units and axes of its file: a vertex x of the file is at `at` + rotation (scale x) [m].
     """
 
-    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point", "mesh"]
+    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point", "mesh", "member"]
     mass: float | None = None
     density: float | None = None
     line_density: float | None = None
@@ -80,6 +90,7 @@ class Shape(NamedTuple):
     to_radius: float | None = None
     scale: float | None = None
     mesh: TriangleMesh | None = None
+    member: Member | None = None
 
 
 @record
@@ -278,10 +289,11 @@ class Properties(NamedTuple):
     """Properties of a cross-section, for stresses: SI values by name.
 
     circle: radius; tube: radius, inner_radius; rectangle: width (along e1), height (along e2); general: area, I1, I2,
-    J, c1, c2 (half extents along e1, e2) and, if known, shear_factor; auto: those of the shapes that are cut
+    J, c1, c2 (half extents along e1, e2) and, if known, shear_factor; auto: those of the shapes that are cut; I, C, L,
+    T, box: the measures of a member, width along e1, height along e2
     """
 
-    kind: Literal["circle", "tube", "rectangle", "general", "auto"]
+    kind: Literal["circle", "tube", "rectangle", "general", "auto", "I", "C", "L", "T", "box"]
     values: Mapping[str, float]
 
 

@@ -23,6 +23,7 @@ from heuncli.scene.file_format import models as m
 from heuncli.scene.file_format.couplings import Coupling
 from heuncli.scene.file_format.fields import EndEntry
 from heuncli.scene.file_format.format_couplings import CouplingEntry, RollingEntry
+from heuncli.scene.file_format.members import find_ends, find_member, find_section_measures, is_member
 from heuncli.scene.file_format.names import GROUND, UNTIL
 from heuncli.scene.file_format.resolve_couplings import (
     iter_belt_conditions,
@@ -198,6 +199,9 @@ class Resolver:
             "inner_radius",
             "to_radius",
         )
+        if is_member(shape):
+            return resolve_member(shape)
+        assert not isinstance(shape, fs.MemberShape | fs.ProfileShape)
         rotation = None
         if isinstance(shape, fs.BoxShape | fs.MeshShape):
             rotation = orientation_matrix(shape.orientation) if shape.orientation is not None else IDENTITY
@@ -378,6 +382,17 @@ class Resolver:
         return m.Stop(name, coordinate.joint, coordinate.quantity, None, None, 0.0, latch)
 
 
+def resolve_member(shape: fs.ShapeEntry) -> m.Shape:
+    """Return a member, or the cylinder that a circular tube is."""
+    member, (start, end) = find_member(shape), find_ends(shape)
+    mass, density = getattr(shape, "mass", None), getattr(shape, "density", None)
+    if not isinstance(member, m.Member):
+        return m.Shape(
+            "cylinder", mass, density, from_=start, to=end, radius=member.radius, inner_radius=member.inner_radius
+        )
+    return m.Shape("member", mass, density, from_=start, to=end, member=member)
+
+
 def make_framed_vector(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.FramedVector[m.Vec] | None:
     """Return a vector in world axes unless the value says otherwise."""
     if value is None:
@@ -415,6 +430,8 @@ def make_properties(value: f.PropertiesEntry | Literal["auto"] | None) -> m.Prop
         return None
     if isinstance(value, str):
         return m.Properties("auto", {})
+    if (member := find_section_measures(value)) is not None:
+        return member
     for kind in ("circle", "tube", "rectangle"):
         if (sizes := getattr(value, kind)) is not None:
             return m.Properties(kind, vars(sizes))

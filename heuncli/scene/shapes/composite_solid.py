@@ -79,6 +79,12 @@ def make_polyhedron(shape: Shape, density: float) -> Solid:
     return Polyhedron(places, surface.triangles, density, scale * coordinate_resolution(surface.corners))
 
 
+def make_member(shape: Shape, density: float) -> Solid:
+    from heuncli.scene.shapes.member_solid import make_member_solid  # few scenes have members
+
+    return make_member_solid(require_value(shape.member), to_vector(shape.from_), to_vector(shape.to), density)
+
+
 # density in kg/m3; of a rod in kg/m, of a point in kg
 SOLID_MAKERS: dict[str, Callable[[Shape, float], Solid]] = {
     "rod": make_rod,
@@ -88,6 +94,7 @@ SOLID_MAKERS: dict[str, Callable[[Shape, float], Solid]] = {
     "sphere": make_sphere,
     "point": make_point_mass,
     "mesh": make_polyhedron,
+    "member": make_member,
 }
 
 

@@ -27,8 +27,10 @@ from numpy.typing import NDArray
 from heuncli.base import tolerances
 from heuncli.base.records import record
 from heuncli.results.results import Array, Indices, Mask
+from heuncli.scene.file_format.profiles import Family, Measures
 from heuncli.scene.shapes.box import Box
 from heuncli.scene.shapes.frustum import Frustum
+from heuncli.scene.shapes.member_solid import MemberSolid
 from heuncli.scene.shapes.outlines import intersection_lines, number_loops
 from heuncli.scene.shapes.polyhedron import LocalSurface, Polyhedron
 from heuncli.scene.shapes.rotations import cross_rows
@@ -73,6 +75,20 @@ class RectangleFigure:
 
 
 @record
+class MemberFigure:
+    """Cross-sections of a member.
+
+    measures: of each that is met, by plane number
+    frame (2, 2): components along e1 and e2 (rows) of the member's width and height axes (columns)
+    """
+
+    is_met: Flags
+    family: Family
+    measures: Mapping[int, Measures]
+    frame: Array
+
+
+@record
 class UnknownFigure:
     """Figures of no other kind, and the reason."""
 
@@ -93,7 +109,7 @@ class ProfileFigure:
     missing: Mapping[int, str]
 
 
-Figure = RoundFigure | RectangleFigure | ProfileFigure | UnknownFigure
+Figure = RoundFigure | RectangleFigure | MemberFigure | ProfileFigure | UnknownFigure
 
 
 # Figures
@@ -112,7 +128,8 @@ def find_figure(part: Solid, planes: CuttingPlanes) -> Figure | None:
         return RoundFigure(is_met, part.center + h[:, None] * planes.n, radius, np.zeros_like(radius))
     if isinstance(part, PointMass | Rod):
         return None
-
+    if isinstance(part, MemberSolid):
+        return find_member_figure(part, planes)
     return find_profile_figure(part, planes)
 
 
@@ -143,6 +160,19 @@ def find_box_figure(part: Box, planes: CuttingPlanes) -> Figure:
         return UnknownFigure(is_met, f"e1 is not parallel to a side of the box (use first_axis: [{side}])")
     width, height = (2.0 * float(part.half_size[j]) for j in (parallel_axes[0], 3 - i - parallel_axes[0]))
     return RectangleFigure(is_met, part.center + h[:, None] * planes.n, width, height)
+
+
+def find_member_figure(part: MemberSolid, planes: CuttingPlanes) -> Figure:
+    """Find the cross-section of a member cut square to it."""
+    low, high = part.extent(planes.n)
+    is_met = (low < planes.shifted_d) & (planes.shifted_d < high)
+    if not are_parallel(part.axis, planes.n):
+        return UnknownFigure(is_met, "a member is cut obliquely")
+    fraction = (planes.d - planes.n @ part.start) / (float(part.axis @ planes.n) * part.length)
+    measures = {int(k): part.find_measures(min(max(float(fraction[k]), 0.0), 1.0)) for k in np.flatnonzero(is_met)}
+    axes = np.stack([part.first_axis, cross_rows(part.axis, part.first_axis)])
+    frame = np.stack([planes.e1, cross_rows(planes.n, planes.e1)]) @ axes.T
+    return MemberFigure(is_met, part.family, measures, frame)
 
 
 def are_parallel(a: Array, b: Array) -> bool:

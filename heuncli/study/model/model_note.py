@@ -30,11 +30,14 @@ from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.file_format.models import Spec
 
 if TYPE_CHECKING:
+    from heuncli.loads.kinetostatics.cuts import Cuts
     from heuncli.loads.redundancy.self_stress import SelfStress
+    from heuncli.scene.shapes.member_section import MemberSection
 from collections.abc import Iterator
 
 from heuncli.scene.file_format.couplings import Screw, ThreadFriction
 
+MAX_MEMBERS = 3  # cross-sections of a section that are described: of a tapered member its first and its last
 COUNTED_FROM = {GLOBAL: "relative to the world axes: none can pass 180 deg", RECENTRED: "restarted in each step"}
 
 
@@ -327,3 +330,43 @@ def describe_thread(lead: float, friction: ThreadFriction) -> str:
         f"not {SELF_LOCKING} {angles}: {efficiency}, {(slope - mu) / (1.0 + slope * mu) / slope:.3g} "
         "from thrust to torque"
     )
+
+
+def describe_members(cuts: Sequence[Cuts]) -> Block:
+    """Describe in sentences the cross-sections of members for which stresses are computed."""
+    sentences: list[str] = []
+    for section in cuts:
+        if not section.cuts_members or section.properties is None:
+            continue
+        from heuncli.loads.kinetostatics import member_stress  # few scenes have members
+
+        kind, values = section.properties
+        if kind != "auto":
+            member = member_stress.find_given_factors(kind, values).section
+            sentences.append(f"{section.name}: {_describe_member(kind, member)}")
+            continue
+        found = [group for group in section.auto_properties.groups if group.member is not None]
+        found.sort(key=lambda group: int(np.argmax(group.cut_mask)))
+        for group in found if len(found) <= MAX_MEMBERS else [found[0], found[-1]]:
+            place = "" if section.s is None else f" at s = {section.s[group.cut_mask][0]:.6g} m"
+            assert group.member is not None
+            sentences.append(f"{section.name}{place}: {_describe_member(group.kind, group.member.section)}")
+    return {"members": sentences} if sentences else {}
+
+
+def _describe_member(family: str, section: MemberSection) -> str:
+    """Describe a cross-section: its numbers, and how far they are approximate."""
+    W = section.moduli
+    text = (
+        f"{family}, A = {section.area * 1e4:.4g} cm², I = {section.Ivv * 1e8:.4g} cm⁴ about its width and "
+        f"{section.Iuu * 1e8:.4g} cm⁴ about its height, W = {W[0] * 1e6:.4g} and {W[1] * 1e6:.4g} cm³ (exact), "
+        f"J = {section.J * 1e8:.3g} cm⁴ (within 6 %)"
+    )
+    first, second, angle = section.principal
+    if abs(section.Iuv) > tolerances.PRINCIPAL * first:
+        turned = f"the first {math.degrees(angle):.2f}° from the width"
+        text += f", principal I = {first * 1e8:.4g} and {second * 1e8:.4g} cm⁴, {turned}"
+    if section.shear_center.any():
+        u, v = section.shear_center.tolist()
+        text += f", shear centre ({u * 1e3:.3g}, {v * 1e3:.3g}) mm from the centroid (thin walls)"
+    return text

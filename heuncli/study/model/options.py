@@ -196,10 +196,15 @@ def iter_numbers_by_block(setup: Setup) -> Iterator[tuple[str, int]]:
     yield from found.items()
 
 
+CORNERS_OF_MEMBER = 5  # of most families, with the middle of the web
+
+
 def is_in_results(row: Quantity, setup: Setup) -> bool:
     """Return whether the results have a quantity."""
     if row.is_words or (is_share(row) and SHARES not in setup.selection.reports):
         return False
+    if row.path.startswith("sections.SECTION.stress.points."):
+        return any(cuts.cuts_members for cuts in setup.cuts)
     return not row.path.startswith("sections.SECTION.stress.") or any(cuts.properties for cuts in setup.cuts)
 
 
@@ -216,6 +221,7 @@ def count_numbers(row: Quantity, setup: Setup) -> int:
         "COUPLING": len(mechanism.couplings),
         "END": 2,
         "SECTION": sum(len(cuts.side) for cuts in setup.cuts) if CUT in row.shape else len(setup.cuts),
+        "CORNER": CORNERS_OF_MEMBER,
         "FORCE": len(mechanism.loads),
         "CAUSE": len(mechanism.loads) + CAUSES_WITHOUT_LOAD,
     }

@@ -33,6 +33,7 @@ from heuncli.study.model.model_note import (
     add_rest_sentences,
     choose_first_method,
     describe_attitudes,
+    describe_members,
     describe_reductions,
     describe_tables,
     explain_method,
@@ -153,6 +154,7 @@ def set_up(
         note["reasons"] += explain_choice(chosen, runner.integrated_scene.layout, spec, is_auto=auto)
     step = spec.analysis.step if chosen is not None and chosen.has_fixed_step else None
     note |= {} if step is None else {"step": step}
+    note |= describe_members(cuts)
     return Setup(
         spec, scene, cuts, runner, chosen, note, reduced, selection,
         is_auto=auto, step=step, self_stress=redundancies.start_stress, start_warnings=start_warnings,
@@ -209,6 +211,7 @@ def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], find_rest: bool) -> 
     redundancies = count_redundancy(scene, runner)
     note = make_model_block(scene, runner, "rest", redundancies) | describe_reductions(left_out, scene, None)
     note["notes"] += describe_tables(setup.spec)
+    note |= describe_members(setup.cuts)
     model = add_rest_sentences(note, rest.sentences if rest else ())
     return replace(setup, scene=scene, runner=runner, rest=rest, model=model, self_stress=redundancies.start_stress)
 

@@ -53,6 +53,7 @@ WORDS: dict[str, str | tuple[str, str]] = {
     "reserve": "reserve against slip",
     "grip": "reserve against slip", "N": "axial force N", "Q1": "shear force Q1", "Q2": "shear force Q2",
     "T": "torsion", "M1": "bending moment M1", "M2": "bending moment M2", "Q": "shear force", "M": "bending moment",
+    "points.normal": "normal stress", "points.shear": "shear stress",
     "sections.normal": "normal n", "first_axis": "first axis e1", "line.point": "point of the reduction line",
     "line.direction": "direction of the reduction line", "line.kind": "kind of the reduction line",
     "line.pressure_centre": "centre of pressure", "normal_max": "highest normal stress",
@@ -264,7 +265,8 @@ def _describe_quantity(parts: PathParts, labels: Labels) -> str:
     text = template.format(components) if components else text
     cut = next((word for word in parts.rest if is_cut_word(word)), "")
     text += _describe_cut(cut, has_cuts=CUT in parts.row.shape) if cut else ""
-    cause = parts.find_name("CAUSE")
+    corner, cause = parts.find_name("CORNER"), parts.find_name("CAUSE")
+    text += f" at {make_readable(corner)}" if corner else ""
     return f"{text} due to {describe_object('causes', cause, labels)}" if cause else text
 
 

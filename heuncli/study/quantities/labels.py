@@ -17,9 +17,9 @@ from heuncli.base.joint_kinds import TYPES, JointKind
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
-from heuncli.loads.kinetostatics.section_axes import choose_default_axis, find_nearest_axis
 from heuncli.scene.file_format.loads import Friction
 from heuncli.scene.file_format.models import End, Force, Section, Spec, Stop, Vec
+from heuncli.scene.shapes.section_axes import choose_default_axis, find_nearest_axis
 from heuncli.study.quantities.table_units import Units
 
 AXES = ("x", "y", "z")

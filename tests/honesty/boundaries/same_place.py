@@ -8,13 +8,13 @@ import numpy as np
 
 from heuncli.base.errors import Finding
 from heuncli.loads.kinetostatics.auto_properties import CutForm, combine_rectangles, find_cut_properties
-from heuncli.loads.kinetostatics.section_axes import find_nearest_axis
 from heuncli.results.cut_rows import find_cut_rows
 from heuncli.results.results import Results
 from heuncli.scene.file_format.models import Shape
 from heuncli.scene.meshes.reading import read_closed_mesh
 from heuncli.scene.shapes.composite_solid import CompositeSolid, make_composite_solid
 from heuncli.scene.shapes.figures import RectangleFigure
+from heuncli.scene.shapes.section_axes import find_nearest_axis
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read, verdict
 from tests.shared import triangles

@@ -88,6 +88,8 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
         for i, shape in enumerate(body.shapes or []):
             shape_path = (*path, "shapes", i)
             yield from require_positive(shape_path, shape, "mass", "density", "line_density", "scale")
+            if isinstance(shape, fs.MemberShape):
+                continue  # its measures are checked together
             if not isinstance(shape, fs.ConeShape):
                 yield from require_positive(shape_path, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
@@ -189,7 +191,10 @@ def check_shape_form(draft: DraftDocument) -> Iterator[Violation]:
                 if len(given_keys) != 1:
                     description = "both mass and" if given_keys else "neither mass nor"
                     yield Violation(path, f"{description} {density} given", "give one of the two")
-            if isinstance(shape, fs.RodShape | fs.CylinderShape | fs.ConeShape) and shape.from_ == shape.to:
+            if (
+                isinstance(shape, fs.RodShape | fs.CylinderShape | fs.ConeShape | fs.MemberShape | fs.ProfileShape)
+                and shape.from_ == shape.to
+            ):
                 yield Violation((*path, "to"), "from and to are the same point", "for a point mass use type: point")
             if (
                 isinstance(shape, fs.CylinderShape)

@@ -9,6 +9,7 @@ from heuncli.scene.file_format.rules import (  # noqa: F401 (each registers its 
     expect,
     joints,
     loads,
+    members,
     paths,
     plane,
     products,

@@ -23,6 +23,7 @@ from heuncli.results.path_words import (  # fmt: skip
 )
 from heuncli.results.results_schema import CUT, IMPULSES, INSTANT, Quantity, Shape, parse_index
 from heuncli.scene.file_format.names import GROUND, SceneNames
+from heuncli.scene.file_format.profiles import STRESS_POINTS
 from heuncli.scene.file_format.rules.registry import DraftDocument
 from heuncli.scene.file_format.rules.sections import is_run
 from heuncli.scene.file_format.semantics import limitable_coordinates
@@ -292,6 +293,8 @@ def expand_schema_word(word: str, names: SceneNames, is_impact: bool = False) ->
             return list(entries["joints"])
         case "SECTION":
             return list(entries["sections"])
+        case "CORNER":
+            return [*STRESS_POINTS]
         case "STOP":
             return [*entries["stops"], *entries["latches"]]
         case "COUPLING":

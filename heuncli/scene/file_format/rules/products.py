@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from heuncli.base.errors import Finding
 from heuncli.base.units import is_in_range, range_error
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format.members import find_ends, find_member, is_member, mean_area
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 
 
@@ -73,6 +75,11 @@ def shape_extent(shape: fs.ShapeEntry) -> tuple[float, ...]:
     match shape:
         case fs.RodShape():
             return (*shape.from_, *shape.to)
+        case fs.MemberShape():
+            sizes = (shape.width, shape.height, shape.to_width or 0.0, shape.to_height or 0.0)
+            return (*shape.from_, *shape.to, *sizes)
+        case fs.ProfileShape():
+            return (*shape.from_, *shape.to)
         case fs.CylinderShape():
             return (*shape.from_, *shape.to, shape.radius)
         case fs.ConeShape():
@@ -96,7 +103,18 @@ def shape_mass(shape: fs.ShapeEntry) -> float:
     if isinstance(shape, fs.MeshShape):
         return 0.0
     assert not isinstance(shape, fs.PointShape)
+    if is_member(shape):
+        return (shape.density or 0.0) * member_volume(shape)
+    assert not isinstance(shape, fs.MemberShape | fs.ProfileShape)
     return (shape.density or 0.0) * shape_volume(shape)
+
+
+def member_volume(shape: fs.ShapeEntry) -> float:
+    """Return the volume of a member [m^3]; 0 if it cannot be one, which another rule reports."""
+    try:
+        return mean_area(find_member(shape)) * math.dist(*find_ends(shape))
+    except Finding:
+        return 0.0
 
 
 def shape_volume(shape: fs.CylinderShape | fs.ConeShape | fs.BoxShape | fs.SphereShape) -> float:

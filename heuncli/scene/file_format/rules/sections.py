@@ -14,6 +14,7 @@ from heuncli.scene.file_format.semantics import find_point
 
 MAX_PLAUSIBLE_STRENGTH = 1e4  # [MPa] a few times the strength of the hardest steel
 GENERAL_KEYS = ("area", "I1", "I2", "J", "c1", "c2")
+SECTION_SHAPES = ("circle", "tube", "rectangle", "I", "C", "L", "T", "box", "profile")
 REDUCED_TO = ("at", "centroid", "line")
 MAX_CUTS = 50_000  # in a run: finer than any figure shows, and validate still takes only a second
 SHEAR_FACTOR_HINT = "1 is a uniform stress; a rectangle has 1.5, a circle 4/3"
@@ -157,13 +158,13 @@ def check_properties_form(draft: DraftDocument) -> Iterator[Violation]:
                     (*path, "properties"), message, f"give circle, tube, rectangle, or all of {', '.join(GENERAL_KEYS)}"
                 )
             continue
-        shapes = [key for key in ("circle", "tube", "rectangle") if getattr(properties, key) is not None]
+        shapes = [key for key in SECTION_SHAPES if getattr(properties, key) is not None]
         numbers = [key for key in GENERAL_KEYS if getattr(properties, key) is not None]
         if len(shapes) + bool(numbers) != 1:
             yield Violation(
                 (*path, "properties"),
                 "properties of one shape are needed",
-                f"give auto, circle, tube, rectangle, or all of {', '.join(GENERAL_KEYS)}",
+                f"give auto, {', '.join(SECTION_SHAPES)}, or all of {', '.join(GENERAL_KEYS)}",
             )
         elif numbers and len(numbers) < len(GENERAL_KEYS):
             missing = ", ".join(key for key in GENERAL_KEYS if key not in numbers)
