@@ -62,10 +62,10 @@ class Law(NamedTuple):
 
 
 class StickingFriction(NamedTuple):
-    """A place where friction may stick: its load with a row of that, and the coordinate that it holds."""
+    """A place where friction may stick: its load, the row of that among all loads, and the coordinate that it holds."""
 
     load: JointLoad
-    row: int
+    load_row: int
     quantity: Literal["angle", "travel"]
 
 

@@ -168,7 +168,7 @@ class Layout(LayoutFrame):
         return tuple(i for i, contact in enumerate(self.contacts) if contact.sense == 0 and contact.load_row < 0)
 
     @cached_property
-    def sticking(self) -> tuple[int, ...]:
+    def friction_contacts(self) -> tuple[int, ...]:
         """The indices of the places among the contacts where friction may stick."""
         return tuple(i for i, contact in enumerate(self.contacts) if contact.load_row >= 0)
 
@@ -179,10 +179,10 @@ class Layout(LayoutFrame):
         After them, for each friction that may stick, its coordinate while it does; else the sign of its slip, 0: it
         exerts nothing.
         """
-        if not self.contacts and not self.sticking:
+        if not self.contacts and not self.friction_contacts:
             return np.zeros(0)
         places = self.tables["closures"]["length"][[self.contacts[i].row for i in self.latches]]
-        return np.concatenate([np.zeros(len(self.contacts)), places, np.zeros(len(self.sticking))])
+        return np.concatenate([np.zeros(len(self.contacts)), places, np.zeros(len(self.friction_contacts))])
 
     def closed_contacts(self, holding: Array) -> Array:
         """Reduce contact states (..., n) to 1 for each contact that is closed, also through others, and 0 for an open

@@ -7,6 +7,18 @@ those whose results agree with it are possible. What can stick does: of several 
 all those stick that stick in any other. What has just reached what it can hold must slip, the way that it was pushed.
 Several that differ otherwise, or none, are errors, as is a sticking friction that others could replace.
 
+How a friction comes here, from the scene's text to the kernel and back:
+
+    1. FrictionEntry             scene/file_format/format_loads.py: the keys of `type: friction`
+    2. check_sticking_friction   scene/file_format/rules/loads.py: what may stick
+    3. JointLoad.static          multibody/mechanism/loads.py: > 0 for friction that may stick
+    4. Mechanism.iter_sticking   multibody/mechanism/model.py: a StickingFriction for each coordinate that it holds
+    5. _add_frictions            multibody/tree/closure_rows.py: a closure row and a Contact for each
+    6. Layout.friction_contacts  multibody/tree/layout.py: which contacts those are; `open_contacts`: the states
+    7. FrictionStates.decide     here, at each event: the states
+    8. set_friction_mode         kernel/sticking.py: closes the row, or gives the load its sign
+    9. friction_margin           kernel/sticking.py: followed in each step, it causes the next event
+
 With given sizes, static ones equal to kinetic, the accelerations are those of a convex problem and unique (Moreau 1988;
 Brogliato, Nonsmooth Mechanics (2016), 5.5): then the first agreeing choice is the one.
 """
@@ -23,7 +35,7 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.contact_problem import make_jamming_problem
-from heuncli.motion.integration.contacts.latches import latch_rate
+from heuncli.motion.integration.contacts.latches import measure_coordinate_rate
 from heuncli.motion.integration.contacts.restitution import find_coupled_groups
 from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.contacts.touching import unit_load
@@ -61,19 +73,19 @@ class FrictionStates:
 
     presses (k,): whether the joint's own load tells its size; has_one_size: static friction is kinetic everywhere
     is_given: no friction depends on a load; is_convex: so that one choice agrees at most
-    sticks (k,): whether each sticks; place (k,): its coordinate then, else the sign of its slip
+    sticks (k,): whether each sticks; coordinate_or_sign (k,): its coordinate then, else the sign of its slip
     """
 
     def __init__(self, evaluator: Evaluator, last: float) -> None:
         self.evaluator, self.layout, self.last = evaluator, evaluator.layout, last
-        self.indices = list(self.layout.sticking)
+        self.indices = list(self.layout.friction_contacts)
         self.contacts = [self.layout.contacts[i] for i in self.indices]
         self.rows = [contact.row for contact in self.contacts]
         self.load_rows = [contact.load_row for contact in self.contacts]
         self.names = [contact.name for contact in self.contacts]
         self.sticks = np.zeros(len(self.indices), dtype=bool)
-        self.place = np.zeros(len(self.indices))
-        self.earlier = self.sticks, self.place  # before the event
+        self.coordinate_or_sign = np.zeros(len(self.indices))
+        self.earlier = self.sticks, self.coordinate_or_sign  # before the event
         loads = self.layout.tables["loads"][self.load_rows]
         self.presses = loads["normal_force_kind"] != kernel.GIVEN
         self.has_one_size = bool((loads["breakaway"] == loads["coefficient"]).all())
@@ -82,19 +94,19 @@ class FrictionStates:
 
     def add_to(self, holding: Array) -> Array:
         """Return contact states with those of the friction."""
-        return self.set_states(holding, self.sticks, self.place)
+        return self.set_states(holding, self.sticks, self.coordinate_or_sign)
 
-    def set_states(self, holding: Array, sticks: Array, place: Array) -> Array:
-        """Return contact states in which friction sticks at a place, or slips with its sign."""
+    def set_states(self, holding: Array, sticks: Array, coordinate_or_sign: Array) -> Array:
+        """Return contact states in which friction sticks at a coordinate, or slips with a sign."""
         holding = holding.copy()
         if self.indices:
             holding[self.indices] = sticks
-            holding[len(holding) - len(self.indices) :] = place
+            holding[len(holding) - len(self.indices) :] = coordinate_or_sign
         return holding
 
     def begin_event(self) -> None:
         """Take the present states as those before an event."""
-        self.earlier = self.sticks, self.place
+        self.earlier = self.sticks, self.coordinate_or_sign
 
     def decide(self, t: float, state: Array, holding: Array, row: int | None, is_struck: bool) -> list[str]:
         """Decide what sticks and slips from a state on; return sentences on what changes.
@@ -105,23 +117,23 @@ class FrictionStates:
         none = np.zeros(len(self.indices))
         opened = self.evaluate(t, state, self.set_states(holding, none, none))
         slip, at_rest = np.zeros(len(self.indices)), []
-        before, place = self.earlier
-        broken, stuck = None, before & ~is_struck
+        before, coordinate_or_sign = self.earlier
+        broken, stuck = None, before & (not is_struck)
         for k, contact in enumerate(self.contacts):
-            rate, noise = latch_rate(self.layout, opened, contact, self.last)
+            rate, noise = measure_coordinate_rate(self.layout, opened, contact, self.last)
             if stuck[k] or contact.row == row or abs(rate) <= noise:
                 at_rest.append(k)
                 broken = k if contact.row == row and stuck[k] else broken
             else:
                 slip[k] = np.sign(rate)
-        coordinates = np.where(stuck, place, opened.rows["gap"][0, self.rows])
+        coordinates = np.where(stuck, coordinate_or_sign, opened.rows["gap"][0, self.rows])
         search = StateSearch(self, t, state, holding, at_rest, slip, coordinates, broken, opened)
         choice = search.find_choice() if at_rest else ()
         unproved = search.find_unproved(choice)
         sticks = np.zeros(len(self.indices), dtype=bool)
         for k, chosen in zip(at_rest, choice, strict=True):
             sticks[k], slip[k] = chosen == STICKS, chosen
-        self.sticks, self.place = sticks, np.where(sticks, coordinates, slip)
+        self.sticks, self.coordinate_or_sign = sticks, np.where(sticks, coordinates, slip)
         return [
             f"{name} {'sticks' if now else 'slips'} from t = {t:.6g} s"
             for name, then, now in zip(self.names, before, sticks, strict=True)
@@ -143,7 +155,7 @@ def read_places(evaluator: Evaluator, t: float, state: Array) -> Array:
     """Return the coordinates (k,) that sticking friction holds, at a state."""
     layout = evaluator.layout
     opened = evaluator.evaluate(np.array([t]), state[None, :], holding=layout.open_contacts)
-    return np.asarray(opened.rows["gap"][0, [layout.contacts[i].row for i in layout.sticking]])
+    return np.asarray(opened.rows["gap"][0, [layout.contacts[i].row for i in layout.friction_contacts]])
 
 
 class StateSearch:
@@ -170,11 +182,15 @@ class StateSearch:
         self.at_rest, self.slip, self.coordinates = at_rest, slip, coordinates
         self.broken = None if broken is None else at_rest.index(broken)
         self.trials: dict[Choice, StateTrial] = {}
-        self.noise = self.find_noise(opened)
+        self.noise, self.response, self.slack = self.measure_response(opened)
         self.pushed = self.find_push()
 
-    def find_noise(self, opened: Evaluation) -> Array:
-        """Return the rounding of the accelerations (n,) of the places, from those of all loads and weights."""
+    def measure_response(self, opened: Evaluation) -> tuple[Array, Array, Array]:
+        """Measure what unit friction in one place does to another.
+
+        Returns the rounding of the accelerations (n,), the acceleration of each place at rest by unit friction in each
+        (k, k), and the rounding of the friction that holds a place (n,).
+        """
         layout = self.friction.layout
         units = np.array([unit_load(layout, opened, contact, 1.0) for contact in self.friction.contacts])
         jumps = np.zeros((len(units), len(layout.freedoms) + len(layout.rows)))
@@ -185,15 +201,14 @@ class StateSearch:
         columns = solve_impulses(self.friction.evaluator.workspace, self.t, self.state, units, jumps).columns.bodies
         motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
         response = np.einsum("kbi,cbi->kc", units, motion)
-        self.response = 0.5 * (response + response.T)[np.ix_(self.at_rest, self.at_rest)]
+        among_resting = 0.5 * (response + response.T)[np.ix_(self.at_rest, self.at_rest)]
         weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
         loads = np.abs(opened.loads["force"][0]).sum() + np.abs(opened.loads["moment"][0]).sum() / layout.size
         closures = layout.tables["closures"][self.friction.rows]
         own = np.abs(np.diag(response))
         effect = own * closures["weight"] * (weights + float(loads))
         noise = np.asarray(tolerances.CONTACT_ACCELERATION * (opened.rows["terms"][0, self.friction.rows] + effect))
-        self.slack = 2.0 * noise / np.where(own > 0.0, own, np.inf)
-        return noise
+        return noise, among_resting, 2.0 * noise / np.where(own > 0.0, own, np.inf)
 
     def find_push(self) -> int:
         """Return the way in which the broken friction is pushed: against its value while all stick; 0: none is."""
@@ -206,11 +221,11 @@ class StateSearch:
 
     def with_choice(self, choice: Choice) -> Array:
         """Return the contact states of a choice."""
-        sticks, place = np.zeros(len(self.slip), dtype=bool), self.slip.copy()
+        sticks, coordinate_or_sign = np.zeros(len(self.slip), dtype=bool), self.slip.copy()
         for k, chosen in zip(self.at_rest, choice, strict=True):
             sticks[k] = chosen == STICKS
-            place[k] = self.coordinates[k] if chosen == STICKS else chosen
-        return self.friction.set_states(self.holding, sticks, place)
+            coordinate_or_sign[k] = self.coordinates[k] if chosen == STICKS else chosen
+        return self.friction.set_states(self.holding, sticks, coordinate_or_sign)
 
     def find_choice(self) -> Choice:
         """Return the choice that agrees with its own results; raise SolveError if that is not one."""
@@ -278,10 +293,10 @@ class StateSearch:
     def solve_trial(self, choice: Choice) -> StateTrial:
         """Solve the motion of a choice and compare it with that."""
         if choice not in self.trials:
-            self.trials[choice] = self.compare(choice)
+            self.trials[choice] = self.compare_results(choice)
         return self.trials[choice]
 
-    def compare(self, choice: Choice) -> StateTrial:
+    def compare_results(self, choice: Choice) -> StateTrial:
         """Compare the results of a choice with it."""
         friction = self.friction
         evaluation = friction.evaluate(self.t, self.state, self.with_choice(choice))
