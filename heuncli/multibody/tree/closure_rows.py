@@ -21,6 +21,7 @@ from heuncli.multibody.tree.layout import Contact
 from heuncli.multibody.tree.starts import Z, bent_direction, body_state, joint_direction, point_distance, to_direction
 from heuncli.multibody.tree.tables import NO_PROGRAM, ZERO, FieldValue, Program, Vector
 from heuncli.scene.expressions.paths import Path
+from heuncli.scene.shapes.rotations import perpendicular_pair
 
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
@@ -252,7 +253,8 @@ class ClosureRows:
             stop = Stop(f"forces.{load.name}", load.joint, quantity, None, None)
             self._add_limit(stop, 0.0, 0, held_at=count + k + 1)
             self.contacts[-1] = replace(self.contacts[-1], load_row=load_row)
-            self.one_sided[-1] = self.one_sided[-1].replace(friction=load_row + 1)
+            group_index = count + len(frictions) + 2 * k + 1
+            self.one_sided[-1] = self.one_sided[-1].replace(friction=load_row + 1, group_index=group_index)
 
     def _add_limit(self, stop: Stop, limit: float, sense: int, held_at: int = 0) -> None:
         """Add the row of one limit of a stop, or of a latch."""
@@ -273,7 +275,10 @@ class ClosureRows:
         elif stop.quantity == "travel":
             self._add_row(stop.joint, kernel.GUIDE, length=limit, e=joint.axis)
         else:
-            self._add_row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=limited, weight=self.tree.size)
+            mark = self.tree.starts[stop.joint].R_ref.T @ perpendicular_pair(joint.axis)[0]
+            self._add_row(
+                stop.joint, kernel.TURN, length=limit, e=joint.axis, g=mark, freedom=limited, weight=self.tree.size
+            )
 
     def _add_row(self, joint: int, kind: int, weight: float = 1.0, **fields: FieldValue) -> None:
         """Add a closure row of a joint; weight: of its gap [m per unit]; fields: the others that its kind needs."""

@@ -168,7 +168,7 @@ def acceleration_noise(layout: Layout, contacts_touching: TouchingContacts, A: A
     )
     load_effect = layout.tables["closures"]["weight"][rows] * load
     noise = tolerances.CONTACT_ACCELERATION * (evaluation.rows["terms"][0, rows] + np.diag(A) * load_effect)
-    return np.asarray(noise + tolerances.NO_ANSWER * find_free_response(layout, contacts_touching) * load_effect)
+    return np.asarray(noise + tolerances.NO_ANSWER * find_free_response(layout, contacts_touching.loads) * load_effect)
 
 
 def is_short_flight(
