@@ -80,7 +80,7 @@ def alpha_tangent(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
 
 
 def angle_of_pin(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """Return the angle of a TURN beyond its length; of a pin that was cut between marks of its bodies, to a whole turn."""
+    """Return the angle of a TURN beyond its length; of a pin that was cut between marks of its bodies, to a turn."""
     if row.freedom >= 0:
         return scene.freedoms[row.freedom].q - row.length
     n: Vec3 = world_direction(scene, row.a, row.e)

@@ -119,6 +119,7 @@ class ForceBlock(TypedDict, total=False):
     rate: Array
     power: Array
     reserve: Array
+    open: list[str]
     shift: Array
     turn: Array
     force: Array

@@ -255,6 +255,7 @@ ROWS: tuple[Quantity, ...] = (
     *rows("forces.FORCE", "power delivered to the bodies", scalar("power", "W")),
     *rows("forces.FORCE", "for friction that may stick: static friction minus magnitude of value; 0 while it slips",
         scalar("reserve", "N | N·m")),
+    *rows("forces.FORCE", "for frictions that stick as one: `value`, indeterminate at some instant", words("open")),
     *rows("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
     *rows("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; "

@@ -192,6 +192,15 @@ class Layout(LayoutFrame):
         numbers = holding[:, holding.shape[1] - 2 * len(self.friction_contacts) :]
         return numbers[:, ::2].astype(int) - 1, numbers[:, 1::2]
 
+    def open_followers(self, holding: Array) -> Array:
+        """Return contact states (n,) in which of frictions that stick as one their leader alone does."""
+        holding = np.array(holding, dtype=float)
+        if self.friction_contacts:
+            leaders = self.read_groups(holding[None, :])[0][0]
+            indices = np.array(self.friction_contacts)
+            holding[indices[(leaders >= 0) & (leaders != indices)]] = 0.0
+        return holding
+
     def closed_contacts(self, holding: Array) -> Array:
         """Reduce contact states (..., n) to 1 for each contact that is closed, also through others, and 0 for an open
         one.

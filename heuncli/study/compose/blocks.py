@@ -59,6 +59,11 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
         rotate_block(blocks_by_name["joints"][load.joint.name], find_joint_axes(load.joint, states, axes))
     if blocks_by_name and recovery.decided is not None:
         recovery.decided.mark(states, blocks_by_name, recovery.couplings, axes, make_element_keys(mechanism))
+        if layout.friction_contacts and "foundation" in blocks_by_name:
+            from heuncli.loads.redundancy.shared_friction import mark_elements  # few scenes have such friction
+
+            elements = blocks_by_name["foundation"].get("elements", {})
+            mark_elements(layout, recovered, elements, make_element_keys(mechanism))
     if "energy" in reports:
         blocks_by_name["energy"] = recovery.energy
     if "motion" in reports:
@@ -243,5 +248,7 @@ def make_force_blocks(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[
         force_block["power"] = applied_load.power
         if applied_load.reserve is not None:
             force_block["reserve"] = applied_load.reserve
+            if np.isnan(applied_load.value).any():
+                force_block["open"] = ["value"]
         block[applied_load.load.name] = force_block
     return block
