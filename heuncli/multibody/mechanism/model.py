@@ -64,9 +64,14 @@ class Law(NamedTuple):
 class StickingFriction(NamedTuple):
     """A place where friction may stick: its load, the row of that among all loads, and the coordinate that it holds."""
 
-    load: JointLoad
+    load: JointLoad | ThreadLoad
     load_row: int
-    quantity: Literal["angle", "travel"]
+    quantity: Literal["angle", "travel", "thread"]
+
+    @property
+    def joint(self) -> int:
+        """The joint whose coordinate it holds; -1 for a thread, which holds those of its coupling."""
+        return self.load.joint if isinstance(self.load, JointLoad) else -1
 
 
 @record
@@ -159,6 +164,8 @@ class Mechanism:
     def iter_sticking(self) -> Iterator[StickingFriction]:
         """Yield the places where friction may stick."""
         for load, rows in self.iter_load_rows():
+            if isinstance(load, ThreadLoad) and load.static > 0.0:
+                yield StickingFriction(load, rows.start, "thread")
             if not isinstance(load, JointLoad) or load.static == 0.0:
                 continue
             motions = JOINTS[self.joints[load.joint].kind].motions_for_load(load.kind)

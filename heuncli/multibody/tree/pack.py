@@ -76,7 +76,7 @@ def build_frame(
     """
     spanning = (
         find_spanning_tree(
-            mechanism, find_uncut_joints(mechanism, used_names), [own.load.joint for own in mechanism.iter_sticking()]
+            mechanism, find_uncut_joints(mechanism, used_names), [own.joint for own in mechanism.iter_sticking()]
         )
         if tree is None
         else tree.spanning
