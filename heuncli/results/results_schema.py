@@ -201,6 +201,8 @@ ROWS: tuple[Quantity, ...] = (
     *rows("couplings.COUPLING", "for a screw with friction, output power / input power; 0 if there is no output",
         scalar("efficiency", "1")),
     *rows("couplings.COUPLING", "for a screw, about its axis", scalar("torque", "N·m")),
+    *rows("couplings.COUPLING", "for a screw that may stick: static friction minus its torque about the axis; 0 while it "
+        "slips", scalar("reserve", "N·m")),
     *rows("couplings.COUPLING", "rope tension; if sheaves grip the rope it differs after the first of them: "
         "last tension",
         scalar("tension", "N"), scalar("last_tension", "N")),
