@@ -55,18 +55,24 @@ class PlaceResponse(NamedTuple):
     response (k, k): accelerations of all places by unit friction in each
     noise (k,): rounding of the accelerations, from all loads and weights
     slack (k,): rounding of the friction that holds a place
-    moves (k,): whether anything lets the place move
+    rounding (k,): of a place's own response, from that of free bodies; one that is not larger cannot move
     """
 
     response: Array
     noise: Array
     slack: Array
-    moves: Mask
+    rounding: Array
+
+    @property
+    def moves(self) -> Mask:
+        """Whether anything lets a place move, (k,)."""
+        return np.asarray(np.diag(self.response) > self.rounding)
 
     def is_proportional(self, k: int, leader: int) -> bool:
         """Return whether two places that can move do so only together."""
-        product = float(self.response[k, k] * self.response[leader, leader])
-        return product - float(self.response[k, leader]) ** 2 <= tolerances.CONTACT_RATE * product
+        own, other = float(self.response[k, k]), float(self.response[leader, leader])
+        rounding = float(self.rounding[k]) * other + float(self.rounding[leader]) * own
+        return own * other - float(self.response[k, leader]) ** 2 <= rounding + tolerances.CONTACT_RATE * own * other
 
     def find_transmission(self, k: int, leader: int) -> float:
         """Return the rate of a place per unit rate of another one that moves only with it."""
@@ -95,8 +101,8 @@ def measure_response(
     effect = own * layout.tables["closures"][rows]["weight"] * (weights + float(loads))
     noise = np.asarray(tolerances.CONTACT_ACCELERATION * (opened.rows["terms"][0, rows] + effect))
     slack = 2.0 * noise / np.where(own > 0.0, own, np.inf)
-    moves = own > tolerances.NO_ANSWER * find_free_response(layout, units)
-    return PlaceResponse(0.5 * (response + response.T), noise, slack, moves)
+    rounding = tolerances.NO_ANSWER * find_free_response(layout, units)
+    return PlaceResponse(0.5 * (response + response.T), noise, slack, rounding)
 
 
 def make_groups(
