@@ -384,12 +384,17 @@ class StateSearch:
         pairs = zip(self.groups, choice, strict=True)
         sticking = [self.friction.names[k] for group, chosen in pairs if chosen == STICKS for k in group.members]
         message = f"at t = {self.t:.9g} s {join_names(sticking)}"
+        joints = self.friction.layout.mechanism.joints
+        held = [self.friction.contacts[k].joint for group in self.groups for k in group.members]
+        drives = [joint.drive.name for k in held if k < len(joints) and (joint := joints[k]).drive is not None]
         if len(sticking) > 1:
             message += " stick, and how they share what holds the machine is indeterminate"
         else:
-            message += " sticks where a drive, a stop or other joints hold it as well: its value is indeterminate"
+            what = f"drives.{drives[0]}" if drives else "a drive, a stop or other joints"
+            message += f" sticks where {what} holds it as well: its value is indeterminate"
         hint = (
-            "let friction stick in as many joints as can move independently, without a drive; smooth the others: speed"
+            "give all of these as a torque or force, so that they stick as one on one degree of freedom; where a "
+            "drive or stop holds that, smooth them: speed"
         )
         return SolveError(Problem("friction-indeterminate", message, hint=hint, entry_path=self.first_path))
 
