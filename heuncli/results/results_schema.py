@@ -201,8 +201,7 @@ ROWS: tuple[Quantity, ...] = (
     *rows("couplings.COUPLING", "for a screw with friction, output power / input power; 0 if there is no output",
         scalar("efficiency", "1")),
     *rows("couplings.COUPLING", "for a screw, about its axis", scalar("torque", "N·m")),
-    *rows("couplings.COUPLING", "for a screw that may stick: static friction minus its torque about the axis; 0 while it "
-        "slips", scalar("reserve", "N·m")),
+    *rows("couplings.COUPLING", "for a screw that may stick, about its axis: as of `forces`", scalar("reserve", "N·m")),
     *rows("couplings.COUPLING", "rope tension; if sheaves grip the rope it differs after the first of them: "
         "last tension",
         scalar("tension", "N"), scalar("last_tension", "N")),
@@ -257,7 +256,7 @@ ROWS: tuple[Quantity, ...] = (
     *rows("forces.FORCE", "power delivered to the bodies", scalar("power", "W")),
     *rows("forces.FORCE", "for friction that may stick: static friction minus magnitude of value; 0 while it slips",
         scalar("reserve", "N | N·m")),
-    *rows("forces.FORCE", "for frictions that stick as one: `value`, indeterminate at some instant", words("open")),
+    *rows("forces.FORCE", "`value`, of frictions that stick as one", words("open")),
     *rows("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
     *rows("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; "

@@ -393,8 +393,8 @@ class StateSearch:
             what = f"drives.{drives[0]}" if drives else "a drive, a stop or other joints"
             message += f" sticks where {what} holds it as well: its value is indeterminate"
         hint = (
-            "give all of these as a torque or force, so that they stick as one on one degree of freedom; where a "
-            "drive or stop holds that, smooth them: speed"
+            "give each as a torque or force: on one degree of freedom they stick as one; with a drive or stop smooth "
+            "it: speed"
         )
         return SolveError(Problem("friction-indeterminate", message, hint=hint, entry_path=self.first_path))
 
