@@ -11,9 +11,9 @@ import pytest
 
 from heuncli.base.errors import SpecError
 from heuncli.results.results import Results
-from tests.closed_forms.test_thread_friction import LEAD, SLOPE, R, W, jack
 from tests.oracle.values import to_yaml
 from tests.shared.scenes import solved
+from tests.shared.screw_jack import LEAD, SLOPE, R, W, jack
 
 P = LEAD / math.tau
 SENSES = list(itertools.product([(1, 1), (1, -1)], [(1, 1), (-1, 1), (1, -1), (-1, -1)], (1, -1)))

@@ -80,17 +80,17 @@ class PlaceResponse(NamedTuple):
 
 
 def measure_response(
-    evaluator: Evaluator, contacts: Sequence[Contact], released: Array, opened: Evaluation
+    evaluator: Evaluator, contacts: Sequence[Contact], open_states: Array, opened: Evaluation
 ) -> PlaceResponse:
     """Measure the response of places at a state.
 
-    contacts: of the places; released: contact states in which no friction sticks; opened: the results with these
+    contacts: of the places; open_states: contact states in which no friction sticks; opened: the results with these
     """
     layout, rows = evaluator.layout, [contact.row for contact in contacts]
     units = np.array([unit_load(layout, opened, contact, 1.0) for contact in contacts])
     units = units.reshape(len(contacts), len(layout.place), 6)
     jumps = np.zeros((len(units), len(layout.freedoms) + len(layout.rows)))
-    evaluator.workspace.hold(layout.closed_contacts(released))
+    evaluator.workspace.hold(layout.closed_contacts(open_states))
     t, state = float(opened.times[0]), opened.states[0]
     columns = solve_impulses(evaluator.workspace, t, state, units, jumps).columns.bodies
     motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
@@ -106,14 +106,14 @@ def measure_response(
 
 
 def make_groups(
-    response: PlaceResponse, places: Sequence[int], can_join: Mask, held: Sequence[FrictionGroup] = ()
+    response: PlaceResponse, places: Sequence[int], can_join: Mask, present_groups: Sequence[FrictionGroup] = ()
 ) -> list[FrictionGroup]:
     """Group the places at rest; a place that no other moves with is a group of its own.
 
     can_join (k,): whether a place may be in a group with others
-    held: groups that stick already, whose leaders stay
+    present_groups: those that stick already, whose leaders stay
     """
-    leaders = [group.leader for group in held if group.leader in places]
+    leaders = [group.leader for group in present_groups if group.leader in places]
     groups: list[tuple[list[int], list[float]]] = []
     for k in [*leaders, *(k for k in places if k not in leaders)]:
         for members, transmissions in groups:
@@ -130,8 +130,8 @@ def make_groups(
 def has_fixed_transmissions(
     evaluator: Evaluator,
     contacts: Sequence[Contact],
-    held: Array,
-    released: Array,
+    sticking_states: Array,
+    open_states: Array,
     opened: Evaluation,
     groups: Sequence[FrictionGroup],
     last: float,
@@ -140,7 +140,7 @@ def has_fixed_transmissions(
 
     They are compared with those in poses displaced along all other freedoms, and at later instants of drives.
 
-    held, released: contact states in which the groups stick, and in which no friction does
+    sticking_states, open_states: contact states in which the groups stick, and in which no friction does
     opened: the results at the state with the latter
     last: the end of the run [s]
     """
@@ -151,12 +151,12 @@ def has_fixed_transmissions(
         if freedom.q >= 0:
             states[:, freedom.q] += DISPLACEMENT * rng.uniform(-1.0, 1.0, SAMPLES) / layout.weights[freedom.u]
     times = np.linspace(t, max(t, last), SAMPLES + 1)[1:] if layout.has_laws else np.full(SAMPLES, t)
-    poses = evaluator.evaluate(times, states, holding=held)
+    poses = evaluator.evaluate(times, states, holding=sticking_states)
     if not (poses.gap <= tolerances.OPEN_GAP * layout.size).all():
         return False
     for time, state in zip(times, poses.states, strict=True):
-        there = evaluator.evaluate(np.array([time]), state[None, :], holding=released)
-        response = measure_response(evaluator, contacts, released, there)
+        there = evaluator.evaluate(np.array([time]), state[None, :], holding=open_states)
+        response = measure_response(evaluator, contacts, open_states, there)
         for group in groups:
             for k, transmission in zip(group.members, group.transmissions, strict=True):
                 if not response.moves[k] or not response.is_proportional(k, group.leader):
