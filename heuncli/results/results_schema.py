@@ -281,6 +281,7 @@ ROWS: tuple[Quantity, ...] = (
         scalar("time", "s", (INDEX,), is_timed=False), scalar("error", "s", (INDEX,), is_timed=False)),
     *rows("events.EVENT", "new value: 1 true, 0 false", scalar("to", "1", (INDEX,), is_timed=False)),
     *rows("certain_sums.NUMBER", "factor of each open component", block("terms")),
+    *rows("certain_sums.NUMBER", "of frictions that stick as one: their sum's unit", words("unit")),
     *rows("certain_sums.NUMBER", "sum of the open components in `terms`, each multiplied by its factor",
         scalar("value", "N | N·m")),
     *rows("accuracy", "[estimates](accuracy.md#estimates); no results are claimed after the "

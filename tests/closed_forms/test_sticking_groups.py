@@ -226,6 +226,23 @@ def test_a_rest_position_tells_how_far_the_frictions_of_a_joint_are_from_slippin
     assert r.joints["pivot"]["force"][0] == pytest.approx([0, 2 * G, 0], rel=1e-12)
 
 
+def test_two_frictions_of_a_slide_tell_their_sum_in_newtons() -> None:
+    """The block on the slope that both hold, m g sin th, and what is left of 4 + 9 N."""
+    r = solved("""
+heun: 1
+gravity: [0, 0, -10]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {block: {mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
+joints: {guide: {type: slide, from: ground.O, to: block.c, axis: [0.8, 0, -0.6]}}
+forces: {gib: {type: friction, joint: guide, force: 4}, seal: {type: friction, joint: guide, force: 9}}
+analysis: {duration: 1, samples: 3}
+""")
+    assert r.certain_sums[0]["unit"] == "N"
+    assert r.certain_sums[0]["terms"] == {"forces.gib.value": 1.0, "forces.seal.value": pytest.approx(1.0)}
+    assert r.certain_sums[0]["value"] == pytest.approx([-12.0] * 3)
+    assert r.forces["seal"]["reserve"] == pytest.approx([1.0] * 3)
+
+
 def refused(text: str, **options: Any) -> str:
     with pytest.raises(SolveError) as caught:
         solved(text, **options)

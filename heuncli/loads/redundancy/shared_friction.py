@@ -73,7 +73,9 @@ def find_friction_sums(layout: Layout, solutions: Evaluation) -> list[Determinat
         factors = np.where(is_held[:, None], transmissions[:, members], 0.0)
         total: Array = sum((c * values[:, k] for c, k in zip(factors.T, members, strict=True)), np.zeros(1))
         terms = {f"{names[k]}.value": simplify_factor(c) for c, k in zip(factors.T, members, strict=True)}
-        sums.append({"terms": terms, "value": total})
+        first = int(leader[np.argmax(is_held), 0])
+        is_moment = bool(solutions.rows["m"][0, layout.contacts[first].row].any())
+        sums.append({"terms": terms, "value": total, "unit": "N·m" if is_moment else "N"})
     return sums
 
 

@@ -103,6 +103,7 @@ def _select_instants(data: Mapping[str, Any], indices: Sequence[int]) -> dict[st
             {
                 "terms": {path: select_terms(x) for path, x in block["terms"].items()},
                 "value": select_terms(block["value"]),
+                **({"unit": block["unit"]} if "unit" in block else {}),
             }
             for block in data["certain_sums"]
         ]
