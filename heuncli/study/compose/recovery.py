@@ -343,7 +343,8 @@ def recover(
 
 def find_determinate_sums(recovery: Recovery) -> list[DeterminateSum]:
     """Return the sums of indeterminate components that are determinate."""
-    layout, sums = recovery.setup.scene.layout, []
+    layout = recovery.setup.scene.layout
+    sums: list[DeterminateSum] = []
     if layout.friction_contacts:
         from heuncli.loads.redundancy.shared_friction import find_friction_sums  # few scenes have such friction
 
