@@ -217,11 +217,12 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
     if coupling_loads.friction is not None:
         from heuncli.loads.kinetostatics.coupling_numbers import efficiency  # few scenes have it
 
-        block["efficiency"] = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
+        found = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
         own_load = next((own for own in recovery.loads if own.action is coupling_loads.friction), None)
         if own_load is not None and own_load.reserve is not None:
-            block["efficiency"] = np.where(own_load.reserve > 0.0, 0.0, block["efficiency"])
+            found = np.where(own_load.reserve > 0.0, 0.0, found)
             block["reserve"] = own_load.reserve
+        block["efficiency"] = found
     if spec_coupling.type == "cam":
         from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
 

@@ -94,7 +94,8 @@ class FrictionStates:
         self.sticks = np.zeros(len(self.indices), dtype=bool)
         self.coordinate_or_sign = np.zeros(len(self.indices))
         self.groups: tuple[FrictionGroup, ...] = ()
-        self.earlier = self.sticks, self.coordinate_or_sign, self.groups  # before the event
+        # before the event
+        self.earlier: tuple[Mask, Array, tuple[FrictionGroup, ...]] = self.sticks, self.coordinate_or_sign, self.groups
         loads = self.layout.tables["loads"][self.load_rows]
         self.presses = loads["normal_force_kind"] != kernel.GIVEN
         self.has_one_size = bool((loads["breakaway"] == loads["coefficient"]).all())
@@ -157,7 +158,7 @@ class FrictionStates:
             if now != then
         ]
         for group in self.groups:
-            if group.members not in [held.members for held in held_groups]:
+            if group.members not in [earlier.members for earlier in held_groups]:
                 sentences.append(SHARED.format(join_names([self.names[k] for k in group.members])))
         return sentences + [UNPROVED.format(name, t) for name in unproved]
 
