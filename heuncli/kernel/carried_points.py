@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import atan2, fabs
+
 from heuncli.kernel.declarations import *
 from heuncli.kernel.tangent_motion import omega_tangent
 
@@ -93,3 +95,31 @@ def alpha_tangent(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return scene.tangents[body].alpha
+
+
+# Angles of pins
+
+
+def angle_of_pin(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return the angle of a TURN beyond its length; of a pin that was cut between marks of its bodies, to a turn."""
+    if row.freedom >= 0:
+        return scene.freedoms[row.freedom].q - row.length
+    n: Vec3 = world_direction(scene, row.a, row.e)
+    reference: Vec3 = world_direction(scene, row.a, find_perpendicular(row.e))
+    mark: Vec3 = world_direction(scene, row.b, row.g)
+    half: cython.double = 3.141592653589793
+    angle: cython.double = atan2(dot(n, cross(reference, mark)), dot(reference, mark)) - row.length
+    if angle > half:
+        angle -= 2.0 * half
+    elif angle < -half:
+        angle += 2.0 * half
+    return angle
+
+
+def find_perpendicular(n: Vec3) -> Vec3:
+    """Return a vector perpendicular to n."""
+    if fabs(n.x) <= fabs(n.y) and fabs(n.x) <= fabs(n.z):
+        return cross(n, Vec3(1.0, 0.0, 0.0))
+    if fabs(n.y) <= fabs(n.z):
+        return cross(n, Vec3(0.0, 1.0, 0.0))
+    return cross(n, Vec3(0.0, 0.0, 1.0))

@@ -13,6 +13,7 @@ from __future__ import annotations
 from heuncli.kernel.cams import cam_tangent, measure_cam
 from heuncli.kernel.carried_points import (
     alpha_tangent,
+    angle_of_pin,
     body_alpha,
     body_omega,
     find_relative_motion,
@@ -119,7 +120,7 @@ def measure_turn(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
     turn: Vec3 = sub(b.omega, a.omega)
     row.f = Vec3(0.0, 0.0, 0.0)
     row.m = world_direction(scene, row.a, row.e)
-    row.gap = scene.freedoms[row.freedom].q - row.length
+    row.gap = angle_of_pin(scene, row)
     row.rate = dot(row.m, turn)
     row.gamma = dot(cross(a.omega, row.m), turn)
 

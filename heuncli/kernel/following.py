@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from math import atan2, fabs, sqrt
 
+from heuncli.kernel.carried_points import find_perpendicular
 from heuncli.kernel.columns import add_prescribed, clear_loads, clear_motion
 from heuncli.kernel.conditions import condition, condition_count
 from heuncli.kernel.course import set_time_range
@@ -316,15 +317,6 @@ def continue_counters(scene: cython.pointer[Scene], run: cython.pointer[Run], x:
         x[counter.state_at] = angle
     if scene.work_at >= 0:
         x[scene.work_at] = run.y[scene.work_at] + (mechanical_energy(scene) - run.followed_step.energy)
-
-
-def find_perpendicular(n: Vec3) -> Vec3:
-    """Return a vector perpendicular to n."""
-    if fabs(n.x) <= fabs(n.y) and fabs(n.x) <= fabs(n.z):
-        return cross(n, Vec3(1.0, 0.0, 0.0))
-    if fabs(n.y) <= fabs(n.z):
-        return cross(n, Vec3(0.0, 1.0, 0.0))
-    return cross(n, Vec3(0.0, 0.0, 1.0))
 
 
 def body_components(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:

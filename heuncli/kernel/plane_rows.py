@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from heuncli.kernel.carried_points import angle_of_pin
 from heuncli.kernel.declarations import *
 
 
@@ -118,7 +119,7 @@ def measure_angle_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Clo
     """A pin's angle = length, about z: gamma = 0."""
     row.f = Vec3(0.0, 0.0, 0.0)
     row.m = row.e
-    row.gap = scene.freedoms[row.freedom].q - row.length
+    row.gap = angle_of_pin(scene, row)
     row.rate = row.e.z * (planar_omega(scene, row.b) - planar_omega(scene, row.a))
     row.gamma = 0.0
 

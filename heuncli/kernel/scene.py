@@ -188,7 +188,7 @@ class Closure(Record):
     kind: int
     a: int
     b: int
-    freedom: int = ZERO  # for a TURN: whose angle
+    freedom: int = ZERO  # for a TURN: whose angle; -1: of a pin that was cut, whose mark on b is g
     program: Program = ZERO  # driven length
     path: int = ZERO  # first of the bodies between its two ends and the ground, tips first, in `indices`
     path_count: int = ZERO
@@ -264,9 +264,12 @@ class Contact(Record):
     freedom: int  # which it limits or holds; -1: no single one
     latch_index: int = ZERO  # of a latch 1 + the place of the length at which it holds, among the modes; 0: no latch
     friction: int = ZERO  # 1 + the load whose friction sticks while it is closed; 0: of others
+    group_index: int = ZERO  # for a friction 1 + the index of the leader of its group, then of its transmission
 
     _: Computed
     sticks: int  # 1 while its friction sticks
+    leader: int  # 1 + the contact that stands for all frictions that stick with it as one; 0: it sticks alone
+    transmission: float  # its rate per unit rate of the leader
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
     least: float  # what the stages of a step saw of it

@@ -166,7 +166,7 @@ def set_contact_modes(scene: cython.pointer[Scene], modes: cython.p_double, offs
 
     One number a contact: 0 open, 1 closed, 2 kept closed by other contacts, -1 open but held at its limit by a latch,
     so that it is not watched. After them, for each latch, the length at which it holds, and for each friction that
-    sticks that length, or the sign of its slip while it is open.
+    sticks that length, or the sign of its slip while it is open. Last, for each friction, its leader and transmission.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -183,6 +183,8 @@ def set_contact_modes(scene: cython.pointer[Scene], modes: cython.p_double, offs
             scene.closures[contact.row].mode = mode
             if contact.friction:
                 changed = set_friction_mode(scene, contact, modes[offset + contact.latch_index - 1]) or changed
+                contact.leader = int(modes[offset + contact.group_index - 1])
+                contact.transmission = modes[offset + contact.group_index]
             elif contact.latch_index:
                 k = offset + contact.latch_index - 1
                 changed = changed or scene.closures[contact.row].length != modes[k]

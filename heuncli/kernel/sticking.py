@@ -3,7 +3,12 @@
     sticks:  rate = 0, |value| <= breakaway N        slips:  value = -slip coefficient N,   slip rate >= 0
 
 The row holds the coordinate of its joint; its multiplier is the friction ON b. N is the normal force, or 1 times a
-given size. What must not become positive, as for other contacts (contacts.py), is |value| - breakaway N while it sticks
+given size. Several may stick as one on a single freedom, as in all pins of a four-bar: with t_i, the rate of each per
+unit rate of one of them, their leader, only a sum of the multipliers is determinate, and
+
+    | sum of t_i multiplier_i |  <=  sum of |t_i| breakaway_i N_i
+
+ What must not become positive, as for other contacts (contacts.py), is |value| - breakaway N while it sticks
 and -slip rate while it slips. Which of them it does from an event on is decided outside
 (motion/integration/contacts/sticking.py).
 """
@@ -43,8 +48,41 @@ def friction_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contac
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
     if row.mode != APART:
-        return fabs(row.multiplier) - load.breakaway * load.normal_force
+        if contact.leader and not leads_group(scene, contact):
+            return -1e300  # its leader's margin is that of all
+        return fabs(sticking_force(scene, contact)) - sticking_limit(scene, contact)
     return -load.slip * row.rate if load.slip != 0.0 else -1e300
+
+
+def leads_group(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.bint:
+    """Return whether a friction is the leader of its group."""
+    return scene.contacts[contact.leader - 1].row == contact.row
+
+
+def sticking_force(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+    """Return the friction of a contact that sticks; of a group the sum, at its leader."""
+    i: cython.Py_ssize_t
+    total: cython.double = 0.0
+    if contact.leader == 0:
+        return scene.closures[contact.row].multiplier
+    for i in range(scene.contact_count):
+        if scene.contacts[i].sticks and scene.contacts[i].leader == contact.leader:
+            total += scene.contacts[i].transmission * scene.closures[scene.contacts[i].row].multiplier
+    return total
+
+
+def sticking_limit(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+    """Return what a friction that sticks can hold; of a group the sum, at its leader."""
+    i: cython.Py_ssize_t
+    total: cython.double = 0.0
+    load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
+    if contact.leader == 0:
+        return load.breakaway * load.normal_force
+    for i in range(scene.contact_count):
+        if scene.contacts[i].sticks and scene.contacts[i].leader == contact.leader:
+            load = cython.address(scene.loads[scene.contacts[i].friction - 1])
+            total += fabs(scene.contacts[i].transmission) * load.breakaway * load.normal_force
+    return total
 
 
 def friction_threshold(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
@@ -52,8 +90,7 @@ def friction_threshold(scene: cython.pointer[Scene], contact: cython.pointer[Con
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     largest: cython.double = fabs(contact.least) if fabs(contact.least) > fabs(contact.most) else fabs(contact.most)
     if row.mode != APART:
-        load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
-        return scene.limits.friction_rounding * (largest + load.breakaway * load.normal_force)
+        return scene.limits.friction_rounding * (largest + sticking_limit(scene, contact))
     if contact.start >= -BEGINS_TO_SLIP * largest:
         return BEGINS_TO_SLIP * largest
     return scene.limits.rounding * largest
@@ -73,9 +110,14 @@ def record_sticking(scene: cython.pointer[Scene]) -> cython.void:
             load.value = row.multiplier
             load.force = scale_vector(row.multiplier, row.f)
             load.moment = scale_vector(row.multiplier, row.m)
+            if load.kind == THREAD_FRICTION:  # its row is a sum, whose load is that of its parts
+                load.moment = scale_vector(row.multiplier, world_direction(scene, load.a, load.axis))
+                load.force = scale_vector(load.factor, load.moment)
             load.rate = 0.0
             load.power = 0.0
-            load.reserve = load.breakaway * load.normal_force - fabs(row.multiplier)
+            load.reserve = sticking_limit(scene, contact) - fabs(sticking_force(scene, contact))
+            if contact.leader:
+                load.reserve /= fabs(contact.transmission)
 
 
 def release_sticking(scene: cython.pointer[Scene]) -> cython.bint:

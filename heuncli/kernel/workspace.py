@@ -54,6 +54,7 @@ class Workspace:
         self.expressions: Expressions = expressions
         self.memory: Memory = Memory()
         mode_numbers: Any = [*tables["contacts"]["mode_index"].tolist(), *tables["contacts"]["latch_index"].tolist()]
+        mode_numbers += 2 * tables["contacts"]["group_index"].tolist()
         self.opening: cython.int = sum(1 for k in mode_numbers if k)
         scene.programs = cython.address(expressions.programs)
         scene.held_count = expressions.held_count

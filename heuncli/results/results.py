@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 import numpy as np
 
@@ -38,6 +38,7 @@ class DeterminateSum(TypedDict):
 
     terms: Mapping[str, float | Array]
     value: Array
+    unit: NotRequired[str]  # of frictions that stick as one, at their leader
 
 
 class ErrorEstimate(TypedDict, total=False):
@@ -119,6 +120,7 @@ class ForceBlock(TypedDict, total=False):
     rate: Array
     power: Array
     reserve: Array
+    open: list[str]
     shift: Array
     turn: Array
     force: Array

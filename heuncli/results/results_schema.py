@@ -201,6 +201,7 @@ ROWS: tuple[Quantity, ...] = (
     *rows("couplings.COUPLING", "for a screw with friction, output power / input power; 0 if there is no output",
         scalar("efficiency", "1")),
     *rows("couplings.COUPLING", "for a screw, about its axis", scalar("torque", "N·m")),
+    *rows("couplings.COUPLING", "for a screw that may stick, about its axis: as of `forces`", scalar("reserve", "N·m")),
     *rows("couplings.COUPLING", "rope tension; if sheaves grip the rope it differs after the first of them: "
         "last tension",
         scalar("tension", "N"), scalar("last_tension", "N")),
@@ -257,6 +258,7 @@ ROWS: tuple[Quantity, ...] = (
     *rows("forces.FORCE", "power delivered to the bodies", scalar("power", "W")),
     *rows("forces.FORCE", "for friction that may stick: static friction minus magnitude of value; 0 while it slips",
         scalar("reserve", "N | N·m")),
+    *rows("forces.FORCE", "`value`, of frictions that stick as one", words("open")),
     *rows("energy", "kinetic + potential − work is constant",
         scalar("kinetic", "J"), scalar("potential", "J"), scalar("work", "J")),
     *rows("momentum", "sums over the bodies: momentum, Σ m x × ẋ and Σ I σ about `foundation.about`; "
@@ -281,6 +283,7 @@ ROWS: tuple[Quantity, ...] = (
         scalar("time", "s", (INDEX,), is_timed=False), scalar("error", "s", (INDEX,), is_timed=False)),
     *rows("events.EVENT", "new value: 1 true, 0 false", scalar("to", "1", (INDEX,), is_timed=False)),
     *rows("certain_sums.NUMBER", "factor of each open component", block("terms")),
+    *rows("certain_sums.NUMBER", "of frictions that stick as one: their sum's unit", words("unit")),
     *rows("certain_sums.NUMBER", "sum of the open components in `terms`, each multiplied by its factor",
         scalar("value", "N | N·m")),
     *rows("accuracy", "[estimates](accuracy.md#estimates); no results are claimed after the "

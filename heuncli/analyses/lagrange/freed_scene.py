@@ -61,7 +61,13 @@ class FreedScene:
         values_by_contact = {
             key: float(value) for key, value in zip(list_contact_keys(self.original.layout), holding, strict=True)
         }
-        return np.array([values_by_contact.get(key, 0.0) for key in list_contact_keys(self.layout)])
+        converted = np.array([values_by_contact.get(key, 0.0) for key in list_contact_keys(self.layout)])
+        original_contacts = list_contact_keys(self.original.layout)
+        contacts = list_contact_keys(self.layout)[: len(self.layout.contacts)]
+        for n in range(len(converted) - 2 * len(self.layout.friction_contacts), len(converted), 2):
+            if converted[n]:  # the leader of frictions that stick as one, by its number
+                converted[n] = 1 + contacts.index(original_contacts[int(converted[n]) - 1])
+        return converted
 
     def convert_states(self, recovered: Evaluation) -> Array:
         """Convert the states at the recovered instants of the original to states of this scene, (n_t, n)."""
@@ -129,10 +135,16 @@ def make_effort_loads(mechanism: Mechanism, coordinate: str, value: float) -> tu
     )
 
 
-def list_contact_keys(layout: Layout) -> list[tuple[str, bool, int | None]]:
-    """Return keys that identify the contacts, then those of the latches."""
+def list_contact_keys(layout: Layout) -> list[tuple[str, bool, int | str | None]]:
+    """Return keys that identify the numbers of contact states: of the contacts, the latches, and the frictions."""
     contacts = [(contact.name, contact.is_rope, contact.sense) for contact in layout.contacts]
-    return [*contacts, *((layout.contacts[i].name, False, None) for i in layout.latches)]
+    frictions = [layout.contacts[i].name for i in layout.friction_contacts]
+    return [
+        *contacts,
+        *((layout.contacts[i].name, False, None) for i in layout.latches),
+        *((name, False, "coordinate") for name in frictions),
+        *((name, False, number) for name in frictions for number in ("leader", "transmission")),
+    ]
 
 
 @record

@@ -108,9 +108,11 @@ def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Ar
             sentences[f"{name} keeps sliding"] = None
     clauses = list(sentences)
     more = f" and {len(clauses) - MAX_NAMES} more" if len(clauses) > MAX_NAMES else ""
-    has_thread_friction = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
+    has_thread_friction = any(
+        isinstance(load, ThreadLoad) and load.static == 0.0 for load in coordinates.layout.mechanism.loads
+    )
     hint = (
-        f"{HOLD_HINT}; friction of a self-locking thread creeps, so it holds nothing at rest"
+        f"{HOLD_HINT}; smoothed friction of a self-locking thread creeps, so it holds nothing at rest: leave out speed"
         if has_thread_friction
         else HOLD_HINT
     )

@@ -131,7 +131,7 @@ def collect_applied_loads(mechanism: Mechanism, states: BodyStates, evaluation: 
     A load in a joint acts exactly where the joint does, so that both cross a cut at the same instant.
     """
     loads: list[AppliedLoad] = []
-    sticking = {friction.load.name: friction.row for friction in mechanism.iter_sticking()}
+    sticking = {friction.load.name: friction.load_row for friction in mechanism.iter_sticking()}
     first_part: tuple[PointLoad, LoadRows] | None = None  # of a distributed load's two parts
     for load, load_rows in mechanism.iter_load_rows():
         if isinstance(load, RopeLoad):

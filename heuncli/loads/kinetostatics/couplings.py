@@ -196,7 +196,7 @@ def find_coupling_loads(
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
         if only is not None and coupling.name not in only:
             continue
-        rows = tuple(r for r, k in enumerate(layout.rows) if k == owner)
+        rows = tuple(r for r, k in enumerate(layout.rows) if k == owner)[: len(coupling.rows)]
         multipliers = tuple(results.rows["multiplier"][..., r] for r in rows)
         firsts = [int(layout.tables["closures"][r]["part"]) for r in rows]
         if coupling.stretched_row is not None:

@@ -63,10 +63,11 @@ def count_redundancy(scene: PreparedScene, runner: Runner, stage_cache: Stages =
     drives = tuple(law.value for law in scene.mechanism.laws)
     from heuncli.loads.redundancy.self_stress import stop_motion  # a tree starts faster without it
 
-    layout, holding = scene.layout, runner.start_holding
+    layout, holding = scene.layout, scene.layout.open_followers(runner.start_holding)
+    evaluator = Evaluator(layout, lambda _: holding) if layout.friction_contacts else runner
     bare_layout = replace(remove_loads(layout), y0=stop_motion(layout, layout.y0))
     return stage_cache.run(
-        count_without_loads, bare_layout, drives, holding, fallback=lambda: count_self_stresses(runner)
+        count_without_loads, bare_layout, drives, holding, fallback=lambda: count_self_stresses(evaluator)
     )
 
 

@@ -235,7 +235,9 @@ def find_start_rows(scene: PreparedScene) -> StartRows:
     slack = {contact.row for contact in layout.contacts}
     joint_rows = [r for r, k in enumerate(layout.rows) if k < joints and r not in slack]
     row_definitions = [row for coupling in scene.mechanism.couplings for row in coupling.rows]
-    coupled_rows = dict(zip((r for r, k in enumerate(layout.rows) if k >= joints), row_definitions, strict=True))
+    frictions = {contact.row for contact in layout.contacts if contact.load_row >= 0}
+    numbers = (r for r, k in enumerate(layout.rows) if k >= joints and r not in frictions)
+    coupled_rows = dict(zip(numbers, row_definitions, strict=True))
     taut = np.zeros(0)
     if slack & coupled_rows.keys():
         freedoms = Freedoms(layout, 0.0, ())

@@ -36,7 +36,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Finding, Problem, SpecError
 from heuncli.base.joint_kinds import JOINTS
-from heuncli.base.records import record
+from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.couplings import (
     CamShape,
     Coordinate,
@@ -128,7 +128,37 @@ def thread_friction(
         turning, sliding = (joints[member.coordinates[0].joint] for member in (spindle, nut))
         q, axis = joint_line(turning, bodies, b)[0], joint_line(sliding, bodies, a)[1]
         rise = -lead_per_radian * spindle.sign * nut.sign * float(spindle.axis @ nut.axis)
-    return ThreadLoad(name, coupling, a, b, q, axis, torque, rise / friction.radius**2, friction.speed)
+    factor = rise / friction.radius**2
+    if friction.speed is None:
+        static = friction.static * friction.radius
+        return ThreadLoad(name, coupling, a, b, q, axis, torque, factor, speed=1.0, static=static)
+    return ThreadLoad(name, coupling, a, b, q, axis, torque, factor, friction.speed)
+
+
+def thread_friction_row(
+    entry: c.Screw, joints: Sequence[Joint], bodies: Sequence[Body], joint_pair: tuple[int, int]
+) -> CoupledRow:
+    """Make the condition that holds a thread whose friction sticks: its multiplier is the friction's torque.
+
+    Its load is that of `thread_friction`: unit torque, and `factor` times that along the axis. So its rate is that of
+    the rotation plus `factor` times that of the sliding.
+    """
+    assert entry.friction is not None
+    factor = entry.lead / math.tau / entry.friction.radius**2
+    if joint_pair[0] == joint_pair[1]:
+        joint = joints[joint_pair[0]]
+        coordinates = [Coordinate(joint_pair[0], "travel", factor), Coordinate(joint_pair[0], "angle", 1.0)]
+        parts = mesh_parts(joint.a, joint.b, joint.a, joint.p, factor * joint.axis, joint.axis, coordinates)
+        return CoupledRow(parts, length=0.0, weight=0.0)
+    carrier, spindle, nut = find_spindle_and_nut(joints, bodies, joint_pair)
+    sense = float(spindle.axis @ nut.axis)
+    factor *= -spindle.sign * nut.sign * sense
+    coordinates = [Coordinate(x.joint, x.quantity, -factor * x.ratio) for x in nut.coordinates]
+    coordinates += [Coordinate(x.joint, x.quantity, sense * x.ratio) for x in spindle.coordinates]
+    if spindle.travel is not None:
+        coordinates.append(Coordinate(spindle.travel.joint, "travel", factor * sense * spindle.travel.ratio))
+    parts = mesh_parts(spindle.body, nut.body, carrier, spindle.point, -factor * nut.axis, -nut.axis, coordinates)
+    return CoupledRow(parts, length=0.0, weight=0.0)
 
 
 # Wheels
@@ -180,7 +210,11 @@ def build_couplings(
     couplings, problems = [], []
     for name, entry in spec.couplings.items():
         try:
-            couplings.append(Coupling(name, BUILDERS[entry.type](entry, drawing), entry))
+            coupling = Coupling(name, BUILDERS[entry.type](entry, drawing), entry)
+            if isinstance(entry, c.Screw) and entry.friction is not None and entry.friction.speed is None:
+                one, other = drawing.joint_numbers(entry.terms)
+                coupling = replace(coupling, friction_row=thread_friction_row(entry, joints, bodies, (one, other)))
+            couplings.append(coupling)
         except Finding as misfit:
             path = f"{'rolling' if entry.type == 'wheel' else 'couplings'}.{name}"
             problems.append(Problem(misfit.code, misfit.message, spec.location(path), misfit.hint))

@@ -159,12 +159,15 @@ class Coupling:
     """A coupling and its conditions; entry: its entry in the spec.
 
     stretched_row: of an elastic rope, what would be its condition; a load pulls along its parts (RopeLoad)
+    friction_row: of a thread with friction that may stick, the condition that then holds it; its unit load is that of
+    the friction
     """
 
     name: str
     rows: tuple[CoupledRow, ...]
     entry: spec.Coupling
     stretched_row: CoupledRow | None = None
+    friction_row: CoupledRow | None = None
 
     @property
     def loading_rows(self) -> tuple[CoupledRow, ...]:

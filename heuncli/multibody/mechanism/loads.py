@@ -329,6 +329,7 @@ class ThreadLoad(AnyLoad):
     coefficient [m]: torque per axial force
     factor [1/m]: axial force per torque
     speed: of the transition tanh(rate/speed)
+    static [m]: torque per axial force up to which it sticks; 0: smoothed
     """
 
     name: str
@@ -340,6 +341,7 @@ class ThreadLoad(AnyLoad):
     coefficient: float
     factor: float
     speed: float
+    static: float = 0.0
     kind: str = "thread friction"
     presses: str = "thrust"
 

@@ -60,11 +60,16 @@ class Law(NamedTuple):
 
 
 class StickingFriction(NamedTuple):
-    """A place where friction may stick: its load with a row of that, and the coordinate that it holds."""
+    """A place where friction may stick: its load, the row of that among all loads, and the coordinate that it holds."""
 
-    load: JointLoad
-    row: int
-    quantity: Literal["angle", "travel"]
+    load: JointLoad | ThreadLoad
+    load_row: int
+    quantity: Literal["angle", "travel", "thread"]
+
+    @property
+    def joint(self) -> int:
+        """The joint whose coordinate it holds; -1 for a thread, which holds those of its coupling."""
+        return self.load.joint if isinstance(self.load, JointLoad) else -1
 
 
 @record
@@ -169,6 +174,8 @@ class Mechanism:
     def iter_sticking(self) -> Iterator[StickingFriction]:
         """Yield the places where friction may stick."""
         for load, rows in self.iter_load_rows():
+            if isinstance(load, ThreadLoad) and load.static > 0.0:
+                yield StickingFriction(load, rows.start, "thread")
             if not isinstance(load, JointLoad) or load.static == 0.0:
                 continue
             motions = JOINTS[self.joints[load.joint].kind].motions_for_load(load.kind)

@@ -131,7 +131,7 @@ def find_movable_bodies(layout: Layout) -> Mask:
     limited = {stop.joint for stop in mechanism.stops} | {
         k for coupling in mechanism.couplings for k in coupling.joints
     }
-    limited |= {friction.load.joint for friction in mechanism.iter_sticking()}
+    limited |= {friction.joint for friction in mechanism.iter_sticking()}
     joint_names = {name for value in mechanism.iter_expressions() for name, _ in value.uses}
     is_movable = np.zeros(len(layout.bodies), dtype=bool)
     for i, link in enumerate(layout.spanning.links):
@@ -164,7 +164,7 @@ def remove_carried_bodies(layout: Layout, is_held: Mask) -> None:
 def find_limited_body(layout: Layout, is_held: Mask, exceptions: dict[int, str]) -> list[int]:
     """Find a body on a rope or stop whose other end cannot move either: such a rope or stop may end the run."""
     mechanism = layout.mechanism
-    limited = {stop.joint for stop in mechanism.stops} | {own.load.joint for own in mechanism.iter_sticking()}
+    limited = {stop.joint for stop in mechanism.stops} | {own.joint for own in mechanism.iter_sticking()}
     for k, joint in enumerate(mechanism.joints):
         ends = [layout.place[i] for i in (joint.a, joint.b) if i != GROUND]
         if (joint.tension_only or k in limited) and ends and is_held[ends].all():

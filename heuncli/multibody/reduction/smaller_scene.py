@@ -261,7 +261,8 @@ def transform_couplings(layout: Layout, transform_for: Callable[[Coupling], Scen
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
         first_row, transform = layout.rows.index(owner), transform_for(coupling)
         rows = tuple(_transform_row(row, lengths[first_row + k], transform) for k, row in enumerate(coupling.rows))
-        couplings.append(replace(coupling, rows=rows))
+        held = coupling.friction_row and _transform_row(coupling.friction_row, 0.0, transform)
+        couplings.append(replace(coupling, rows=rows, friction_row=held))
     return tuple(couplings)
 
 

@@ -93,7 +93,7 @@ def weld_placement(layout: Layout, joint: int, reverse: bool) -> BodyPlacement:
 def find_excluded_body(layout: Layout, parts: BodyParts) -> tuple[int, str] | None:
     """Find a body that must not be merged, and why: otherwise something that may end the run would be lost."""
     mechanism = layout.mechanism
-    limited = {stop.joint for stop in mechanism.stops} | {own.load.joint for own in mechanism.iter_sticking()}
+    limited = {stop.joint for stop in mechanism.stops} | {own.joint for own in mechanism.iter_sticking()}
     counted = {k for coupling in mechanism.couplings for k in coupling.joints}
     for k, joint in enumerate(mechanism.joints):
         ends_run = joint.tension_only or joint.drive is not None or k in limited or k in counted

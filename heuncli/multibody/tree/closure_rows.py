@@ -14,13 +14,14 @@ from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.records import replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.multibody.mechanism.couplings import GROUND, CoupledRow, CouplingPart
-from heuncli.multibody.mechanism.loads import RopeLoad
+from heuncli.multibody.mechanism.loads import RopeLoad, ThreadLoad
 from heuncli.multibody.mechanism.model import Assembly, Stop
 from heuncli.multibody.tree.body_rows import TreeRows
 from heuncli.multibody.tree.layout import Contact
 from heuncli.multibody.tree.starts import Z, bent_direction, body_state, joint_direction, point_distance, to_direction
 from heuncli.multibody.tree.tables import NO_PROGRAM, ZERO, FieldValue, Program, Vector
 from heuncli.scene.expressions.paths import Path
+from heuncli.scene.shapes.rotations import perpendicular_pair
 
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
@@ -196,31 +197,41 @@ class ClosureRows:
 
     def add_coupling_rows(self) -> None:
         """Add the rows of the couplings, which come after those of the cut joints."""
-        freedoms = {(f.joint, f.quantity): i for i, f in enumerate(self.tree.freedoms)}
+        freedoms = self.number_freedoms()
         for owner, coupling in enumerate(self.tree.mechanism.couplings, len(self.tree.mechanism.joints)):
             for row in coupling.rows:
                 if row.tension_only:
                     self._mark_one_sided(owner, coupling.name, row.restitution)
-                self.row_joint.append(owner)
                 length = (
                     assembled_length(row, self.tree.start, self.tree.coordinates) if row.length is None else row.length
                 )
                 program = NO_PROGRAM if row.law is None else self.tree.drives[owner]
-                self.rows.append(make_sum_row(row, length, len(self.part_rows), self.tree.size, program))
-                first = len(self.part_rows)
-                for part in row.parts:
-                    kernel_row = make_part_row(part, first, self.tree.in_tree, self.tree.relative, freedoms)
-                    self.part_rows.append(add_lift(kernel_row, part, len(self.tree.pieces), self.tree.relative))
-                    if part.cam is not None:
-                        self.tree.add_pieces(part.cam.lift)
-                paths = (self.tree.path_to_root(self.tree.in_tree(i)) for i in loaded_bodies(row))
-                self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
+                self._add_sum_row(owner, row, length, program, freedoms)
         for load in self.tree.mechanism.loads:
             if isinstance(load, RopeLoad):
                 first = len(self.part_rows)
                 self.part_rows += [
                     make_part_row(part, first, self.tree.in_tree, self.tree.relative, freedoms) for part in load.parts
                 ]
+
+    def number_freedoms(self) -> dict[tuple[int, str], int]:
+        """Return the index of the freedom of each joint coordinate."""
+        return {(f.joint, f.quantity): i for i, f in enumerate(self.tree.freedoms)}
+
+    def _add_sum_row(
+        self, owner: int, row: CoupledRow, length: float, program: Program, freedoms: Mapping[tuple[int, str], int]
+    ) -> None:
+        """Add the row of a coupling, with its parts."""
+        self.row_joint.append(owner)
+        self.rows.append(make_sum_row(row, length, len(self.part_rows), self.tree.size, program))
+        first = len(self.part_rows)
+        for part in row.parts:
+            kernel_row = make_part_row(part, first, self.tree.in_tree, self.tree.relative, freedoms)
+            self.part_rows.append(add_lift(kernel_row, part, len(self.tree.pieces), self.tree.relative))
+            if part.cam is not None:
+                self.tree.add_pieces(part.cam.lift)
+        paths = (self.tree.path_to_root(self.tree.in_tree(i)) for i in loaded_bodies(row))
+        self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
 
     def _mark_rope(self, k: int) -> None:
         """Mark the next row as that of a rope."""
@@ -249,10 +260,26 @@ class ClosureRows:
         latches = sum(stop.latch is not None for stop in self.tree.mechanism.stops)
         count = len(self.contacts) + len(frictions) + latches
         for k, (load, load_row, quantity) in enumerate(frictions):
-            stop = Stop(f"forces.{load.name}", load.joint, quantity, None, None)
-            self._add_limit(stop, 0.0, 0, held_at=count + k + 1)
+            if isinstance(load, ThreadLoad):
+                self._add_thread_friction(load, held_at=count + k + 1)
+            else:
+                assert quantity != "thread"
+                stop = Stop(load.path, load.joint, quantity, None, None)
+                self._add_limit(stop, 0.0, 0, held_at=count + k + 1)
             self.contacts[-1] = replace(self.contacts[-1], load_row=load_row)
-            self.one_sided[-1] = self.one_sided[-1].replace(friction=load_row + 1)
+            group_index = count + len(frictions) + 2 * k + 1
+            self.one_sided[-1] = self.one_sided[-1].replace(friction=load_row + 1, group_index=group_index)
+
+    def _add_thread_friction(self, load: ThreadLoad, held_at: int) -> None:
+        """Add the row of friction that may stick in a thread."""
+        mechanism, row = self.tree.mechanism, len(self.row_joint)
+        owner, held_row = len(mechanism.joints) + load.coupling, mechanism.couplings[load.coupling].friction_row
+        assert held_row is not None
+        self.contacts.append(Contact(load.path, False, owner, row, 0, 0.0))
+        self.one_sided.append(
+            kernel.Contact(row=row, sense=0, mode_index=len(self.contacts), freedom=-1, latch_index=held_at)
+        )
+        self._add_sum_row(owner, held_row, 0.0, NO_PROGRAM, self.number_freedoms())
 
     def _add_limit(self, stop: Stop, limit: float, sense: int, held_at: int = 0) -> None:
         """Add the row of one limit of a stop, or of a latch."""
@@ -273,7 +300,10 @@ class ClosureRows:
         elif stop.quantity == "travel":
             self._add_row(stop.joint, kernel.GUIDE, length=limit, e=joint.axis)
         else:
-            self._add_row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=limited, weight=self.tree.size)
+            mark = self.tree.starts[stop.joint].R_ref.T @ perpendicular_pair(joint.axis)[0]
+            self._add_row(
+                stop.joint, kernel.TURN, length=limit, e=joint.axis, g=mark, freedom=limited, weight=self.tree.size
+            )
 
     def _add_row(self, joint: int, kind: int, weight: float = 1.0, **fields: FieldValue) -> None:
         """Add a closure row of a joint; weight: of its gap [m per unit]; fields: the others that its kind needs."""

@@ -17,7 +17,7 @@ from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.tree.spanning import SpanningTree
 from heuncli.multibody.tree.starts import JointStart
 from heuncli.multibody.tree.tables import Table, make_table
-from heuncli.results.results import Array, Mask
+from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.expressions.programs import Pack
 
 # Layout
@@ -168,7 +168,7 @@ class Layout(LayoutFrame):
         return tuple(i for i, contact in enumerate(self.contacts) if contact.sense == 0 and contact.load_row < 0)
 
     @cached_property
-    def sticking(self) -> tuple[int, ...]:
+    def friction_contacts(self) -> tuple[int, ...]:
         """The indices of the places among the contacts where friction may stick."""
         return tuple(i for i, contact in enumerate(self.contacts) if contact.load_row >= 0)
 
@@ -177,12 +177,29 @@ class Layout(LayoutFrame):
         """The contact state with all contacts open: a number for each, then for each latch the place where it holds.
 
         After them, for each friction that may stick, its coordinate while it does; else the sign of its slip, 0: it
-        exerts nothing.
+        exerts nothing. Last, for each of these, the contact that leads the frictions which stick with it as one,
+        counted from 1, and its rate per unit rate of that; 0 where it sticks alone or slips.
         """
-        if not self.contacts and not self.sticking:
+        if not self.contacts and not self.friction_contacts:
             return np.zeros(0)
         places = self.tables["closures"]["length"][[self.contacts[i].row for i in self.latches]]
-        return np.concatenate([np.zeros(len(self.contacts)), places, np.zeros(len(self.sticking))])
+        return np.concatenate([np.zeros(len(self.contacts)), places, np.zeros(3 * len(self.friction_contacts))])
+
+    def read_groups(self, holding: Array) -> tuple[Indices, Array]:
+        """Return of each friction that may stick the contact that leads its group and its rate per unit rate of that,
+        from contact states (n_t, n); (n_t, k) both, -1 and 0 where it does not stick with others.
+        """
+        numbers = holding[:, holding.shape[1] - 2 * len(self.friction_contacts) :]
+        return numbers[:, ::2].astype(int) - 1, numbers[:, 1::2]
+
+    def open_followers(self, holding: Array) -> Array:
+        """Return contact states (n,) in which of frictions that stick as one their leader alone does."""
+        holding = np.array(holding, dtype=float)
+        if self.friction_contacts:
+            leaders = self.read_groups(holding[None, :])[0][0]
+            indices = np.array(self.friction_contacts)
+            holding[indices[(leaders >= 0) & (leaders != indices)]] = 0.0
+        return holding
 
     def closed_contacts(self, holding: Array) -> Array:
         """Reduce contact states (..., n) to 1 for each contact that is closed, also through others, and 0 for an open

@@ -227,6 +227,7 @@ class _LoadRowBuilder:
                 coefficient=load.coefficient,
                 axis=load.axis,
                 speed=load.speed,
+                breakaway=load.static,
                 factor=load.factor,
                 normal_force_kind=kernel.THRUST_OF_ROW,
                 joint_body=GROUND,

@@ -75,7 +75,11 @@ def build_frame(
     drives: a program for each joint, then for each coupling
     """
     spanning = (
-        find_spanning_tree(mechanism, find_uncut_joints(mechanism, used_names)) if tree is None else tree.spanning
+        find_spanning_tree(
+            mechanism, find_uncut_joints(mechanism, used_names), [own.joint for own in mechanism.iter_sticking()]
+        )
+        if tree is None
+        else tree.spanning
     )
     if tree is not None and tree.starts is not None:
         starts = list(tree.starts)
@@ -89,7 +93,6 @@ def find_uncut_joints(mechanism: Mechanism, used_names: frozenset[str]) -> set[i
     """Return the joints that must not be cut."""
     uncut = {k for k, j in enumerate(mechanism.joints) if j.name in used_names}
     uncut |= {s.joint for s in mechanism.stops if s.quantity != "length"}
-    uncut |= {friction.load.joint for friction in mechanism.iter_sticking()}
     uncut |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # the angle of a cut universal cannot be determined
     uncut |= {k for coupling in mechanism.couplings for k in coupling.joints}

@@ -1,7 +1,8 @@
 """Choose the spanning tree that carries the motion: which joints are in it, which are cut, and the order of the bodies.
 
 Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, used in an expression or
-limited by a stop is never cut. Next come the joints of a body with negligible mass, which only transmits loads: cut off
+limited by a stop is never cut, one with friction that may stick only where the others must not be. Next come the
+joints of a body with negligible mass, which only transmits loads: cut off
 from the bodies beyond it, roundings would accelerate it. This does not apply where all its joints leave it free to
 spin, as a link on two balls: transmitted loads do not turn it. Then come rigid joints, so that bodies welded together
 hang on each other and, apart from the above, only circles of welds are cut. Joints that leave a thin body free to turn
@@ -50,8 +51,8 @@ class SpanningTree:
     cut: tuple[int, ...]
 
 
-def find_spanning_tree(mechanism: Mechanism, uncut: Collection[int]) -> SpanningTree:
-    """Find the tree for a mechanism; uncut: joints that must not be cut.
+def find_spanning_tree(mechanism: Mechanism, uncut: Collection[int], preferred: Collection[int] = ()) -> SpanningTree:
+    """Find the tree for a mechanism; uncut: joints that must not be cut; preferred: those to be cut last of the others.
 
     Raises SolveError where those alone make a closed chain (over-driven).
     """
@@ -63,7 +64,7 @@ def find_spanning_tree(mechanism: Mechanism, uncut: Collection[int]) -> Spanning
     depth = _find_depths(mechanism, edges)
     free_bodies: list[int] = []
     while True:
-        forest = _find_forest(mechanism, depth, uncut, free_bodies)
+        forest = _find_forest(mechanism, depth, uncut, preferred, free_bodies)
         tree = _traverse(mechanism, forest, free_bodies)
         detached = None
         for k in (k for k in tree.cut if mechanism.joints[k].path is not None):
@@ -92,7 +93,11 @@ def _find_depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]
 
 
 def _find_forest(
-    mechanism: Mechanism, depth: list[int], uncut: Collection[int], free_bodies: Collection[int]
+    mechanism: Mechanism,
+    depth: list[int],
+    uncut: Collection[int],
+    preferred: Collection[int],
+    free_bodies: Collection[int],
 ) -> dict[int, list[int]]:
     """Kruskal's forest: uncut joints first, then layer by layer, those with most constraints first, then as written.
 
@@ -102,12 +107,13 @@ def _find_forest(
     null = find_null_axes(mechanism)
     between = find_transmitting_bodies(mechanism, null)
 
-    def urgency(k: int) -> tuple[bool, bool, bool, bool, bool, int, int, int]:
+    def urgency(k: int) -> tuple[bool | int, ...]:
         joint = joints[k]
         passes_on = not between.isdisjoint((joint.a, joint.b))
         spins = any(_leaves_spin_free(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
         layer, kind = min(depth[joint.a], depth[joint.b]), JOINTS[joint.kind]
-        return k not in uncut, not kind.follows_path, not passes_on, not kind.is_rigid, spins, layer, -kind.row_count, k
+        forced = k not in uncut, k not in preferred
+        return *forced, not kind.follows_path, not passes_on, not kind.is_rigid, spins, layer, -kind.row_count, k
 
     group = list(range(len(mechanism.bodies) + 1))
 
@@ -178,8 +184,6 @@ def _over_driven_problem(mechanism: Mechanism, k: int) -> Problem:
         what = "has a torsion spring"
     if any(stop.joint == k for stop in mechanism.stops):
         what = "is limited by a stop, or locked by a latch"
-    if any(friction.load.joint == k for friction in mechanism.iter_sticking()):
-        what = "has friction that sticks"
     return Problem(
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",

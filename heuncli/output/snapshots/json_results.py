@@ -107,6 +107,7 @@ def _select_instants(data: Mapping[str, Any], indices: Sequence[int]) -> dict[st
             {
                 "terms": {path: select(factor) for path, factor in block["terms"].items()},
                 "value": select(block["value"]),
+                **({"unit": block["unit"]} if "unit" in block else {}),
             }
             for block in data["certain_sums"]
         ]

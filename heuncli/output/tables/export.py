@@ -127,7 +127,7 @@ def _iter_sum_channels(sums: Sequence[Any]) -> Iterator[tuple[str, Channel]]:
     for number, certain_sum in enumerate(sums):
         of_moments = not any(".force." in term for term in certain_sum["terms"])
         values = np.atleast_1d(np.asarray(certain_sum["value"], dtype=np.float64))[:, None]
-        unit = CERTAIN_SUM.select_unit(turning=of_moments)
+        unit = certain_sum.get("unit") or CERTAIN_SUM.select_unit(turning=of_moments)
         yield str(number), Channel("certain_sums", str(number), "value", unit, ("",), values)
 
 

@@ -304,4 +304,6 @@ def find_sum_unit(results: Results, keys: Sequence[str]) -> str:
     for key in keys[:-1]:
         block = block[int(key) if isinstance(block, list) else key]
     row = find_quantity(tuple(keys))
-    return "" if row is None else row.select_unit(turning=not any(".force." in term for term in block["terms"]))
+    if row is None:
+        return ""
+    return block.get("unit") or row.select_unit(turning=not any(".force." in term for term in block["terms"]))

@@ -268,7 +268,7 @@ def _select_sum_instants(block: DeterminateSum, which: slice) -> DeterminateSum:
     factors = {
         path: factor[which] if isinstance(factor, np.ndarray) else factor for path, factor in block["terms"].items()
     }
-    return {"terms": factors, "value": block["value"][which]}
+    return {**block, "terms": factors, "value": block["value"][which]}
 
 
 class TablesQuery(NamedTuple):

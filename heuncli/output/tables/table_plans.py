@@ -159,7 +159,7 @@ STOPS = TablePlan(
 )
 COUPLING_QUANTITIES = (
     *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
-    *("radial", "axial", "torque", "efficiency", "tight", "slack", "tension", "last_tension"),
+    *("radial", "axial", "torque", "efficiency", "reserve", "tight", "slack", "tension", "last_tension"),
 )
 COUPLINGS = TablePlan(
     "joints",

@@ -109,12 +109,14 @@ class Gear(NamedTuple):
 class ThreadFriction(NamedTuple):
     """Friction in a screw thread: coefficient of the flanks as in a square thread, at the mean radius [m].
 
-    Scaled by tanh(rate/speed): full where the spindle turns faster than `speed` [rad/s].
+    speed: scaled by tanh(rate/speed), full where the spindle turns faster [rad/s]; None: as it is, so that it sticks
+    static: the coefficient up to which it sticks, likewise
     """
 
     coefficient: float
     radius: float
-    speed: float
+    speed: float | None
+    static: float = 0.0
 
 
 class Screw(NamedTuple):

@@ -61,7 +61,8 @@ class ThreadFrictionEntry(Entry):
     efficiency: Number | None = None
     radius: Length
     flank_angle: Angle = 0.0
-    speed: Rate
+    static: Number | None = None
+    speed: Rate | None = None
 
 
 class ScrewEntry(Entry):

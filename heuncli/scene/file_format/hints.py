@@ -66,9 +66,7 @@ def misplaced_key_hint(key: str, known_keys: Collection[str]) -> str | None:
     if key in COORDINATES and "initial" in known_keys:
         return f"give the start of a coordinate as initial: {{{key}: ...}}"
     if "lead" in known_keys and key in THREAD_FRICTION_KEYS:
-        return (
-            "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of coefficient"
-        )
+        return "friction: {coefficient: 0.12, radius: 14 mm}, or with efficiency: 0.4 in place of coefficient"
     for keys, words in HINTS_BY_KEYS:
         if key.lower() in words and set(keys) <= set(known_keys):
             return words[key.lower()]

@@ -139,7 +139,8 @@ def make_thread_friction(entry: f.ThreadFrictionEntry, lead: float) -> c.ThreadF
         assert entry.efficiency is not None
         slope = abs(lead) / (math.tau * entry.radius)
         coefficient = math.tan(math.atan(slope / entry.efficiency) - math.atan(slope))
-    return c.ThreadFriction(coefficient, entry.radius, entry.speed)
+    static = coefficient if entry.static is None else entry.static / math.cos(entry.flank_angle)
+    return c.ThreadFriction(coefficient, entry.radius, entry.speed, static)
 
 
 def resolve_belt(resolver: ReferenceResolver, name: str, entry: f.BeltEntry) -> c.Belt:

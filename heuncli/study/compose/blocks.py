@@ -59,6 +59,11 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
         rotate_block(blocks_by_name["joints"][load.joint.name], find_joint_axes(load.joint, states, axes))
     if blocks_by_name and recovery.decided is not None:
         recovery.decided.mark(states, blocks_by_name, recovery.couplings, axes, make_element_keys(mechanism))
+        if layout.friction_contacts and "foundation" in blocks_by_name:
+            from heuncli.loads.redundancy.shared_friction import mark_elements  # few scenes have such friction
+
+            elements = blocks_by_name["foundation"].get("elements", {})
+            mark_elements(layout, solutions, elements, make_element_keys(mechanism))
     if "energy" in reports:
         blocks_by_name["energy"] = recovery.energy
     if "motion" in reports:
@@ -212,7 +217,12 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
     if coupling_loads.friction is not None:
         from heuncli.loads.kinetostatics.coupling_numbers import efficiency  # few scenes have it
 
-        block["efficiency"] = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
+        found = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
+        own_load = next((own for own in recovery.loads if own.action is coupling_loads.friction), None)
+        if own_load is not None and own_load.reserve is not None:
+            found = np.where(own_load.reserve > 0.0, 0.0, found)
+            block["reserve"] = own_load.reserve
+        block["efficiency"] = found
     if spec_coupling.type == "cam":
         from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
 
@@ -243,5 +253,7 @@ def make_force_blocks(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[
         force_block["power"] = applied_load.power
         if applied_load.reserve is not None:
             force_block["reserve"] = applied_load.reserve
+            if np.isnan(applied_load.value).any():
+                force_block["open"] = ["value"]
         block[applied_load.load.name] = force_block
     return block

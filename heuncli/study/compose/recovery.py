@@ -33,7 +33,7 @@ from heuncli.motion.integration.diagnosis.solvability import require_directions,
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.loads import GROUND, PairLoad
 from heuncli.results.results import Array, Block, DeterminateSum, Magnitudes, Mask
-from heuncli.results.results_schema import IMPULSES, SHARED_BLOCKS
+from heuncli.results.results_schema import IMPULSES, SHARED_BLOCKS, SHARES
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.load_errors import ComparedInstants
 
@@ -190,6 +190,10 @@ class Recovery:
         begins there.
         """
         found = collect_applied_loads(self.setup.scene.mechanism, self.states, self.solutions)
+        if self.setup.scene.layout.friction_contacts:
+            from heuncli.loads.redundancy.shared_friction import mark_values  # few scenes have such friction
+
+            found = mark_values(self.setup.scene.layout, self.solutions, found)
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
         # hardly any scene needs it
@@ -297,8 +301,9 @@ class Recovery:
 
         Those of the start, and one more for each contact that has closed since.
         """
-        own = slice(len(self.setup.scene.layout.contacts))
-        newly_closed = (self.solutions.holding[:, own] > 0.0) & ~(self.setup.runner.start_holding[own] > 0.0)
+        layout = self.setup.scene.layout
+        own, start_holding = slice(len(layout.contacts)), layout.open_followers(self.setup.runner.start_holding)
+        newly_closed = (self.solutions.holding[:, own] > 0.0) & ~(start_holding[own] > 0.0)
         return np.asarray(self.setup.model["redundant"] + newly_closed.sum(axis=1))
 
     @property
@@ -327,11 +332,24 @@ def recover(
         from heuncli.loads.redundancy.indeterminate_components import require_determinate_friction  # few scenes need it
 
         require_determinate_friction(setup.scene.layout, found.decided.found_self_stress, found.states, solutions.times)
+    if setup.scene.layout.friction_contacts:
+        from heuncli.loads.redundancy.shared_friction import require_no_split  # few scenes need it
+
+        splits = least_norm or any(joint.stiffness is not None for joint in setup.scene.mechanism.joints)
+        if splits or SHARES in setup.selection.reports:
+            what = "a split by stiffness or least norm" if splits else "a share by cause"
+            require_no_split(setup.scene.layout, solutions, what)
     return found
 
 
 def find_determinate_sums(recovery: Recovery) -> list[DeterminateSum]:
     """Return the sums of indeterminate components that are determinate."""
+    layout = recovery.setup.scene.layout
+    sums: list[DeterminateSum] = []
+    if layout.friction_contacts:
+        from heuncli.loads.redundancy.shared_friction import find_friction_sums  # few scenes have such friction
+
+        sums = find_friction_sums(layout, recovery.solutions)
     if recovery.decided is None:
-        return []
-    return recovery.decided.find_sums(recovery.setup.runner, recovery.solutions, recovery.couplings)
+        return sums
+    return sums + recovery.decided.find_sums(recovery.setup.runner, recovery.solutions, recovery.couplings)

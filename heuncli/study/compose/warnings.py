@@ -196,7 +196,7 @@ def has_smoothed_friction(mechanism: Mechanism) -> bool:
 
 def is_smoothed(load: Load) -> bool:
     """Return whether a load is friction that is smoothed: it has a size of its own and does not stick."""
-    return load.row.is_friction and not (isinstance(load, JointLoad) and load.static > 0.0)
+    return load.row.is_friction and not (isinstance(load, JointLoad | ThreadLoad) and load.static > 0.0)
 
 
 def depends_on_friction(path: str) -> bool:

@@ -108,7 +108,7 @@ def start_at_rest(
     found = search_result.equilibrium
     if find_speed_rows(runner.layout).any():
         require_no_rolling(runner.layout, found.pose.state)
-    if runner.layout.sticking:
+    if runner.layout.friction_contacts:
         require_no_slip(runner, found.pose.state)
     require_steady(runner, found.coordinates, found.pose, found.slopes)
     law = found.slopes.law
@@ -141,11 +141,11 @@ def require_no_slip(runner: Runner, state: Array) -> None:
 
     layout = runner.layout
     moved = np.abs(read_places(runner, 0.0, state) - read_places(runner, 0.0, layout.y0))
-    weights = layout.tables["closures"]["weight"][[layout.contacts[i].row for i in layout.sticking]]
+    weights = layout.tables["closures"]["weight"][[layout.contacts[i].row for i in layout.friction_contacts]]
     moved *= weights / layout.size  # an angle, or a way relative to the size
     slipping = [
         layout.contacts[i].name
-        for i, displacement in zip(layout.sticking, moved, strict=True)
+        for i, displacement in zip(layout.friction_contacts, moved, strict=True)
         if displacement > tolerances.AT_LIMIT
     ]
     if slipping:

@@ -124,7 +124,7 @@ class Latches:
                 or self.is_held(i)
             ):
                 continue
-            rate, noise = find_latch_rate(self.layout, evaluation, self.layout.contacts[i], self.last)
+            rate, noise = measure_coordinate_rate(self.layout, evaluation, self.layout.contacts[i], self.last)
             place = self.find_catch_value(
                 i, stop, evaluation, contacts_touching, latch_conditions.is_value_passed[n], abs(rate) <= noise
             )
@@ -169,7 +169,9 @@ class Latches:
         return latch.position if is_passed or (is_still and abs(gap) <= near) else None
 
 
-def find_latch_rate(layout: Layout, evaluation: Evaluation, contact: Contact, last: float) -> tuple[float, float]:
+def measure_coordinate_rate(
+    layout: Layout, evaluation: Evaluation, contact: Contact, last: float
+) -> tuple[float, float]:
     """Return the rate of the coordinate that a latch holds, and its rounding error in a run up to `last`."""
     bodies = evaluation.bodies[0]
     unit_loads = unit_load(layout, evaluation, contact, multiplier=1.0)

@@ -177,7 +177,7 @@ def estimate_acceleration_noise(
     )
     load_effect = layout.tables["closures"]["weight"][rows] * load
     noise = tolerances.CONTACT_ACCELERATION * (evaluation.rows["terms"][0, rows] + np.diag(A) * load_effect)
-    return np.asarray(noise + tolerances.NO_ANSWER * find_free_response(layout, contacts_touching) * load_effect)
+    return np.asarray(noise + tolerances.NO_ANSWER * find_free_response(layout, contacts_touching.loads) * load_effect)
 
 
 def is_short_flight(

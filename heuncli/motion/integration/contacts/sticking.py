@@ -7,6 +7,18 @@ those whose results agree with it are possible. What can stick does: of several 
 all those stick that stick in any other. What has just reached what it can hold must slip, the way that it was pushed.
 Several that differ otherwise, or none, are errors, as is a sticking friction that others could replace.
 
+How a friction comes here, from the scene's text to the kernel and back:
+
+    1. FrictionEntry             scene/file_format/format_loads.py: the keys of `type: friction`
+    2. check_sticking_friction   scene/file_format/rules/loads.py: what may stick
+    3. JointLoad.static          multibody/mechanism/loads.py: > 0 for friction that may stick
+    4. Mechanism.iter_sticking   multibody/mechanism/model.py: a StickingFriction for each coordinate that it holds
+    5. _add_frictions            multibody/tree/closure_rows.py: a closure row and a Contact for each
+    6. Layout.friction_contacts  multibody/tree/layout.py: which contacts those are; `open_contacts`: the states
+    7. FrictionStates.decide     here, at each event: the states
+    8. set_friction_mode         kernel/sticking.py: closes the row, or gives the load its sign
+    9. friction_margin           kernel/sticking.py: followed in each step, it causes the next event
+
 With given sizes, static ones equal to kinetic, the accelerations are those of a convex problem and unique (Moreau 1988;
 Brogliato, Nonsmooth Mechanics (2016), 5.5): then the first agreeing choice is the one.
 """
@@ -14,7 +26,7 @@ Brogliato, Nonsmooth Mechanics (2016), 5.5): then the first agreeing choice is t
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -23,17 +35,23 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.contact_problem import make_jamming_problem
-from heuncli.motion.integration.contacts.latches import find_latch_rate
+from heuncli.motion.integration.contacts.friction_groups import (
+    FrictionGroup,
+    PlaceResponse,
+    group_numbers,
+    has_fixed_transmissions,
+    make_groups,
+    measure_response,
+)
+from heuncli.motion.integration.contacts.latches import measure_coordinate_rate
 from heuncli.motion.integration.contacts.restitution import find_coupled_groups
 from heuncli.motion.integration.contacts.shared_impulses import join_names
-from heuncli.motion.integration.contacts.touching import unit_load
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
-from heuncli.multibody.response import solve_impulses
-from heuncli.results.results import Array
+from heuncli.results.results import Array, Mask
 
 STICKS = 0  # states of a place: it sticks, or slips towards 1 or -1
 MAX_ENUMERATED = 5  # places at rest of which all 3^5 = 243 choices are tried
-Choice = tuple[int, ...]  # a state for each place at rest
+Choice = tuple[int, ...]  # a state for each group at rest
 
 
 class StateTrial(NamedTuple):
@@ -54,6 +72,7 @@ UNPROVED = (
     "{} sticks at t = {:.6g} s; that it could slip as well is not excluded, because 1 N of friction causes 1 N of "
     "further friction or more"
 )
+SHARED = "{} stick as one: how they share what holds the machine is indeterminate"
 
 
 class FrictionStates:
@@ -61,19 +80,22 @@ class FrictionStates:
 
     presses (k,): whether the joint's own load tells its size; has_one_size: static friction is kinetic everywhere
     is_given: no friction depends on a load; is_convex: so that one choice agrees at most
-    sticks (k,): whether each sticks; place (k,): its coordinate then, else the sign of its slip
+    sticks (k,): whether each sticks; coordinate_or_sign (k,): its coordinate then, else the sign of its slip
+    groups: those of several places that stick as one
     """
 
     def __init__(self, evaluator: Evaluator, last: float) -> None:
         self.evaluator, self.layout, self.last = evaluator, evaluator.layout, last
-        self.indices = list(self.layout.sticking)
+        self.indices = list(self.layout.friction_contacts)
         self.contacts = [self.layout.contacts[i] for i in self.indices]
         self.rows = [contact.row for contact in self.contacts]
         self.load_rows = [contact.load_row for contact in self.contacts]
         self.names = [contact.name for contact in self.contacts]
         self.sticks = np.zeros(len(self.indices), dtype=bool)
-        self.place = np.zeros(len(self.indices))
-        self.earlier = self.sticks, self.place  # before the event
+        self.coordinate_or_sign = np.zeros(len(self.indices))
+        self.groups: tuple[FrictionGroup, ...] = ()
+        # before the event
+        self.earlier: tuple[Mask, Array, tuple[FrictionGroup, ...]] = self.sticks, self.coordinate_or_sign, self.groups
         loads = self.layout.tables["loads"][self.load_rows]
         self.presses = loads["normal_force_kind"] != kernel.GIVEN
         self.has_one_size = bool((loads["breakaway"] == loads["coefficient"]).all())
@@ -82,19 +104,27 @@ class FrictionStates:
 
     def add_to(self, holding: Array) -> Array:
         """Return contact states with those of the friction."""
-        return self.set_states(holding, self.sticks, self.place)
+        return self.set_states(holding, self.sticks, self.coordinate_or_sign, self.groups)
 
-    def set_states(self, holding: Array, sticks: Array, place: Array) -> Array:
-        """Return contact states in which friction sticks at a place, or slips with its sign."""
-        holding = holding.copy()
-        if self.indices:
+    def set_states(
+        self, holding: Array, sticks: Array, coordinate_or_sign: Array, groups: Sequence[FrictionGroup] = ()
+    ) -> Array:
+        """Return contact states in which friction sticks at a coordinate, in groups, or slips with a sign."""
+        holding, n = holding.copy(), len(self.indices)
+        if n:
             holding[self.indices] = sticks
-            holding[len(holding) - len(self.indices) :] = place
+            holding[len(holding) - 3 * n : len(holding) - 2 * n] = coordinate_or_sign
+            holding[len(holding) - 2 * n :] = group_numbers(groups, self.indices)
         return holding
+
+    def release_all(self, holding: Array) -> Array:
+        """Return contact states in which no friction sticks or acts."""
+        none = np.zeros(len(self.indices))
+        return self.set_states(holding, none, none)
 
     def begin_event(self) -> None:
         """Take the present states as those before an event."""
-        self.earlier = self.sticks, self.place
+        self.earlier = self.sticks, self.coordinate_or_sign, self.groups
 
     def decide(self, t: float, state: Array, holding: Array, row: int | None, is_struck: bool) -> list[str]:
         """Decide what sticks and slips from a state on; return sentences on what changes.
@@ -102,31 +132,64 @@ class FrictionStates:
         holding: contact states with those that stops and latches have from here on
         row: of the contact that caused the event; is_struck: an impulse came before the state
         """
-        none = np.zeros(len(self.indices))
-        opened = self.evaluate(t, state, self.set_states(holding, none, none))
-        slip, at_rest = np.zeros(len(self.indices)), []
-        before, place = self.earlier
-        broken, stuck = None, before & ~is_struck
-        for k, contact in enumerate(self.contacts):
-            rate, noise = find_latch_rate(self.layout, opened, contact, self.last)
-            if stuck[k] or contact.row == row or abs(rate) <= noise:
-                at_rest.append(k)
-                broken = k if contact.row == row and stuck[k] else broken
-            else:
-                slip[k] = np.sign(rate)
-        coordinates = np.where(stuck, place, opened.rows["gap"][0, self.rows])
-        search = StateSearch(self, t, state, holding, at_rest, slip, coordinates, broken, opened)
-        choice = search.find_choice() if at_rest else ()
+        opened = self.evaluate(t, state, self.release_all(holding))
+        response = measure_response(self.evaluator, self.contacts, self.release_all(holding), opened)
+        before, coordinate_or_sign, held_groups = self.earlier
+        stuck = before & (not is_struck)
+        slip, is_at_rest = self.find_slips(opened, response, stuck, row)
+        at_rest = np.flatnonzero(is_at_rest).tolist()
+        groups = make_groups(response, at_rest, self.find_joinable(), held_groups)
+        broken = next((n for n, group in enumerate(groups) if stuck[group.leader] and self.has_row(group, row)), None)
+        coordinates = np.where(stuck, coordinate_or_sign, opened.rows["gap"][0, self.rows])
+        search = StateSearch(self, t, state, holding, groups, slip, coordinates, broken, response)
+        choice = search.find_choice() if groups else ()
         unproved = search.find_unproved(choice)
-        sticks = np.zeros(len(self.indices), dtype=bool)
-        for k, chosen in zip(at_rest, choice, strict=True):
-            sticks[k], slip[k] = chosen == STICKS, chosen
-        self.sticks, self.place = sticks, np.where(sticks, coordinates, slip)
-        return [
+        held_contacts = search.with_choice(choice)
+        self.groups = search.list_sticking(choice)
+        if self.groups and not has_fixed_transmissions(
+            self.evaluator, self.contacts, held_contacts, self.release_all(holding), opened, self.groups, self.last
+        ):
+            raise search.indeterminate_error(choice)
+        self.sticks = np.array(held_contacts[self.indices] > 0.0, dtype=bool)
+        self.coordinate_or_sign = held_contacts[len(held_contacts) - 3 * len(self.indices) :][: len(self.indices)]
+        sentences = [
             f"{name} {'sticks' if now else 'slips'} from t = {t:.6g} s"
-            for name, then, now in zip(self.names, before, sticks, strict=True)
+            for name, then, now in zip(self.names, before, self.sticks, strict=True)
             if now != then
-        ] + [UNPROVED.format(name, t) for name in unproved]
+        ]
+        for group in self.groups:
+            if group.members not in [earlier.members for earlier in held_groups]:
+                sentences.append(SHARED.format(join_names([self.names[k] for k in group.members])))
+        return sentences + [UNPROVED.format(name, t) for name in unproved]
+
+    def has_row(self, group: FrictionGroup, row: int | None) -> bool:
+        """Return whether a closure row is that of a member of a group."""
+        return any(self.rows[k] == row for k in group.members)
+
+    def find_joinable(self) -> Mask:
+        """Return which places (k,) may stick in a group: all if no friction depends on how it shares."""
+        return np.full(len(self.indices), self.is_given)
+
+    def find_slips(
+        self, opened: Evaluation, response: PlaceResponse, stuck: Mask, row: int | None
+    ) -> tuple[Array, Mask]:
+        """Return the sign of the slip of each place (k,), and which are at rest, to rounding.
+
+        What moves only with a place at rest is at rest where its rate is that of its leader, which an event has located
+        to the rounding of an instant.
+        """
+        measured = [measure_coordinate_rate(self.layout, opened, contact, self.last) for contact in self.contacts]
+        rate, noise = np.array(measured).reshape(-1, 2).T
+        rested = stuck | (np.array(self.rows) == row) | (np.abs(rate) <= noise)
+        is_at_rest = rested.copy()
+        for k in np.flatnonzero(~rested):
+            for leader in np.flatnonzero(rested & response.moves):
+                if not response.moves[k] or not response.is_proportional(int(k), int(leader)):
+                    continue
+                transmission = response.find_transmission(int(k), int(leader))
+                allowed = noise[k] + abs(transmission) * noise[leader]
+                is_at_rest[k] |= abs(rate[k] - transmission * rate[leader]) <= allowed
+        return np.where(is_at_rest, 0.0, np.sign(rate)), is_at_rest
 
     def unsettled_error(self, t: float) -> SolveError:
         """Make the error of frictions and touching contacts that change each other without end."""
@@ -143,15 +206,15 @@ def read_places(evaluator: Evaluator, t: float, state: Array) -> Array:
     """Return the coordinates (k,) that sticking friction holds, at a state."""
     layout = evaluator.layout
     opened = evaluator.evaluate(np.array([t]), state[None, :], holding=layout.open_contacts)
-    return np.asarray(opened.rows["gap"][0, [layout.contacts[i].row for i in layout.sticking]])
+    return np.asarray(opened.rows["gap"][0, [layout.contacts[i].row for i in layout.friction_contacts]])
 
 
 class StateSearch:
     """The search for the choice at an instant; used for one call of `FrictionStates.decide`.
 
-    at_rest: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
-    broken: the place that has reached what it can hold; None: none has
-    opened: the results with all of them open and without their loads
+    groups: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
+    broken: the group that has reached what it can hold; None: none has
+    response: of all places, without their loads
     """
 
     def __init__(
@@ -160,61 +223,46 @@ class StateSearch:
         t: float,
         state: Array,
         holding: Array,
-        at_rest: list[int],
+        groups: list[FrictionGroup],
         slip: Array,
         coordinates: Array,
         broken: int | None,
-        opened: Evaluation,
+        response: PlaceResponse,
     ) -> None:
         self.friction, self.t, self.state, self.holding = friction, t, state, holding
-        self.at_rest, self.slip, self.coordinates = at_rest, slip, coordinates
-        self.broken = None if broken is None else at_rest.index(broken)
+        self.groups, self.slip, self.coordinates, self.broken = groups, slip, coordinates, broken
+        self.leaders = [group.leader for group in groups]
         self.trials: dict[Choice, StateTrial] = {}
-        self.noise = self.find_noise(opened)
+        self.noise, self.slack = response.noise, response.slack
+        self.response = response.response[np.ix_(self.leaders, self.leaders)]
         self.pushed = self.find_push()
-
-    def find_noise(self, opened: Evaluation) -> Array:
-        """Return the rounding of the accelerations (n,) of the places, from those of all loads and weights."""
-        layout = self.friction.layout
-        units = np.array([unit_load(layout, opened, contact, 1.0) for contact in self.friction.contacts])
-        jumps = np.zeros((len(units), len(layout.freedoms) + len(layout.rows)))
-        none = np.zeros(len(self.slip))
-        self.friction.evaluator.workspace.hold(
-            layout.closed_contacts(self.friction.set_states(self.holding, none, none))
-        )
-        columns = solve_impulses(self.friction.evaluator.workspace, self.t, self.state, units, jumps).columns.bodies
-        motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
-        response = np.einsum("kbi,cbi->kc", units, motion)
-        self.response = 0.5 * (response + response.T)[np.ix_(self.at_rest, self.at_rest)]
-        weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
-        loads = np.abs(opened.loads["force"][0]).sum() + np.abs(opened.loads["moment"][0]).sum() / layout.size
-        closures = layout.tables["closures"][self.friction.rows]
-        own = np.abs(np.diag(response))
-        effect = own * closures["weight"] * (weights + float(loads))
-        noise = np.asarray(tolerances.CONTACT_ACCELERATION * (opened.rows["terms"][0, self.friction.rows] + effect))
-        self.slack = 2.0 * noise / np.where(own > 0.0, own, np.inf)
-        return noise
 
     def find_push(self) -> int:
         """Return the way in which the broken friction is pushed: against its value while all stick; 0: none is."""
         if self.broken is None:
             return 0
         friction = self.friction
-        before = friction.evaluate(self.t, self.state, self.with_choice((STICKS,) * len(self.at_rest)))
-        value = float(before.loads["value"][0, friction.load_rows[self.at_rest[self.broken]]])
+        before = friction.evaluate(self.t, self.state, self.with_choice((STICKS,) * len(self.groups)))
+        value = self.groups[self.broken].sum_at_leader(before.loads["value"][0, friction.load_rows])
         return -1 if value > 0.0 else 1
 
     def with_choice(self, choice: Choice) -> Array:
         """Return the contact states of a choice."""
-        sticks, place = np.zeros(len(self.slip), dtype=bool), self.slip.copy()
-        for k, chosen in zip(self.at_rest, choice, strict=True):
-            sticks[k] = chosen == STICKS
-            place[k] = self.coordinates[k] if chosen == STICKS else chosen
-        return self.friction.set_states(self.holding, sticks, place)
+        sticks, coordinate_or_sign = np.zeros(len(self.slip), dtype=bool), self.slip.copy()
+        for group, chosen in zip(self.groups, choice, strict=True):
+            for k, transmission in zip(group.members, group.transmissions, strict=True):
+                sticks[k] = chosen == STICKS
+                coordinate_or_sign[k] = self.coordinates[k] if chosen == STICKS else chosen * np.sign(transmission)
+        return self.friction.set_states(self.holding, sticks, coordinate_or_sign, self.list_sticking(choice))
+
+    def list_sticking(self, choice: Choice) -> tuple[FrictionGroup, ...]:
+        """Return the groups of several places that stick in a choice."""
+        pairs = zip(self.groups, choice, strict=True)
+        return tuple(group for group, chosen in pairs if chosen == STICKS and len(group.members) > 1)
 
     def find_choice(self) -> Choice:
         """Return the choice that agrees with its own results; raise SolveError if that is not one."""
-        found, everything = self.find_by_steps(), list(range(len(self.at_rest)))
+        found, everything = self.find_by_steps(), list(range(len(self.groups)))
         if found is None:
             found = self.find_among(everything, (STICKS,) * len(everything))
         elif not self.friction.is_convex:
@@ -231,7 +279,7 @@ class StateSearch:
         names: list[str] = []
         if self.friction.is_given:
             return names
-        for n, k in enumerate(self.at_rest):
+        for n, k in enumerate(self.leaders):
             others = [(*choice[:n], slip, *choice[n + 1 :]) for slip in (1, -1)]
             if choice[n] == STICKS and any(self.solve_trial(other).jam is not None for other in others):
                 names.append(self.friction.names[k])
@@ -239,7 +287,7 @@ class StateSearch:
 
     def find_by_steps(self) -> Choice | None:
         """Return an agreeing choice, from all that stick on, by changing what does not agree; None if that repeats."""
-        choice = tuple(self.pushed if k == self.broken else STICKS for k in range(len(self.at_rest)))
+        choice = tuple(self.pushed if n == self.broken else STICKS for n in range(len(self.groups)))
         while choice not in self.trials:
             trial = self.solve_trial(choice)
             if trial.agrees:
@@ -278,10 +326,10 @@ class StateSearch:
     def solve_trial(self, choice: Choice) -> StateTrial:
         """Solve the motion of a choice and compare it with that."""
         if choice not in self.trials:
-            self.trials[choice] = self.compare(choice)
+            self.trials[choice] = self.compare_results(choice)
         return self.trials[choice]
 
-    def compare(self, choice: Choice) -> StateTrial:
+    def compare_results(self, choice: Choice) -> StateTrial:
         """Compare the results of a choice with it."""
         friction = self.friction
         evaluation = friction.evaluate(self.t, self.state, self.with_choice(choice))
@@ -289,10 +337,9 @@ class StateSearch:
         noise = self.noise + tolerances.CONTACT_ACCELERATION * rows["terms"]
         is_met = bool(evaluation.residual[0] <= evaluation.allowed_residual[0])
         better = list(choice)
-        for n, k in enumerate(self.at_rest):
-            acceleration, value, reserve = (
-                float(x[k]) for x in (rows["acceleration"], loads["value"], loads["reserve"])
-            )
+        for n, (group, k) in enumerate(zip(self.groups, self.leaders, strict=True)):
+            acceleration, reserve = float(rows["acceleration"][k]), float(loads["reserve"][k])
+            value = group.sum_at_leader(loads["value"])
             if choice[n] == STICKS:
                 # what more would only accelerate by rounding
                 allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve)) + self.slack[k]
@@ -312,34 +359,43 @@ class StateSearch:
             None,
         )
         agrees = tuple(better) == choice and jam is None and bool(np.isfinite(rows["acceleration"]).all())
-        return StateTrial(agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation), jam)
+        return StateTrial(
+            agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation, choice), jam
+        )
 
-    def is_replaceable(self, evaluation: Evaluation) -> bool:
-        """Return whether a friction that sticks depends on other constraints."""
+    def is_replaceable(self, evaluation: Evaluation, choice: Choice) -> bool:
+        """Return whether a friction that sticks depends on other constraints than those of its group."""
         if not evaluation.rows["closed"][0, self.friction.rows].any():
             return False
         holding = evaluation.holding[0].copy()
         holding[self.friction.indices] = 0.0
         opened = self.friction.evaluate(self.t, self.state, holding)
-        return int(evaluation.dependent_count[0]) > int(opened.dependent_count[0])
+        in_groups = sum(len(group.members) - 1 for group in self.list_sticking(choice))
+        return int(evaluation.dependent_count[0]) != int(opened.dependent_count[0]) + in_groups
 
     def undecided_error(self, why: str) -> SolveError:
         """Make the error of places whose states do not follow from the laws."""
-        names = join_names([self.friction.names[k] for k in self.at_rest])
+        names = join_names([self.friction.names[k] for group in self.groups for k in group.members])
         message = f"at t = {self.t:.9g} s whether {names} sticks or slips cannot be decided: {why}"
         hint = "give the friction as a torque or force, in fewer joints, or smoothed: speed"
         return SolveError(Problem("friction-undecided", message, hint=hint, entry_path=self.first_path))
 
     def indeterminate_error(self, choice: Choice) -> SolveError:
         """Make the error of sticking frictions that share a load in a way that nothing determines."""
-        sticking = [self.friction.names[k] for k, chosen in zip(self.at_rest, choice, strict=True) if chosen == STICKS]
+        pairs = zip(self.groups, choice, strict=True)
+        sticking = [self.friction.names[k] for group, chosen in pairs if chosen == STICKS for k in group.members]
         message = f"at t = {self.t:.9g} s {join_names(sticking)}"
+        joints = self.friction.layout.mechanism.joints
+        held = [self.friction.contacts[k].joint for group in self.groups for k in group.members]
+        drives = [joint.drive.name for k in held if k < len(joints) and (joint := joints[k]).drive is not None]
         if len(sticking) > 1:
             message += " stick, and how they share what holds the machine is indeterminate"
         else:
-            message += " sticks where a drive, a stop or other joints hold it as well: its value is indeterminate"
+            what = f"drives.{drives[0]}" if drives else "a drive, a stop or other joints"
+            message += f" sticks where {what} holds it as well: its value is indeterminate"
         hint = (
-            "let friction stick in as many joints as can move independently, without a drive; smooth the others: speed"
+            "give each as a torque or force: on one degree of freedom they stick as one; with a drive or stop smooth "
+            "it: speed"
         )
         return SolveError(Problem("friction-indeterminate", message, hint=hint, entry_path=self.first_path))
 
@@ -350,4 +406,4 @@ class StateSearch:
     @property
     def first_path(self) -> str:
         """The path of the first of the places at rest."""
-        return self.friction.names[self.at_rest[0]]
+        return self.friction.names[self.leaders[0]]

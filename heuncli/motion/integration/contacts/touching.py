@@ -148,11 +148,11 @@ def find_opening_rates(contacts_touching: TouchingContacts, columns: Table) -> A
     return np.asarray(np.einsum("kbi,cbi->kc", contacts_touching.loads, motion))
 
 
-def find_free_response(layout: Layout, contacts_touching: TouchingContacts) -> Array:
-    """Return the order of the opening rates (k,) that unit impulses at the contacts would give free bodies."""
+def find_free_response(layout: Layout, loads: Array) -> Array:
+    """Return the order of the rates (k,) that unit impulses at contacts would give free bodies; loads (k, n_b, 6)."""
     mass = layout.mechanism.scale_masses[[link.body for link in layout.spanning.links]]
-    size = np.einsum("kbi,b->k", contacts_touching.loads[:, :, 3:] ** 2, 1.0 / mass)
-    size += np.einsum("kbi,b->k", (contacts_touching.loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
+    size = np.einsum("kbi,b->k", loads[:, :, 3:] ** 2, 1.0 / mass)
+    size += np.einsum("kbi,b->k", (loads[:, :, :3] / layout.size) ** 2, 1.0 / mass)
     return np.asarray(size)
 
 
@@ -160,7 +160,7 @@ def can_move_bodies(layout: Layout, contacts_touching: TouchingContacts, A: Arra
     """Return whether each contact could move a body if it bore a load, (k,); if not, bilateral constraints hold all
     that it pushes.
     """
-    return np.asarray(np.diag(A) > tolerances.NO_ANSWER * find_free_response(layout, contacts_touching))
+    return np.asarray(np.diag(A) > tolerances.NO_ANSWER * find_free_response(layout, contacts_touching.loads))
 
 
 def scatter(z: Array, indices: Indices, n: int) -> Array:

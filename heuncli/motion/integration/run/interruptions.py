@@ -196,7 +196,10 @@ def is_ending_rope(layout: Layout, r: int, owner: int) -> bool:
     if owner < len(mechanism.joints):
         joint = mechanism.joints[owner]
         return joint.can_open and joint.restitution is None and r == layout.rows.index(owner)
-    row = mechanism.couplings[owner - len(mechanism.joints)].rows[r - layout.rows.index(owner)]
+    rows, k = mechanism.couplings[owner - len(mechanism.joints)].rows, r - layout.rows.index(owner)
+    if k >= len(rows):  # friction of a thread
+        return False
+    row = rows[k]
     return row.tension_only and row.restitution is None
 
 

@@ -302,7 +302,7 @@ def _fixed_coordinate_departures(plane_view: PlaneView) -> Iterator[Departure]:
         if plane_view.is_fixed_coordinate(stop.joint, stop.quantity):
             yield Departure(f"{stop.path} limits an out-of-plane coordinate", 1.0, True)
     for friction in mechanism.iter_sticking():
-        if plane_view.is_fixed_coordinate(friction.load.joint, friction.quantity):
+        if friction.joint >= 0 and plane_view.is_fixed_coordinate(friction.joint, friction.quantity):
             yield Departure(f"{friction.load.path} holds an out-of-plane coordinate", 1.0, True)
     base = {"rate": "angle", "speed": "travel"}
     for load in mechanism.loads:

@@ -311,5 +311,13 @@ def find_friction_errors(friction: ThreadFrictionEntry) -> Iterator[tuple[str, s
             f"{angle_text} is not a possible flank angle",
             "half the thread angle: 15 deg for Tr, 30 deg for M",
         )
-    if not friction.speed > 0.0:
+    if friction.static is not None and friction.speed is not None:
+        message = "static is for friction that sticks, and with a speed it is smoothed and does not"
+        yield "static", message, "leave out speed, or static"
+    elif friction.static is not None and friction.coefficient is None:
+        yield "static", "static is given with an efficiency", "give coefficient in place of efficiency, or leave it out"
+    elif friction.static is not None and friction.static < (friction.coefficient or 0.0):
+        message = f"static, {friction.static:g}, is below the kinetic friction, {friction.coefficient:g}"
+        yield "static", message, "what sticks holds at least as much: give the larger number here"
+    if friction.speed is not None and not friction.speed > 0.0:
         yield "speed", f"speed must be greater than 0, but is {friction.speed:g}", FULL_FRICTION_HINT
