@@ -189,7 +189,7 @@ def _compare_value(
 def _compare(
     path: str, what: str, unit: str, pair: tuple[Value | None, Value | None], tolerance: float
 ) -> Change | None:
-    """Compare an old and a new value, each a number, a word or missing; None if they differ by no more than the tolerance."""
+    """Compare an old and a new value, each a number, a word or missing; None if they agree within the tolerance."""
     before, after = pair
     if isinstance(before, str) or isinstance(after, str) or before is None or after is None:
         reason = _describe_transition(before, after)
