@@ -120,7 +120,9 @@ def test_the_ids_that_scripts_look_for_are_there() -> None:
     there = re.findall(r'\bid="([\w-]+)"', read_page_file("machine.html"))
     assert len(there) == len(set(there))
     asked = {
-        found for name in sort_scripts() for found in re.findall(r'\bby\("([\w-]+)"\)', read_page_file(f"{name}.js"))
+        found
+        for name in sort_scripts()
+        for found in re.findall(r'\bfindElement\("([\w-]+)"\)', read_page_file(f"{name}.js"))
     }
     assert asked and asked <= set(there)
 

@@ -186,14 +186,16 @@ def _compare_value(
     return change._replace(time=time) if change is not None else None
 
 
-def _compare(path: str, what: str, unit: str, pair: tuple[Value | None, Value | None], bound: float) -> Change | None:
-    """Compare an old and a new value, each a number, a word or missing; None if they differ by no more than a bound."""
+def _compare(
+    path: str, what: str, unit: str, pair: tuple[Value | None, Value | None], tolerance: float
+) -> Change | None:
+    """Compare an old and a new value, each a number, a word or missing; None if they agree within the tolerance."""
     before, after = pair
     if isinstance(before, str) or isinstance(after, str) or before is None or after is None:
         reason = _describe_transition(before, after)
-        return Change(path, what, unit, before, after, bound, reason) if before != after else None
-    differs = not abs(after - before) <= bound  # also where one of them is nan
-    return Change(path, what, unit, before, after, bound) if differs else None
+        return Change(path, what, unit, before, after, tolerance, reason) if before != after else None
+    differs = not abs(after - before) <= tolerance  # also where one of them is nan
+    return Change(path, what, unit, before, after, tolerance) if differs else None
 
 
 def _describe_transition(old: Value | str | None, new: Value | str | None) -> str:
