@@ -175,7 +175,7 @@ def report(
     """Write the client report that `heun report` writes; returns whether all that the spec expects is met.
 
     spec, text, set, parameters: as in `solve`; a mapping is refused, because a report prints the text of its spec
-    output: the file, x.html, x.pdf or x.md; with `format` ("html", "pdf", "md") any name
+    output: the file, whose ending is .html, .pdf or .md; with `format` ("html", "pdf", "md") any name
     case: load cases, "full,empty" or a list; default: all
     units, chapters, paper, landscape, decimal_comma, logo: as the options of `heun report`
     company, project, part, revision, author, date: the title block

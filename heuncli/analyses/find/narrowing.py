@@ -221,41 +221,43 @@ def find_middle(low: float, high: float) -> float | None:
     return middle if min(low, high) < middle < max(low, high) else None
 
 
-def close_edge(course: MeasureCourse, solved: Sample, unsolved: Sample) -> None:
+def close_edge(course: MeasureCourse, solved_sample: Sample, failed_sample: Sample) -> None:
     """Narrow one edge down. Raises SampleLimitError."""
     fraction, is_trusted = FIRST_FRACTION, True
-    while not is_closed(course, solved, unsolved):
-        middle = solved.x + 0.5 * (unsolved.x - solved.x)
-        width = unsolved.x - solved.x
+    while not is_closed(course, solved_sample, failed_sample):
+        middle = solved_sample.x + 0.5 * (failed_sample.x - solved_sample.x)
+        width = failed_sample.x - solved_sample.x
         predicted = (
-            predict_edge(course, solved, width)
+            predict_edge(course, solved_sample, width)
             if is_trusted and abs(width) < tolerances.EDGE_BRACKET * course.spacing
             else None
         )
         if predicted is None:
-            solved, unsolved = evaluate_between(course, solved, unsolved, middle)
+            solved_sample, failed_sample = evaluate_between(course, solved_sample, failed_sample, middle)
             is_trusted = True
             continue
         old_width = abs(width)
         for x in (predicted - fraction * width, predicted + fraction * width):
-            if min(solved.x, unsolved.x) < x < max(solved.x, unsolved.x):
-                solved, unsolved = evaluate_between(course, solved, unsolved, x)
-        is_trusted = abs(unsolved.x - solved.x) < 2.5 * fraction * old_width
+            if min(solved_sample.x, failed_sample.x) < x < max(solved_sample.x, failed_sample.x):
+                solved_sample, failed_sample = evaluate_between(course, solved_sample, failed_sample, x)
+        is_trusted = abs(failed_sample.x - solved_sample.x) < 2.5 * fraction * old_width
         fraction = max(fraction * fraction, MIN_FRACTION) if is_trusted else FIRST_FRACTION
 
 
-def evaluate_between(course: MeasureCourse, solved: Sample, unsolved: Sample, x: float) -> tuple[Sample, Sample]:
+def evaluate_between(
+    course: MeasureCourse, solved_sample: Sample, failed_sample: Sample, x: float
+) -> tuple[Sample, Sample]:
     """Evaluate one more place and return the two samples between which the edge lies."""
     sample = course.sample_at(x)
-    if unsolved.withheld_gap is not None and sample.singular:
+    if failed_sample.withheld_gap is not None and sample.singular:
         sample = withhold(sample)
-    return (solved, sample) if sample.gap is None else (sample, unsolved)
+    return (solved_sample, sample) if sample.gap is None else (sample, failed_sample)
 
 
-def predict_edge(course: MeasureCourse, solved: Sample, width: float) -> float | None:
+def predict_edge(course: MeasureCourse, solved_sample: Sample, width: float) -> float | None:
     """Return the edge that the solved samples predict within the bracket; None if they predict none."""
     samples = course.samples
-    k, direction = samples.index(solved), -1 if width > 0.0 else 1
+    k, direction = samples.index(solved_sample), -1 if width > 0.0 else 1
     nearest = [samples[k + direction * j] for j in range(3) if 0 <= k + direction * j < len(samples)]
     if len(nearest) < 3 or any(sample.gap is None for sample in nearest):
         return None
@@ -264,11 +266,11 @@ def predict_edge(course: MeasureCourse, solved: Sample, width: float) -> float |
         m = [1.0 / value for value in m]
     if not (m[0] < m[1] < m[2] or m[0] > m[1] > m[2]):
         return None
-    x = [sample.x - solved.x for sample in nearest]
+    x = [sample.x - solved_sample.x for sample in nearest]
     chord = (x[1] - x[0]) / (m[1] - m[0])
     bend = ((x[2] - x[1]) / (m[2] - m[1]) - chord) / (m[2] - m[0])
     if bend == 0.0 or not math.isfinite(bend):
         return None
     slope = chord - bend * (m[1] - m[0])  # of x over u, at the solved sample
     distance = -0.25 * slope * slope / bend
-    return solved.x + distance if 0.0 < distance / width < 1.0 else None
+    return solved_sample.x + distance if 0.0 < distance / width < 1.0 else None
