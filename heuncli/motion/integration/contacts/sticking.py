@@ -315,7 +315,7 @@ class StateSearch:
         return StateTrial(agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation), jam)
 
     def is_replaceable(self, evaluation: Evaluation) -> bool:
-        """Return whether a friction that sticks depends on other constraints."""
+        """Whether a friction that sticks depends on other constraints."""
         if not evaluation.rows["closed"][0, self.friction.rows].any():
             return False
         holding = evaluation.holding[0].copy()
