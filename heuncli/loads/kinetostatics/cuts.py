@@ -208,16 +208,8 @@ def _make_section_cuts(
     location = spec.location(f"sections.{name}")
     if s is None:
         if jumps[0] and section.side is None:
-            raise SpecError(
-                _missing_side_problem(
-                    [
-                        attachment.label
-                        for attachment, is_in_plane in zip(attachments, in_plane[0], strict=True)
-                        if is_in_plane
-                    ],
-                    location,
-                )
-            )
+            names = [attachment.label for attachment, lies_in in zip(attachments, in_plane[0], strict=True) if lies_in]
+            raise SpecError(_missing_side_problem(names, location))
         # kept also where nothing lies in the plane: joints may move into it during the run
         side = np.array([SIDE_SIGNS[section.side]])
     else:
