@@ -131,6 +131,14 @@ def test_drives_along_other_coordinates(heun: Heun) -> None:
     )
 
 
+def test_friction_that_sticks_is_locked(heun: Heun) -> None:
+    """The block on the belt moves with it: the mass of both, seen from the belt."""
+    scene = str(EXCAVATOR.with_name("stick_slip.yaml"))
+    found = json.loads(heun("lagrange", scene, "--only", "mass", "--format", "json").stdout)
+    assert found["coordinates"] == ["run.travel"]
+    assert np.ravel(found["epsilon"]) == pytest.approx([3.0])
+
+
 def test_a_length_that_is_seen(heun: Heun) -> None:
     """A cylinder's stroke is seen in kg, chosen or not."""
     words = ("lagrange", str(EXCAVATOR), "--seen", "boom_cylinder.length,foot.angle", "--format", "json")

@@ -5,13 +5,14 @@
 Every choice of a state for each place at rest is a motion of its own, which the kernel solves with all its couplings:
 those whose results agree with it are possible. What can stick does: of several possible ones the one is taken in which
 all those stick that stick in any other. What has just reached what it can hold must slip, the way that it was pushed.
-Several that differ otherwise, or none, are errors, as is a sticking friction that others could replace.
+Several that differ otherwise, or none, are errors, as is a sticking friction that others could replace. Those of one
+freedom are one place, which sticks or slips as a whole (friction_groups.py).
 
 How a friction comes here, from the scene's text to the kernel and back:
 
     1. FrictionEntry             scene/file_format/format_loads.py: the keys of `type: friction`
     2. check_sticking_friction   scene/file_format/rules/loads.py: what may stick
-    3. JointLoad.static          multibody/mechanism/loads.py: > 0 for friction that may stick
+    3. JointLoad.static          multibody/mechanism/loads.py: > 0 for friction that may stick; or ThreadLoad.static
     4. Mechanism.iter_sticking   multibody/mechanism/model.py: a StickingFriction for each coordinate that it holds
     5. _add_frictions            multibody/tree/closure_rows.py: a closure row and a Contact for each
     6. Layout.friction_contacts  multibody/tree/layout.py: which contacts those are; `open_contacts`: the states
