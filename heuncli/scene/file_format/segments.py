@@ -190,9 +190,7 @@ def _iter_law_problems(
         elif end_keys:
             message = f"{end_keys[0]} given, but the limits decide how long it takes"
             hint = "leave it out, and add a dwell; or use a law without limits"
-            yield SegmentProblem(
-                (*place, end_keys[0]), f"{end_keys[0]} end_keys, but the limits decide how long it takes", hint
-            )
+            yield SegmentProblem((*place, end_keys[0]), message, hint)
     x, y, z = dimension
     values = {name: getattr(entry, name) for name in limited}
     yield from _iter_wrong_dimensions(place, values, {name: (x, y, z - 1 - LIMIT_KEYS.index(name)) for name in limited})
