@@ -30,7 +30,7 @@ from heuncli.study.quantities.channels import (
     iter_impulse_channels,
     make_section_channels,
 )
-from heuncli.study.quantities.digits import DIGITS, StatedErrors, Style, choose_reader_style, largest_magnitude
+from heuncli.study.quantities.digits import READER_DIGITS, StatedErrors, Style, choose_reader_style, largest_magnitude
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.queries.study import Study
 
@@ -195,7 +195,7 @@ def _to_shown(unit: str, size: float, scale: float, error: float, certainty: tup
     error: in the display unit; certainty: rounding in the display unit, and whether any digit is known
     """
     shown = size * scale
-    decimals = DIGITS - 1 - math.floor(math.log10(shown)) if shown > 0.0 else 0
+    decimals = READER_DIGITS - 1 - math.floor(math.log10(shown)) if shown > 0.0 else 0
     if 0.0 < error < math.inf:
         decimals = min(decimals, math.floor(-math.log10(error)))
     has_exponent = shown > 0.0 and not SMALL <= shown < LARGE
