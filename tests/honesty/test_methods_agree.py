@@ -98,7 +98,7 @@ def require_honest(row: MethodRow, scene: int | str, *, reduce: bool) -> None:
     times = np.linspace(0.0, min(float(run.times[-1]) for run in runs), INSTANTS)
     times = times[(times < horizon) & ~is_between_impulses(runs, times)]
     layout = found.setup.runner.layout
-    apart = MotionPoints(layout).max_distance(bodies(exact, times), bodies(found, times)) / layout.size
+    apart = MotionPoints(layout).find_max_distance(bodies(exact, times), bodies(found, times)) / layout.size
     bound = min(checked.motion, tolerances.CLAIMED) if checked.horizon is not None else checked.motion
     assert float(apart.max(initial=0.0)) <= bound + exact.history.checked_run.motion
     if checked.horizon is None:

@@ -120,7 +120,6 @@ def parse_codes(page: str) -> dict[str, str]:
     return {code: f"# {code}\n\n" + LINK.sub(r"\1", text) for code, text in texts.items()}
 
 
-LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 WORLD = "components in world axes"
 # by block: on which body it acts, about which point, in which axes; details on the manual page "signs"
 SIGNS = {
