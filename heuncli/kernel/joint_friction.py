@@ -151,7 +151,7 @@ def force_part(scene: cython.pointer[Scene], column: cython.Py_ssize_t, j: cytho
     return read_vector(scene.contact_forces, offset)
 
 
-# How hard
+# Solve for the normal forces
 
 
 def find_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
@@ -165,9 +165,8 @@ def find_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
     if failing < 0:
         iterate_normal_forces(scene)
     elif scene.friction_bound[n * failing + failing] != scene.friction_bound[n * failing + failing]:
-        scene.friction_trial[0] = (
-            NAN  # loads without a value (NaN): there is no solution, but friction is not the reason
-        )
+        for k in range(n):
+            scene.friction_trial[k] = NAN  # loads without a value (NaN): no solution, but friction is not the reason
     else:
         outcome = solve_single_friction(scene) if n == 1 else UNPROVED
     if outcome != FOUND:

@@ -70,22 +70,28 @@ def _iter_case_cards(cases: LoadCases, case: LoadCase, nodes: DeckNodes, k: int)
     used: list[int] = []
     for load in nodes.find_loads(case):
         yield from iter_part_lines(load, cases.units, MARK)
-        yield from _iter_force_cards(load, load_set + 1)
-        used = [load_set + 1]
+        cards = list(_iter_force_cards(load, load_set + 1))
+        used = [load_set + 1] if cards else used
+        yield from cards
     if field.linear.any():
         used.append(load_set + 2)
         yield from iter_card_lines("GRAV", [load_set + 2, 0, 1.0, *(-field.linear).tolist()])
     for number, rotation, is_speed in ((3, field.angular_velocity, True), (4, field.angular_acceleration, False)):
-        size = float(np.sqrt(rotation @ rotation))
-        if size > 0.0:
+        if rotation.any():
             used.append(load_set + number)
-            axis, turns = (rotation / size).tolist(), size / FULL_TURN
+            turns, axis = _split_rotation(rotation)
             speed, last_fields = (turns, [2]) if is_speed else (0.0, [1, -turns])  # METHOD; then the value of RACC
             yield from iter_card_lines("RFORCE", [load_set + number, 0, 0, speed, *axis, *last_fields])
     if not used:  # LOAD needs at least one set
         used.append(load_set + 2)
         yield from iter_card_lines("GRAV", [load_set + 2, 0, 0.0, 1.0, 0.0, 0.0])
     yield from _iter_sum_card(load_set, used)
+
+
+def _split_rotation(rotation: Array) -> tuple[float, list[float]]:
+    """Return the revolutions per second (or s²) of a rotation (3,) [rad/s], and its axis, as cards have them."""
+    size = float(np.sqrt(rotation @ rotation))
+    return size / FULL_TURN, (rotation / size).tolist()
 
 
 def _iter_sum_card(first: int, used: Sequence[int]) -> Iterator[str]:
@@ -139,12 +145,24 @@ def _round_as_written(case: LoadCase) -> LoadCase:
     def round_vector(vector: Array) -> Array:
         return np.array([parse_real(format_real(x)) for x in vector.tolist()])
 
+    def round_rotation(rotation: Array) -> Array:
+        if not rotation.any():
+            return rotation
+        turns, axis = _split_rotation(rotation)
+        return FULL_TURN * parse_real(format_real(turns)) * round_vector(np.array(axis))
+
     actions = tuple(
         replace(a, at=round_vector(a.at), force=round_vector(a.force), moment=round_vector(a.moment))
         for a in case.actions
     )
     f = case.field
-    field = replace(f, origin=round_vector(f.linear), gravity=np.zeros(3))
+    field = replace(
+        f,
+        origin=round_vector(f.linear),
+        gravity=np.zeros(3),
+        angular_velocity=round_rotation(f.angular_velocity),
+        angular_acceleration=round_rotation(f.angular_acceleration),
+    )
     return replace(case, actions=actions, field=field)
 
 

@@ -109,16 +109,20 @@ function drawValues(pen, panel, values, colour, dash, x = panel.values, width = 
   }
 }
 
-/** What lies between the smallest and the greatest, as a band. */
+/** What lies between the smallest and the greatest, as a band; where it is open it is broken. */
 function drawBand(pen, panel, { low, high }, colour, values = panel.values) {
-  const known = [...low.keys()].filter((k) => Number.isFinite(low[k]));
-  pen.beginPath();
-  known.forEach((k, i) => pen[i ? "lineTo" : "moveTo"](panel.x(values[k]), panel.y(high[k])));
-  known.reverse().forEach((k) => pen.lineTo(panel.x(values[k]), panel.y(low[k])));
-  pen.closePath();
+  const shown = [...low.keys()].filter((k) => Number.isFinite(low[k]));
   pen.globalAlpha = 0.18;
   pen.fillStyle = colour;
-  pen.fill();
+  for (let begin = 0, end = 0; begin < shown.length; begin = end) {
+    while (end < shown.length && shown[end] - shown[begin] === end - begin) end += 1;
+    const known = shown.slice(begin, end);
+    pen.beginPath();
+    known.forEach((k, i) => pen[i ? "lineTo" : "moveTo"](panel.x(values[k]), panel.y(high[k])));
+    known.reverse().forEach((k) => pen.lineTo(panel.x(values[k]), panel.y(low[k])));
+    pen.closePath();
+    pen.fill();
+  }
   pen.globalAlpha = 1;
 }
 

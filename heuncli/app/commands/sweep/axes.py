@@ -122,7 +122,7 @@ def parse_shard(word: str | None) -> tuple[int, int]:
 
 MAX_BYTES = 1_000_000_000  # bytes
 CODE = "variants-table"
-DECIMAL_COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?(?:\s*[^\d\s,.].*)?)\Z")
+DECIMAL_COMMA = re.compile(r"\A([+-]?\d*),(\d+(?:[eE][+-]?\d+)?(?:\s*[^\d\s,.].*)?)\Z")
 SEPARATORS = (";", "\t", ",")
 FORM = "one column per parameter, its name in the first row: n [rpm],L [mm]"
 QUOTES = 'a quote in a quoted cell is doubled, as "", and the cell ends on its line'

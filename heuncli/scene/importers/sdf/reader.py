@@ -5,6 +5,8 @@ The file holds one model, or a world with one model that moves. Static models, s
 
 from __future__ import annotations
 
+from collections import Counter
+
 from heuncli.base.errors import SpecError
 from heuncli.base.records import replace
 from heuncli.base.spelling import list_words, suggest
@@ -40,7 +42,7 @@ def described(_content: bytes, file: str, root: XmlElement, options: ImportOptio
         message = f"the pose of the model is relative to '{placed[1]}'"
         fields.report("import-tree", model, "model", message, "give it relative to the world")
     robot = reader.read_robot(model, pose, options.base_free)
-    ignored = {**ignored_tags, **{tag: count for tag, count in robot.ignored_tags.items() if count}}
+    ignored = +(Counter(ignored_tags) + Counter(robot.ignored_tags))
     is_placed = any(joint.kind == "floating" for joint in robot.joints.values())
     robot = replace(robot, ignored_tags=ignored)
     machine = translate_robot(
