@@ -167,19 +167,9 @@ def canonical_symbol(symbol: str) -> str:
     return SPELLINGS.get(symbol, symbol)
 
 
-def si_expression_hint(figure: str, symbol: str, rest: str = "") -> str | None:
-    """Return the hint what to write for '40 mm' inside an expression; None if the word is no unit. figure may be a
-    name.
-    """
-    symbol = SPELLINGS.get(symbol, symbol)
-    if symbol not in UNITS:
-        return None
-    size, subject = UNITS[symbol][0], "the quantity"
-    try:
-        written, subject = f"{float(figure) * size:.15g}", f"{figure} {symbol}"
-    except ValueError:
-        written = f"{figure}*{size!r}" if figure else repr(size)
-    return f"units are not allowed inside expressions: write {written}{rest} in SI, or name {subject} under parameters"
+def unit_place_hint(symbol: str) -> str | None:
+    """Return the hint where a unit stands in an expression; None if the word is no unit."""
+    return f"a unit stands right after a number: 20 {symbol}" if canonical_symbol(symbol) in UNITS else None
 
 
 def correct_unit(unit: str) -> str | None:

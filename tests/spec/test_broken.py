@@ -18,6 +18,7 @@ WITHOUT_A_FILE = {
     "too-large": "64 MB",
     "too-many-jumps": "found when the run is prepared",
     "outside-folder": "a file outside the folder of the spec",
+    "missing-extra": "an extra that is not installed",
 }
 
 

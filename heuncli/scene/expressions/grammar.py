@@ -230,17 +230,28 @@ class _Parser(TokenReader):
         raise self.unexpected_token_error()
 
     def parse_number(self, figure: str) -> Part:
-        """Parse a number, in a condition perhaps with its unit."""
+        """Parse a number, perhaps with its unit: 2 kN, also 2*kN where that is no product with a parameter."""
         measure, value = literal_dimension(figure), float(figure)
+        if self.is_unit_factor():
+            self.position += 1
         has_unit = (self.kind == "name" and self.token not in WORDS) or self.token == "°" or self.is_reciprocal_unit()
-        if has_unit and not self.scope.with_units:
+        if has_unit and not self.scope.with_units and canonical_symbol(self.token) not in (*UNITS, "1"):
             raise self.unexpected_token_error()
         if has_unit:
+            if not self.scope.with_units:
+                self.require_no_parameter(figure, " ", self.token)
             size, dimension = self.parse_unit_name(figure)
             measure, value = known_dimension(dimension), value * size
         if not math.isfinite(value):
             raise Finding("not-computable", f"{figure} is too large", "the largest number is 1.8e308")
         return self.codegen.make_number(value, measure)
+
+    def is_unit_factor(self) -> bool:
+        """Return whether *kN stands here: a unit of several letters that is no name of this model, nor a constant."""
+        ahead = [token for _, token, _ in self.tokens[self.position : self.position + 2]]
+        mark, name = ahead if len(ahead) == 2 else ("", "")
+        is_name_free = name not in self.scope.parameters and name not in RESERVED and name not in self.scope.own
+        return mark == "*" and len(name) > 1 and canonical_symbol(name) in UNITS and is_name_free
 
     def is_reciprocal_unit(self) -> bool:
         """Return whether 1/s stands here: after a number it is a unit."""
@@ -269,10 +280,11 @@ class _Parser(TokenReader):
         return parse_unit(self.text_since(begin))
 
     def require_no_parameter(self, quantity: str, mark: str, name: str) -> None:
-        """Raise Finding for 2 m/s if s is a parameter, too."""
+        """Raise Finding for 2 m, or 2 m/s, if s or m is a parameter, too."""
         if name in self.scope.parameters:
             message = f"'{quantity}{mark}{name}': {name} is both a unit and a parameter of this model"
-            hint = f"for the parameter write ({quantity}){mark}{name}; for the unit rename the parameter"
+            product = f"{quantity}*{name}" if mark == " " else f"({quantity}){mark}{name}"
+            hint = f"for the parameter write {product}; for the unit rename the parameter"
             raise Finding("expression-syntax", message, hint)
 
     def parse_call(self, name: str) -> Part:

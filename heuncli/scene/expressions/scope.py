@@ -18,7 +18,7 @@ from heuncli.base.joint_kinds import RATES, TYPES
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.base.spelling import find_similar, suggest
-from heuncli.base.units import Dimension, describe, si_expression_hint
+from heuncli.base.units import Dimension, describe, unit_place_hint
 from heuncli.results.results_schema import ROWS, SHARED_BLOCKS
 from heuncli.scene.expressions.codegen import MAX_NODES, CalculationCache
 from heuncli.scene.expressions.motion_laws import ARGUMENTS
@@ -204,8 +204,8 @@ def unknown_name_finding(scope: Scope, name: str, kind: str) -> Finding:
     known = (scope.parameters, RESERVED) if kind == "parameter" else (ARITY,)
     message, suggestion = f"'{name}' is not a {kind}", find_similar(name, *known)
     is_near = suggestion is not None and suggestion.lower() == name.lower()
-    if not is_near and kind == "parameter" and (unit := si_expression_hint("", name)) is not None:
-        return Finding("unknown-name", message, f"write e.g. 20 {name}" if scope.with_units else unit)
+    if not is_near and kind == "parameter" and (unit := unit_place_hint(name)) is not None:
+        return Finding("unknown-name", message, unit)
     if kind == "parameter" and scope.own and suggestion is None:
         return Finding("unknown-name", message, f"quantities of the load itself: {', '.join(scope.own)}")
     listed = scope.parameters if kind == "parameter" else sorted(ARITY)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from heuncli.base.errors import Finding
-from heuncli.base.units import si_expression_hint
-from heuncli.scene.expressions.scope import RESERVED, WORDS, Scope, tokenize
+from heuncli.base.units import unit_place_hint
+from heuncli.scene.expressions.scope import WORDS, Scope, tokenize
 
 
 class TokenReader:
@@ -68,10 +68,7 @@ class TokenReader:
             and self.tokens[self.position - 1][0] in ("name", "number")
         ):
             before = self.tokens[self.position - 1][1]
-            known = self.token in self.scope.parameters or self.token in RESERVED
-            hint = (
-                None if known else si_expression_hint(before, self.token)
-            ) or f"for a product write {before}*{self.token}"
+            hint = f"for a product write {before}*{self.token}"
         if hint is None:
             hint = self.suggest_product() if self.position else None
         if hint is None and self.token == ",":
@@ -90,8 +87,8 @@ class TokenReader:
         kind, before, _ = self.tokens[self.position - 1]
         if self.token == "(" and (kind == "number" or before == ")"):
             return f"for a product write {before}*("
-        if before in (")", "t") and self.kind == "name" and si_expression_hint("", self.token) is not None:
-            return f"an expression is in SI units: leave out {self.token}"
+        if before in (")", "t") and self.kind == "name":
+            return unit_place_hint(self.token)
         return None
 
     def suggest_decimal_point(self, comma: int) -> str | None:

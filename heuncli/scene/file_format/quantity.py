@@ -19,7 +19,6 @@ from heuncli.base.units import (
     is_in_range,
     parse_unit,
     range_error,
-    si_expression_hint,
     si_unit,
 )
 from heuncli.scene.expressions.grammar import compile_expression, require_length
@@ -42,6 +41,8 @@ WITH_UNIT = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|(?<=\s)1/)[^,]*+)\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
 PLAIN_OR_WITH_UNIT = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 CALL = re.compile(r"([^\W\d]\w*+)\s*+\(")  # a name before a parenthesis
+UNIT_NAME = re.compile(r"[^\W\d]+|°")
+EXPRESSION_MARK = re.compile(r"[-+*/(<>]|\bif\b")
 OVER_UNIT = re.compile(rf"{FIGURE}/\s*+([^\W\d]++)\s*\Z")
 USES_TIME = re.compile(r"(?<![\w.])t(?![\w.])")
 CONDITIONS_HINT = "for example guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
@@ -109,6 +110,8 @@ def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scop
     with_unit = match_quantity(value)
     if with_unit is None:
         return require_dimension(compile_text(value, scope), dimension, scope)
+    if is_expression_after_unit(with_unit):
+        return require_dimension(compile_text(value, scope), dimension, scope)
     size, unit_dimension = evaluate_quantity(with_unit, scope)
     if dimension is not None and unit_dimension != dimension:
         hint = product_hint(with_unit, scope) or f"a number without a unit is taken to be in {si_unit(dimension)}"
@@ -116,6 +119,18 @@ def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scop
             "dimension", f"'{value.strip()}' is {describe(unit_dimension)}, expected {describe(dimension)}", hint
         )
     return replace(Expression.from_number(size), source=value, dimension=unit_dimension)
+
+
+def is_expression_after_unit(number: WrittenQuantity) -> bool:
+    """Return whether the text goes on after the unit, as in '2 kN*sin(3*t)' and '40 mm + 3 mm'."""
+    unit = UNIT_NAME.match(number.unit)
+    if unit is None or canonical_symbol(unit[0]) not in UNITS or correct_unit(number.unit) is not None:
+        return False
+    try:
+        parse_unit(number.unit)
+    except Finding:
+        return EXPRESSION_MARK.search(number.unit) is not None
+    return False
 
 
 def compile_text(text: str, scope: Scope) -> Expression:
@@ -197,7 +212,7 @@ def evaluate_quantity(number: WrittenQuantity, scope: Scope) -> tuple[float, Dim
         require_known_functions(number, scope)
         usual_spelling = correct_unit(number.unit)
         hint = f"write {number.figure.strip()} {usual_spelling}" if usual_spelling else product_hint(number, scope)
-        hint = hint or expression_hint(number) or finding.hint
+        hint = hint or finding.hint
         raise Finding(finding.code, finding.message, hint) from None
     return require_finite(number.value * size), dimension
 
@@ -225,17 +240,9 @@ def product_hint(number: WrittenQuantity, scope: Scope) -> str | None:
     if name == "t" and re.fullmatch(r"t\s*/\s*m(\^|\*\*)?[3³]", unit):
         unit_text = f"tonne{unit[1:]}"
         return f"t is the time; for 1000 kg write tonne: {figure} {correct_unit(unit_text) or unit_text}"
-    if re.search(r"[+-]\s*+(?:\d++\s*+)?[^\W\d]", unit):
-        return "units are not allowed inside expressions: name the quantity under parameters, or write it in SI"
     if name in scope.parameters or name in RESERVED:
         return f"for a product write {figure}*{unit}"
     return None
-
-
-def expression_hint(number: WrittenQuantity) -> str | None:
-    """Return a hint for '40 mm * 2': text after the unit makes it an expression, and expressions contain no units."""
-    parts = re.match(r"([^\W\d]+)(\s*[-+*/].*)", number.unit)
-    return si_expression_hint(number.figure.replace(" ", ""), parts[1], parts[2]) if parts is not None else None
 
 
 def require_finite(value: float) -> float:

@@ -123,21 +123,25 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
             message = f"speed must be greater than 0, but is {speed.constant:g}"
             yield Violation((*path, "speed"), message, FULL_FRICTION_HINT)
     for name, section in draft.document.sections.items():
-        path = ("sections", name)
-        yield from require_positive(path, section, "strength")
-        if section.piece is not None:
-            yield from require_positive((*path, "piece"), section.piece, "mass")
-        for kind in ("circle", "tube", "rectangle"):
-            cross_section = getattr(section.properties, kind, None)
-            if cross_section is not None:
-                yield from require_positive(
-                    (*path, "properties", kind), cross_section, "radius", "inner_radius", "width", "height"
-                )
-        if section.properties is not None:
-            yield from require_positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
+        yield from iter_section_sizes(("sections", name), section)
     for name, wheel in draft.document.rolling.items():
         yield from require_positive(("rolling", name), wheel, "radius")
     yield from require_positive(("analysis",), draft.document.analysis, "duration", "step")
+
+
+def iter_section_sizes(path: Path_, section: f.SectionEntry) -> Iterator[Violation]:
+    """Yield the sizes of a section that are not more than 0."""
+    yield from require_positive(path, section, "strength")
+    if section.piece is not None:
+        yield from require_positive((*path, "piece"), section.piece, "mass")
+    for kind in ("circle", "tube", "rectangle"):
+        cross_section = getattr(section.properties, kind, None)
+        if cross_section is not None:
+            yield from require_positive(
+                (*path, "properties", kind), cross_section, "radius", "inner_radius", "width", "height"
+            )
+    if section.properties is not None:
+        yield from require_positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
 
 
 def require_positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
