@@ -9,7 +9,7 @@ from tests.contributing.addition import Addition, after, heun
 MASSES = Addition(
     "A figure",
     {
-        "heuncli/app/commands/plot/target.py": (
+        "heuncli/app/commands/plot/command.py": (
             after('    "sweep": FigureKind("sweep", "sweeps", ("units",)),\n',
                   '    "masses": FigureKind("masses", "masses of bodies", SCENE_OPTIONS),\n'),
         ),
@@ -20,8 +20,7 @@ MASSES = Addition(
 from __future__ import annotations
 
 from heuncli.app.commands.plot.request import PlotRequest
-from heuncli.app.commands.plot.sources import load_specs, require_no_paths
-from heuncli.app.commands.plot.target import PlotTarget
+from heuncli.app.commands.plot.sources import PlotTarget, load_specs, require_no_paths
 from heuncli.output.drawing.figure import Figure
 from heuncli.output.figures.masses import make_masses_figure
 
