@@ -145,7 +145,7 @@ def test_the_place_of_a_stress_is_not_sought_in_rounding(monkeypatch: pytest.Mon
     monkeypatch.setattr(cuts, "cut_at", counted)
     found = solve(load("box.yaml", LOADED_BOX), Options())
     run = next(iter(collect_cut_series(found.results, make_labels(found.spec))))
-    certain = make_page(found.results, make_labels(found.spec), found.magnitudes).certain
+    certain = make_page(found.results, make_labels(found.spec), found.magnitudes).stated_errors
     told = snapshot_tables.search_stresses(run, certain, found)
     assert told.places[-1][1] == CutPosition(0.0, "beyond", 0)  # of the utilisation
     assert sum(asked) < 2000

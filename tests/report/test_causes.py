@@ -143,7 +143,7 @@ def test_shares_have_errors_of_their_own() -> None:
     for kind in ("reactions", "foundation", "sections"):
         for unit in ("N", "N·m"):
             assert (f"{kind} by cause", unit) in made.magnitudes.errors
-            assert np.isfinite(page.certain.error_of(f"{kind} by cause", unit))
+            assert np.isfinite(page.stated_errors.error_of(f"{kind} by cause", unit))
 
 
 def test_couplings_are_told_by_cause(capsys: pytest.CaptureFixture[str]) -> None:

@@ -225,7 +225,7 @@ def _find_errors(data: ReportData) -> dict[tuple[str, str], _KindError]:
     errors: dict[tuple[str, str], _KindError] = {}
     for run in data.runs:
         motion = "motion", "m"
-        own = {motion: _KindError(run.page.certain.error_of(*motion), 0.0, run.case_label)}
+        own = {motion: _KindError(run.page.stated_errors.error_of(*motion), 0.0, run.case_label)}
         for path, number in run.snapshot.numbers.items():
             block, *name, quantity = [word for word in path.split(".") if word not in XYZ]
             key = error_kind_of_path(block, ".".join(name), quantity), number.unit
@@ -350,7 +350,7 @@ def make_open_parts(data: ReportData) -> list[Part]:
 
 
 def _iter_sums(data: ReportData, run: ReportedRun) -> Iterator[Part]:
-    table = make_sums_table(run.page.results, run.page.certain, run.page.last_instant)
+    table = make_sums_table(run.page.results, run.page.stated_errors, run.page.last_instant)
     if table is not None:
         yield Listing(f"Determinate sums of indeterminate reactions{_format_case(run)}", table.notes)
 

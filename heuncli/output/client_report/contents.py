@@ -289,6 +289,8 @@ def _make_run_parts(run: ReportedRun) -> list[Part]:
     tables = [make_events_table(results)] if has_events else []
     if results.impulses:
         tables += make_impulse_tables(
-            ImpactReport(page.results, page.labels, page.certain, page.magnitudes, page.impact_extremes, page.details)
+            ImpactReport(
+                page.results, page.labels, page.stated_errors, page.magnitudes, page.impact_extremes, page.details
+            )
         )
     return list(tables)

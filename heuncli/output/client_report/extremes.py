@@ -158,7 +158,7 @@ def choose_family(ends: Sequence[CaseExtremes], data: ReportData, all_ends: Sequ
         max((abs(value) for extremes in group for value in extremes.values), default=0.0)
         for group in (ends, all_ends or ends)
     )
-    rounding = max((run.page.certain.rounding_of(unit) for run in data.runs), default=0.0)
+    rounding = max((run.page.stated_errors.rounding_of(unit) for run in data.runs), default=0.0)
     error = max((extremes.error for extremes in ends), default=0.0)
     noise = math.inf if scale <= rounding else NOISE * scale
     return Family(choose_style_in_unit(data, unit, scale, unit_scale, error), noise)

@@ -158,7 +158,7 @@ def _format_vector(
     """Format the components of a vector, and its magnitude: four digits of this vector."""
     length = _find_length(vector)
     values = [*vector.tolist(), *([length] if has_length else [])]
-    rounding = max(run.page.certain.rounding_of(unit) for run in data.runs)
+    rounding = max(run.page.stated_errors.rounding_of(unit) for run in data.runs)
     style = choose_style_in_unit(data, unit, length, unit_scale, error)
     texts = []
     for value in values:

@@ -53,7 +53,9 @@ def read_run_snapshot(data: Mapping[str, Any], indices: Sequence[int] | None = N
         scope = SnapshotScope(frozenset(REPORT_OF[block] for block in REPORT_OF if getattr(results, block)), labels)
         if indices is not None:
             results = _to_results(_select_instants(data, indices))
-            page = make_page(results, labels, _find_magnitudes(results, labels))._replace(certain=page.certain)
+            page = make_page(results, labels, _find_magnitudes(results, labels))._replace(
+                stated_errors=page.stated_errors
+            )
         run = make_run_snapshot(_make_course(page, results, scope), page, scope)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
         raise Finding("not-a-result", f"incomplete result of heun run: {error!s:.100}", EXAMPLE_HINT) from None
@@ -193,7 +195,7 @@ def _iter_located_blocks(results: Results) -> Iterator[tuple[Block, str]]:
 
 def _make_course(page: Page, results: Results, scope: SnapshotScope) -> SnapshotCourse:
     """Return the columns with the extremes of their samples, and at even instants if there are samples."""
-    view = ResultView(results, page.labels, page.certain)
+    view = ResultView(results, page.labels, page.stated_errors)
     columns = collect_all_columns(results, scope)
     page_columns = collect_all_columns(page.results, scope)
     even_samples = _choose_even_samples(results.time)

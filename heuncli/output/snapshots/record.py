@@ -66,7 +66,7 @@ class ResultView(NamedTuple):
 
     results: Results
     labels: Labels
-    certain: StatedErrors
+    stated_errors: StatedErrors
 
     @property
     def unknown(self) -> frozenset[float]:
@@ -151,7 +151,7 @@ class SnapshotCourse(NamedTuple):
         """Make the snapshot of one quantity."""
         column, view = self.columns[path], self.view
         times = view.results.time
-        error = view.certain.find_error(column)
+        error = view.stated_errors.find_error(column)
         ends = [view.to_value(column.values[i], float(times[i])) for i in (0, -1)]
         even = [view.to_value(x, t) for x, t in zip(self.even[path], self.even_at.tolist(), strict=True)]
         extremes = self.bounds[path].to_fields(view)
@@ -257,7 +257,7 @@ def _make_sum_value(block: DeterminateSum, view: ResultView, times: Array) -> Nu
     """Make the snapshot of a determinate sum's value in the samples."""
     unit = "N·m" if not any(".force." in term for term in block["terms"]) else "N"
     values = np.broadcast_to(np.asarray(block["value"], dtype=np.float64), times.shape)
-    error = view.certain.error_of("reactions", unit)
+    error = view.stated_errors.error_of("reactions", unit)
     ends = [view.to_value(values[i], float(times[i])) for i in (0, -1)]
     if not np.isfinite(values).any() or np.ptp(values) == 0.0:
         return NumberSnapshot(unit=unit, error=error, constant=ends[0])
@@ -280,7 +280,7 @@ def _make_event(event: Block) -> EventSnapshot:
 
 def _make_impact(impulse: Block, view: ResultView, scope: SnapshotScope) -> ImpactSnapshot:
     """Make the snapshot of one impact, whose numbers are constants."""
-    impact_view = ResultView(make_impact_results(view.results, impulse), view.labels, view.certain)
+    impact_view = ResultView(make_impact_results(view.results, impulse), view.labels, view.stated_errors)
     columns = [
         column
         for channel in iter_impulse_channels(impulse, view.labels)
@@ -293,7 +293,7 @@ def _make_impact(impulse: Block, view: ResultView, scope: SnapshotScope) -> Impa
     numbers = {
         column.path: NumberSnapshot(
             unit=column.unit,
-            error=view.certain.find_error(column),
+            error=view.stated_errors.find_error(column),
             constant=impact_view.to_value(column.values[0], time),
         )
         for column in columns
@@ -311,5 +311,5 @@ def estimate_impact_error(impulse: Block, view: ResultView) -> float:
     jumps = [largest_magnitude(np.asarray(body["center_velocity_jump"])) for body in impulse.get("bodies", {}).values()]
     fastest = max(jumps, default=0.0)
     span = float(np.ptp(view.results.time))
-    error = 2.0 * view.certain.error_of("motion", "m") / fastest if fastest > 0.0 else 0.0
+    error = 2.0 * view.stated_errors.error_of("motion", "m") / fastest if fastest > 0.0 else 0.0
     return min(error, span) + WRITTEN * span

@@ -71,7 +71,7 @@ def take_run_snapshot(
     results = study.results
     labels = replace(make_labels(study.spec), units=SI)
     page = make_page(results, labels, study.magnitudes)
-    view, scope = ResultView(results, labels, page.certain), SnapshotScope(reports, labels)
+    view, scope = ResultView(results, labels, page.stated_errors), SnapshotScope(reports, labels)
     even = _choose_even_instants(results, given_instants) if whole_course else np.zeros(0)
     return make_run_snapshot(_make_course(study, page, view, even, scope), page, scope)
 
@@ -225,7 +225,7 @@ def _search_bounds(
     n_channels = len(columns) + sum(len(series.loads) for series in all_series)
     is_searched = study.is_searched(n_channels)
     times = None if is_searched else study.results.time
-    search = ChannelSearch(collect, page.certain.find_error)
+    search = ChannelSearch(collect, page.stated_errors.find_error)
     extremes = study.search_extremes(search, scope.reports - {SHARES}, whole=True, times=times)
     low, high = extremes.low, extremes.high
     bounds = {
@@ -233,10 +233,10 @@ def _search_bounds(
         for i, column in enumerate(columns)
     }
     if is_searched and columns and not study.has_one_instant:
-        _add_spreads(bounds, columns, page.certain, samples, jumps)
+        _add_spreads(bounds, columns, page.stated_errors, samples, jumps)
     for series in all_series:
         found = extremes.find([load.path for load in series.loads])
-        found = found.join(search_stresses(series, page.certain, study)) if series.stresses else found
+        found = found.join(search_stresses(series, page.stated_errors, study)) if series.stresses else found
         bounds |= _make_series_bounds(found)
     return bounds, samples if is_searched and columns else None
 
@@ -244,7 +244,7 @@ def _search_bounds(
 def _add_spreads(
     bounds: dict[str, SnapshotBounds],
     columns: Sequence[Channel],
-    certain: StatedErrors,
+    stated_errors: StatedErrors,
     samples: SampledColumns,
     jumps: UncertainJumps,
 ) -> None:
@@ -252,7 +252,7 @@ def _add_spreads(
     times, values = samples.sorted_samples
     jump_error = float(jumps.errors.max(initial=0.0))
     for i, column in enumerate(columns):
-        column_bounds, margin = bounds[column.path], MARGIN * certain.find_error(column)
+        column_bounds, margin = bounds[column.path], MARGIN * stated_errors.find_error(column)
         spreads: list[float | None] = [None, None]
         for k, (sign, bound) in enumerate(((-1.0, column_bounds.low), (1.0, column_bounds.high))):
             if bound is not None and np.isfinite(bound[0]):

@@ -137,7 +137,7 @@ def make_instants_tables(
     numbers: Mapping[str, NumberWithShares],
     times: Array,
     horizon: float | None,
-    certain: StatedErrors,
+    stated_errors: StatedErrors,
 ) -> list[OutputTable]:
     """Make the table of all numbers of a block that have shares, at every instant. Empty list if there are none.
 
@@ -153,7 +153,7 @@ def make_instants_tables(
             if number is None:
                 continue
             for k, t in enumerate(times.tolist()):
-                doubts = horizon is not None and t >= horizon, t in certain.singular_times
+                doubts = horizon is not None and t >= horizon, t in stated_errors.singular_times
                 value = float(number.row.values[k])
                 lines.append(ShareLine(row.label, clock[k], number.row, _select(number.shares, k), value, *doubts))
                 if number.direct:
@@ -161,7 +161,7 @@ def make_instants_tables(
                     lines.append(ShareLine(f"{row.label} direct", "", number.row, direct, None, *doubts))
         groups.append((group.title, lines))
     return (
-        [make_share_table(make_shares_heading(block.heading), groups, certain)]
+        [make_share_table(make_shares_heading(block.heading), groups, stated_errors)]
         if any(lines for _, lines in groups)
         else []
     )
@@ -172,7 +172,7 @@ def make_extremes_tables(
     numbers: Mapping[str, NumberWithShares],
     instants: Array,
     extremes: Extremes,
-    certain: StatedErrors,
+    stated_errors: StatedErrors,
     span: float,
 ) -> list[OutputTable]:
     """Make the table of the minimum and maximum of every number of a block, with the shares at their instants.
@@ -198,7 +198,7 @@ def make_extremes_tables(
             ]
         groups.append((group.title, lines))
     return (
-        [make_share_table(make_shares_heading(block.heading), groups, certain)]
+        [make_share_table(make_shares_heading(block.heading), groups, stated_errors)]
         if any(lines for _, lines in groups)
         else []
     )
@@ -229,7 +229,7 @@ def make_shares_heading(heading: str) -> str:
     return heading.replace("  ", f" {BY_CAUSE.upper()}  ", 1)
 
 
-def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) -> OutputTable:
+def make_share_table(heading: str, groups: LineGroups, stated_errors: StatedErrors) -> OutputTable:
     """Make the table of grouped rows with a column for each cause. Rows and columns that are zero are left out."""
     all_lines = [line for _, lines in groups for line in lines]
     causes = dict.fromkeys(cause for line in all_lines for cause in line.shares)
@@ -241,13 +241,14 @@ def make_share_table(heading: str, groups: LineGroups, certain: StatedErrors) ->
     number_cells: list[list[Cell]] = []
     for title, lines in groups:
         open_labels = find_indeterminate_labels(lines)
-        cells_of_lines = zip(lines, make_share_cells(lines, heads[:-2], small_causes, certain), strict=True)
+        cells_of_lines = zip(lines, make_share_cells(lines, heads[:-2], small_causes, stated_errors), strict=True)
         nonzero = [(line, cells) for line, cells in cells_of_lines if not all(map(is_zero_cell, cells))]
         shown_here = [(line, cells) for line, cells in nonzero if line.row.label not in open_labels]
         left_out = left_out or len(nonzero) < len(lines)
         rows += [title] if title and (shown_here or open_labels) else []
         rows += [
-            (line.label, certain.units.find(line.row.unit)[0], line.position, *cells) for line, cells in shown_here
+            (line.label, stated_errors.units.find(line.row.unit)[0], line.position, *cells)
+            for line, cells in shown_here
         ]
         rows += [f"{INDENT}{OPEN}: {', '.join(open_labels)}"] if open_labels else []
         special_words |= {OPEN} if open_labels else set()
@@ -310,7 +311,7 @@ def find_family_scales(lines: Iterable[ShareLine]) -> dict[tuple[str, str], floa
 
 
 def make_share_cells(
-    lines: Sequence[ShareLine], columns: Sequence[str], small_causes: Sequence[str], certain: StatedErrors
+    lines: Sequence[ShareLine], columns: Sequence[str], small_causes: Sequence[str], stated_errors: StatedErrors
 ) -> list[list[Cell]]:
     """Make the cells of each row: one for each column, their sum, and the total."""
     numbers: list[list[float | None]] = []
@@ -324,22 +325,27 @@ def make_share_cells(
     for family, scale in find_family_scales(lines).items():
         members = [i for i, line in enumerate(lines) if find_family(line) == family]
         row = lines[members[0]].row
-        size = certain.units.find(row.unit)[1]
+        size = stated_errors.units.find(row.unit)[1]
         kind = f"{row.error_kind} {BY_CAUSE}"
-        number_style, error = certain.choose_style(kind, row.unit, scale), size * certain.error_of(kind, row.unit)
+        number_style, error = (
+            stated_errors.choose_style(kind, row.unit, scale),
+            size * stated_errors.error_of(kind, row.unit),
+        )
         flat = iter(write_numbers([size * x for i in members for x in numbers[i] if x is not None], number_style))
         for i in members:
             cells[i] = [
-                None if x is None else make_cell(NumberCell(size * x, error, None, next(flat)), x, lines[i], certain)
+                None
+                if x is None
+                else make_cell(NumberCell(size * x, error, None, next(flat)), x, lines[i], stated_errors)
                 for x in numbers[i]
             ]
     return cells
 
 
-def make_cell(cell: NumberCell, value: float, line: ShareLine, certain: StatedErrors) -> Cell:
+def make_cell(cell: NumberCell, value: float, line: ShareLine, stated_errors: StatedErrors) -> Cell:
     """Return the cell of a number, or a word where it is beyond the horizon or uncertain; value: SI."""
     if line.is_beyond_horizon:
-        return format_unclaimed(value, line.row.unit, certain, cell.text)
+        return format_unclaimed(value, line.row.unit, stated_errors, cell.text)
     if cell.text == OPEN:
         return UNKNOWN if line.is_uncertain else OPEN
     return cell
@@ -358,7 +364,7 @@ def make_notes(lines: Sequence[ShareLine], heads: set[str], words: set[str]) -> 
 
 
 def make_series_extremes_tables(
-    series: CutSeries, results: Results, extremes: Extremes, certain: StatedErrors
+    series: CutSeries, results: Results, extremes: Extremes, stated_errors: StatedErrors
 ) -> list[OutputTable]:
     """Make the table of the minimum and maximum of each section force along a series of cuts, with their shares.
 
@@ -375,11 +381,11 @@ def make_series_extremes_tables(
             where = ", ".join([f"s = {format_place(extremes.places[i][j], series)} {series.length[0]}", *clock])
             lines.append(make_series_line(results, series.name, load, f"{load.label} {word}", (k, 2 * i + j), where)
                          ._replace(total=float(value[i])))  # fmt: skip
-    return make_series_tables(series, lines, certain)
+    return make_series_tables(series, lines, stated_errors)
 
 
 def make_series_instants_tables(
-    series: CutSeries, results: Results, horizon: float | None, certain: StatedErrors
+    series: CutSeries, results: Results, horizon: float | None, stated_errors: StatedErrors
 ) -> list[OutputTable]:
     """Make the table of the minimum and maximum of each section force among the cuts at every instant."""
     times = results.time.tolist()
@@ -393,7 +399,7 @@ def make_series_instants_tables(
                 where += clock[k] if clock else ""
                 line = make_series_line(results, series.name, load, f"{load.label} {word}", (k, cut), where)
                 lines.append(line._replace(is_beyond_horizon=horizon is not None and t >= horizon))
-    return make_series_tables(series, lines, certain)
+    return make_series_tables(series, lines, stated_errors)
 
 
 def make_series_line(
@@ -411,8 +417,8 @@ def make_series_line(
     return ShareLine(label, where, load, shares, float(section[load.quantity][index]))
 
 
-def make_series_tables(series: CutSeries, lines: Sequence[ShareLine], certain: StatedErrors) -> list[OutputTable]:
+def make_series_tables(series: CutSeries, lines: Sequence[ShareLine], stated_errors: StatedErrors) -> list[OutputTable]:
     """Make the table of a series of cuts. Empty list if no row has shares."""
     if not any(line.shares for line in lines):
         return []
-    return [make_share_table(make_shares_heading(series.heading), [("", lines)], certain)]
+    return [make_share_table(make_shares_heading(series.heading), [("", lines)], stated_errors)]

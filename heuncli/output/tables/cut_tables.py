@@ -40,7 +40,7 @@ BOUNDS = dict.fromkeys(STRESSES, ("max",)) | {"normal_min": ("min",)}  # those o
 
 
 def make_extremes_tables(
-    series: CutSeries, times: Array, extremes: Extremes, certain: StatedErrors, cuts: Extremes | None = None
+    series: CutSeries, times: Array, extremes: Extremes, stated_errors: StatedErrors, cuts: Extremes | None = None
 ) -> list[OutputTable]:
     """Make two tables: extremes of each quantity over the whole length and time, and extremes at each cut.
 
@@ -57,9 +57,9 @@ def make_extremes_tables(
     notes = [f"envelope: minimum and maximum at each cut over the run, {where}{hidden}"]
     shape = len(series.channels), len(shown_cuts)
     bounds = {"min": cuts.low.reshape(shape), "max": cuts.high.reshape(shape)}
-    styles = _choose_styles(series, certain, head)
-    envelope = _make_envelope(series, bounds, shown_cuts, styles, notes, certain)
-    return [make_extremes_table(series, times, head, certain), envelope]
+    styles = _choose_styles(series, stated_errors, head)
+    envelope = _make_envelope(series, bounds, shown_cuts, styles, notes, stated_errors)
+    return [make_extremes_table(series, times, head, stated_errors), envelope]
 
 
 def _make_envelope(
@@ -68,14 +68,14 @@ def _make_envelope(
     shown_cuts: Indices,
     styles: Mapping[str, Style],
     notes: Sequence[str],
-    certain: StatedErrors,
+    stated_errors: StatedErrors,
 ) -> OutputTable:
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
     columns, cells, left_out = list[OutputColumn](), list[Sequence[Cell]](), False
     for i, channel in enumerate(series.channels):
-        unit, size = certain.units.find(channel.unit)
+        unit, size = stated_errors.units.find(channel.unit)
         words: Sequence[str] = BOUNDS.get(channel.quantity, BOTH_BOUNDS)
-        error = size * certain.find_error(channel)
+        error = size * stated_errors.find_error(channel)
         both = [make_number_cells((size * bounds[word][i]).tolist(), styles[channel.unit], error) for word in words]
         texts = [[cell.text for cell in column] for column in both]
         if {text for column in texts for text in column} == {"0"}:
@@ -110,17 +110,19 @@ def _make_cuts_table(
     return OutputTable("", (*heads, *columns), rows, (*notes, *word_notes))
 
 
-def make_extremes_table(series: CutSeries, times: Array, extremes: Extremes, certain: StatedErrors) -> OutputTable:
+def make_extremes_table(
+    series: CutSeries, times: Array, extremes: Extremes, stated_errors: StatedErrors
+) -> OutputTable:
     """Make the table of the lowest and highest value of each quantity over length and time, with place and instant."""
     extremes = select_extremes(series, extremes)
-    styles = _choose_styles(series, certain, extremes)
+    styles = _choose_styles(series, stated_errors, extremes)
     span = float(np.ptp(times))
     rows: list[tuple[Cell, ...]] = []
     channels = series.channels[: len(extremes.low)]
     for i, channel in enumerate(channels):
-        unit, size = certain.units.find(channel.unit)
+        unit, size = stated_errors.units.find(channel.unit)
         ends = [size * float(extremes.low[i]), size * float(extremes.high[i])]
-        low, high = make_number_cells(ends, styles[channel.unit], size * certain.find_error(channel))
+        low, high = make_number_cells(ends, styles[channel.unit], size * stated_errors.find_error(channel))
         if low.text == high.text == "0":
             continue
         label, unit = channel.label, unit if unit != "1" else ""
@@ -154,18 +156,18 @@ def make_extremes_table(series: CutSeries, times: Array, extremes: Extremes, cer
 
 
 def make_instants_tables(
-    series: CutSeries, times: Array, horizon: float | None, certain: StatedErrors, *, every_cut: bool = False
+    series: CutSeries, times: Array, horizon: float | None, stated_errors: StatedErrors, *, every_cut: bool = False
 ) -> list[OutputTable]:
     """Make the table with the diagram at each instant: the numbers of every shown cut.
 
     horizon: the instant [s] from which on nothing is claimed
     every_cut: show all cuts, not only about MAX_CUTS
     """
-    styles = _choose_styles(series, certain)
+    styles = _choose_styles(series, stated_errors)
     shown_cuts = np.arange(len(series.s)) if every_cut else choose_cuts(series)
     hidden_note = [_format_hidden_cuts(series, shown_cuts).lstrip("; ")]
     if len(times) == 1:
-        diagram = _make_diagram(series, 0, shown_cuts, styles, hidden_note, certain)
+        diagram = _make_diagram(series, 0, shown_cuts, styles, hidden_note, stated_errors)
         return [_drop_zero_columns(series, diagram._replace(heading=series.heading))]
     clock = write_times(times.tolist(), float(np.ptp(times)))
     rows: list[Sequence[Cell] | str] = []
@@ -173,7 +175,7 @@ def make_instants_tables(
     notes: tuple[str, ...] = ()
     for i, t in enumerate(times):
         is_beyond = horizon is not None and t >= horizon
-        table = _make_diagram(series, i, shown_cuts, styles, hidden_note, certain, is_beyond=is_beyond)
+        table = _make_diagram(series, i, shown_cuts, styles, hidden_note, stated_errors, is_beyond=is_beyond)
         rows += [f"t = {clock[i]} s", *table.rows]
         notes = (*notes, *table.notes)
     return [
@@ -187,19 +189,21 @@ def _make_diagram(
     shown_cuts: Indices,
     styles: dict[str, Style],
     notes: Sequence[str],
-    certain: StatedErrors,
+    stated_errors: StatedErrors,
     *,
     is_beyond: bool = False,
 ) -> OutputTable:
     """Make the diagram at an instant, by its index, a row for each cut; is_beyond: whether it is beyond the horizon."""
     cells, columns = list[Sequence[Cell]](), list[OutputColumn]()
     for i, channel in enumerate(series.channels):
-        row, (unit, size) = channel.values[instant, shown_cuts], certain.units.find(channel.unit)
+        row, (unit, size) = channel.values[instant, shown_cuts], stated_errors.units.find(channel.unit)
         columns.append(OutputColumn(channel.label, unit=unit, vector="loads" if i < len(series.loads) else ""))
-        numbers = make_number_cells((size * row).tolist(), styles[channel.unit], size * certain.find_error(channel))
+        numbers = make_number_cells(
+            (size * row).tolist(), styles[channel.unit], size * stated_errors.find_error(channel)
+        )
         if is_beyond:
             values = zip(row.tolist(), numbers, strict=True)
-            cells.append([format_unclaimed(value, channel.unit, certain, cell.text) for value, cell in values])
+            cells.append([format_unclaimed(value, channel.unit, stated_errors, cell.text) for value, cell in values])
         else:
             cells.append(numbers)
     return _make_cuts_table(series, shown_cuts, columns, cells, [note for note in notes if note])
@@ -215,14 +219,16 @@ def _drop_zero_columns(series: CutSeries, table: OutputTable) -> OutputTable:
     return select_columns(table, shown_columns)._replace(notes=(*table.notes, ZERO_NOTE))
 
 
-def _choose_styles(series: CutSeries, certain: StatedErrors, extremes: Extremes | None = None) -> dict[str, Style]:
+def _choose_styles(
+    series: CutSeries, stated_errors: StatedErrors, extremes: Extremes | None = None
+) -> dict[str, Style]:
     """Choose the number style of each unit from all numbers of that unit that are shown of the series."""
     bounds = np.zeros((2, 0)) if extremes is None else np.stack([extremes.low, extremes.high])
     scales: dict[str, float] = {}
     for i, channel in enumerate(series.channels):
         largest = max(largest_magnitude(channel.values), largest_magnitude(bounds[:, i : i + 1]))
         scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest)
-    return {unit: certain.choose_style("sections", unit, scale) for unit, scale in scales.items()}
+    return {unit: stated_errors.choose_style("sections", unit, scale) for unit, scale in scales.items()}
 
 
 def _is_constant(values: Array, number_style: Style) -> bool:

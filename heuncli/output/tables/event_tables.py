@@ -111,7 +111,7 @@ class ImpactReport(NamedTuple):
 
     results: Results
     labels: Labels
-    certain: StatedErrors
+    stated_errors: StatedErrors
     magnitudes: Magnitudes
     series_extremes: Sequence[Mapping[str, Extremes]] = ()
     details: bool = True
@@ -154,21 +154,21 @@ def _choose_largest(sizes: Array) -> Indices:
 
 def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices, show_all: bool) -> OutputTable:
     """Make the list with a row for each impact: its time, names, largest impulses, and effect on the kinetic energy."""
-    impulses, certain = report.results.impulses, report.certain
+    impulses, stated_errors = report.results.impulses, report.stated_errors
     times = np.array([float(impulse["time"]) for impulse in impulses])
     energies = {key: np.array([float(impulse.get(key, np.nan)) for impulse in impulses]) for key in ENERGIES}
     si_units = (UNIT, IMPULSE_UNITS["N·m"])
-    (energy_unit, joules), *impulse_units = (certain.units.find(unit) for unit in ("J", *si_units))
+    (energy_unit, joules), *impulse_units = (stated_errors.units.find(unit) for unit in ("J", *si_units))
     energy = make_number_cells(
         (joules * np.concatenate(list(energies.values()))).tolist(),
-        certain.choose_style("energy", "J", max(map(largest_magnitude, energies.values()))),
-        joules * certain.error_of("energy", "J"),
+        stated_errors.choose_style("energy", "J", max(map(largest_magnitude, energies.values()))),
+        joules * stated_errors.error_of("energy", "J"),
     )
     impulse, moment = (
         make_number_cells(
             (size * values).tolist(),
-            certain.choose_style("reactions", unit, largest_magnitude(values)),
-            size * certain.error_of("reactions", unit),
+            stated_errors.choose_style("reactions", unit, largest_magnitude(values)),
+            size * stated_errors.error_of("reactions", unit),
         )
         for values, unit, (_, size) in zip(sizes.T, si_units, impulse_units, strict=True)
     )
@@ -204,7 +204,7 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
     title = f"IMPULSE at t = {float(impulse['time']):.6g} s ({', '.join(impulse['names'])})"
     prefix = f"{title}  "  # of the headings of its tables
     horizon = report.results.horizon
-    certain = add_axis_errors(report.certain, view, report.magnitudes, UNIT)
+    stated_errors = add_axis_errors(report.stated_errors, view, report.magnitudes, UNIT)
     channels = list(iter_impulse_channels(impulse, labels))
     by_cause = any(channel.cause for channel in channels)
     blocks, tables, share_tables = list[TableBlock](), list[OutputTable](), list[OutputTable]()
@@ -214,44 +214,44 @@ def make_impact_tables(report: ImpactReport, number: int, show_all: bool = False
             continue
         named = block._replace(heading=prefix + block.heading)
         blocks += [block] * plan.has_extremes
-        tables += make_instants_tables(named, view.time, horizon, certain) if not plan.has_extremes else []
-        share_tables += make_share_tables(named, view, channels, certain, horizon) if by_cause else []
-    tables[:0] = [make_impact_table(title, blocks, view.time, horizon, certain)] if blocks else []
+        tables += make_instants_tables(named, view.time, horizon, stated_errors) if not plan.has_extremes else []
+        share_tables += make_share_tables(named, view, channels, stated_errors, horizon) if by_cause else []
+    tables[:0] = [make_impact_table(title, blocks, view.time, horizon, stated_errors)] if blocks else []
     series_extremes = report.series_extremes[number] if report.series_extremes else {}
     for series in collect_cut_series(view, labels, IMPULSE_UNITS):
-        series_tables = cut_tables.make_instants_tables(series, view.time, horizon, certain, every_cut=show_all)
+        series_tables = cut_tables.make_instants_tables(series, view.time, horizon, stated_errors, every_cut=show_all)
         if series.name in series_extremes:
-            table = cut_tables.make_extremes_table(series, view.time, series_extremes[series.name], certain)
+            table = cut_tables.make_extremes_table(series, view.time, series_extremes[series.name], stated_errors)
             series_tables = [table, series_tables[0]._replace(heading=""), *series_tables[1:]]
         tables += [series_tables[0]._replace(heading=prefix + series_tables[0].heading), *series_tables[1:]]
         share_tables += [
             own._replace(heading=prefix + own.heading)
-            for own in make_series_share_tables(series, view, certain, horizon)
+            for own in make_series_share_tables(series, view, stated_errors, horizon)
         ]
     tables += share_tables
-    sums = make_sums_table(view, certain, unit=UNIT)
+    sums = make_sums_table(view, stated_errors, unit=UNIT)
     return [*tables, sums._replace(heading=prefix + sums.heading)] if sums else tables
 
 
 def make_share_tables(
-    block: TableBlock, view: Results, channels: Sequence[Channel], certain: StatedErrors, horizon: float | None
+    block: TableBlock, view: Results, channels: Sequence[Channel], stated_errors: StatedErrors, horizon: float | None
 ) -> list[OutputTable]:
     """Make the tables of what each cause contributes to the impulses of a block."""
     from heuncli.output.tables import cause_tables  # few runs need it
 
     numbers = cause_tables.collect_shares(channels, view)
-    return cause_tables.make_instants_tables(block, numbers, view.time, horizon, certain)
+    return cause_tables.make_instants_tables(block, numbers, view.time, horizon, stated_errors)
 
 
 def make_series_share_tables(
-    series: CutSeries, view: Results, certain: StatedErrors, horizon: float | None
+    series: CutSeries, view: Results, stated_errors: StatedErrors, horizon: float | None
 ) -> list[OutputTable]:
     """Make the tables of what each cause contributes to the impulses along a series of cuts, if that is requested."""
     if SHARES not in view.sections[series.name]:
         return []
     from heuncli.output.tables import cause_tables
 
-    return cause_tables.make_series_instants_tables(series, view, horizon, certain)
+    return cause_tables.make_series_instants_tables(series, view, horizon, stated_errors)
 
 
 def make_impact_results(results: Results, impulse: Block) -> Results:
@@ -276,7 +276,7 @@ def add_time_axis(keys: tuple[str, ...], value: Any) -> Any:
 
 
 def make_impact_table(
-    heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, certain: StatedErrors
+    heading: str, blocks: Sequence[TableBlock], times: Array, horizon: float | None, stated_errors: StatedErrors
 ) -> OutputTable:
     """Combine the blocks of one impact in a single table, without rows and columns that are zero.
 
@@ -285,7 +285,7 @@ def make_impact_table(
     rows: list[tuple[Cell, ...] | str] = []
     notes, is_complete = list[str](), True
     for block in blocks:
-        row_cells = [line for group in block.groups for line in _iter_rows(block, group, times, horizon, certain)]
+        row_cells = [line for group in block.groups for line in _iter_rows(block, group, times, horizon, stated_errors)]
         nonzero = [line for line in row_cells if not all(map(is_zero_cell, line[N_LEADING:-1]))]
         is_complete &= len(nonzero) == len(row_cells)
         if nonzero:
@@ -302,12 +302,12 @@ def make_impact_table(
 
 
 def _iter_rows(
-    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: StatedErrors
+    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, stated_errors: StatedErrors
 ) -> Iterator[tuple[Cell, ...]]:
     """Yield for each vector, and each other number: name, label, unit, components, value, and the group's note."""
     cell_of_label = {
         label: cells_of_label[0]
-        for label, cells_of_label in make_group_cells(block, group, times, horizon, certain).items()
+        for label, cells_of_label in make_group_cells(block, group, times, horizon, stated_errors).items()
     }
     texts = {label: format_cell(cell) for label, cell in cell_of_label.items()}
     magnitudes = {row.family: texts[row.label] for row in group.rows if row.is_magnitude and row.vector}
@@ -318,7 +318,7 @@ def _iter_rows(
             before = [None] * (len(NUMBER_HEADS) - len(cells))
             # the heading holds the key: "energy after" becomes "after"
             label = rows[0].vector or rows[0].label.removeprefix(f"{block.key} ")
-            yield (group.caption, label, certain.units.find(rows[0].unit)[0], *before, *cells, group.note)
+            yield (group.caption, label, stated_errors.units.find(rows[0].unit)[0], *before, *cells, group.note)
 
 
 def _repeats_magnitude(row: Channel, texts: Mapping[str, str], magnitudes: Mapping[str, str]) -> bool:

@@ -85,7 +85,7 @@ def drop_components(block: TableBlock) -> TableBlock:
 
 
 def make_extremes_tables(
-    block: TableBlock, times: Array, extremes: Extremes, certain: StatedErrors, last_values: Mapping[str, float],
+    block: TableBlock, times: Array, extremes: Extremes, stated_errors: StatedErrors, last_values: Mapping[str, float],
     doubtful: DoubtfulInstants = NO_DOUBT, *, full: bool = True,
 ) -> list[OutputTable]:  # fmt: skip
     """Make the tables of first, last, lowest and highest values with their instants; one row a group if there are many.
@@ -101,17 +101,17 @@ def make_extremes_tables(
         for group, ends in zip(block.groups, pairwise(counts.tolist()), strict=True)
     ]
     if len(parts) <= MAX_FULL_GROUPS:
-        return [_make_full_table(block, parts, times, certain, doubtful, full)]
+        return [_make_full_table(block, parts, times, stated_errors, doubtful, full)]
     scene_parts = [part for part in parts if part.group.is_whole_scene]
-    tables = [_make_full_table(block, scene_parts, times, certain, doubtful, full)] if scene_parts else []
+    tables = [_make_full_table(block, scene_parts, times, stated_errors, doubtful, full)] if scene_parts else []
     other_parts = [part for part in parts if not part.group.is_whole_scene]
     heading = "" if scene_parts else block.heading
-    return [*tables, _make_short_table(block, other_parts, times, certain, heading, doubtful)]
+    return [*tables, _make_short_table(block, other_parts, times, stated_errors, heading, doubtful)]
 
 
 def _make_full_table(
-    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, doubtful: DoubtfulInstants,
-    full: bool,
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, stated_errors: StatedErrors,
+    doubtful: DoubtfulInstants, full: bool,
 ) -> OutputTable:  # fmt: skip
     """Make the table with a row for each number, under a title for each group."""
     rows: list[tuple[Cell, ...] | str] = []
@@ -119,7 +119,7 @@ def _make_full_table(
     open_groups: dict[str, list[str]] = {}  # names of groups by their open components
     span = float(np.ptp(times))
     for part in parts:
-        lines, open_labels, notes_of_group = _make_group_rows(part, span, certain, block.kind, doubtful)
+        lines, open_labels, notes_of_group = _make_group_rows(part, span, stated_errors, block.kind, doubtful)
         notes |= notes_of_group
         if open_labels and part.group.name and not full:
             open_groups.setdefault(", ".join(open_labels), []).append(part.group.name)
@@ -151,7 +151,7 @@ def _merge_constants(table: OutputTable) -> OutputTable:
 
 
 def _make_group_rows(
-    part: GroupExtremes, span: float, certain: StatedErrors, kind: str, doubtful: DoubtfulInstants
+    part: GroupExtremes, span: float, stated_errors: StatedErrors, kind: str, doubtful: DoubtfulInstants
 ) -> tuple[list[tuple[Cell, ...] | str], list[str], set[str]]:
     """Make the rows of a group, the labels of its numbers that are open throughout, and the notes they need.
 
@@ -160,7 +160,7 @@ def _make_group_rows(
     group, extremes = part.group, part.extremes
     instants = np.stack([extremes.low_at, extremes.high_at])
     notes: set[str] = set()
-    cells = _make_extreme_cells(part, certain)
+    cells = _make_extreme_cells(part, stated_errors)
     texts = [[format_cell(cell) for cell in cells_of_row] for cells_of_row in cells]
     words = [set(texts_of_row) for texts_of_row in texts]  # {"0"} of a number that is zero throughout
     lines: list[tuple[Cell, ...] | str] = []
@@ -180,7 +180,7 @@ def _make_group_rows(
         notes |= {UNKNOWN_NOTE} if UNKNOWN in words[i] else set()
         low, high = texts[i][2:]
         low_at, high_at = ["", ""] if low == high else write_times(instants[:, i].tolist(), span)
-        unit = certain.units.find(row.unit)[0] if row.unit != "1" else ""
+        unit = stated_errors.units.find(row.unit)[0] if row.unit != "1" else ""
         ends = cells[i][2:]
         if low != high:  # else it is constant
             ends_with_instants = zip((low, high), instants[:, i].tolist(), strict=True)
@@ -193,21 +193,21 @@ def _make_group_rows(
     return lines, open_labels, notes
 
 
-def _make_extreme_cells(part: GroupExtremes, certain: StatedErrors) -> list[list[Cell]]:
+def _make_extreme_cells(part: GroupExtremes, stated_errors: StatedErrors) -> list[list[Cell]]:
     """Make the cells of the first, last, lowest and highest value of each row."""
     rows = part.group.rows
     first, last = (np.array([row.values[i] for row in rows]) for i in (0, -1))
     numbers = np.stack([first, last, part.extremes.low, part.extremes.high])
-    cells: list[list[Cell]] = [[*cells_of_row] for cells_of_row in make_cells(part.group, numbers, certain)]
+    cells: list[list[Cell]] = [[*cells_of_row] for cells_of_row in make_cells(part.group, numbers, stated_errors)]
     for row, cells_of_row in zip(rows, cells, strict=True):
         if row.path in part.last_values:
             text = format_cell(cells_of_row[1])
-            cells_of_row[1] = format_unclaimed(part.last_values[row.path], row.unit, certain, text)
+            cells_of_row[1] = format_unclaimed(part.last_values[row.path], row.unit, stated_errors, text)
     return cells
 
 
 def _make_short_table(
-    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: StatedErrors, heading: str,
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, stated_errors: StatedErrors, heading: str,
     doubtful: DoubtfulInstants,
 ) -> OutputTable:  # fmt: skip
     """Make the table with a row for each group: of each number, not of components, the value of largest magnitude."""
@@ -217,8 +217,8 @@ def _make_short_table(
     for group, extremes, _ in parts:
         lower = np.abs(extremes.low) > np.abs(extremes.high)
         farthest = np.where(lower, extremes.low, extremes.high)
-        styles = choose_styles(group.rows, farthest[None, :], certain)
-        display_units = [certain.units.find(row.unit) for row in group.rows]
+        styles = choose_styles(group.rows, farthest[None, :], stated_errors)
+        display_units = [stated_errors.units.find(row.unit) for row in group.rows]
         texts = [
             number_style.write(size * value)
             for number_style, value, (_, size) in zip(styles, farthest, display_units, strict=True)

@@ -85,7 +85,7 @@ class HardpointRun(NamedTuple):
     """The hardpoints of a run, and its length [s]; is_searched: whether it was searched between the output times."""
 
     rows: Sequence[Hardpoint]
-    certain: StatedErrors
+    stated_errors: StatedErrors
     span: float
     is_searched: bool = True
 
@@ -109,8 +109,8 @@ def make_hardpoints(study: Study, labels: Labels, axes: str, case: str = "") -> 
 
     axes: `world`, `from` or `to` (those of the bodies that a row connects), or the name of a body
     """
-    certain = find_stated_errors(study.results, labels, study.magnitudes)
-    instants, is_searched = _find_instants(study, labels, certain)
+    stated_errors = find_stated_errors(study.results, labels, study.magnitudes)
+    instants, is_searched = _find_instants(study, labels, stated_errors)
     first = float(study.results.time[0])
     times = np.unique([first, *instants.values()])
     if study.has_one_instant:
@@ -123,10 +123,10 @@ def make_hardpoints(study: Study, labels: Labels, axes: str, case: str = "") -> 
         time = instants.get(acting.path, first)
         k = 0 if study.has_one_instant else int(np.searchsorted(times, time))
         rows.append(_make_row(acting, recovery, k, axes)._replace(time=time, case=case))
-    return HardpointRun(rows, certain, float(np.ptp(study.results.time)), is_searched)
+    return HardpointRun(rows, stated_errors, float(np.ptp(study.results.time)), is_searched)
 
 
-def _find_instants(study: Study, labels: Labels, certain: StatedErrors) -> tuple[dict[str, float], bool]:
+def _find_instants(study: Study, labels: Labels, stated_errors: StatedErrors) -> tuple[dict[str, float], bool]:
     """Find the instant of the greatest force, else moment, of each thing, by `block.name`."""
 
     def collect(results: Results) -> list[Channel]:
@@ -141,13 +141,13 @@ def _find_instants(study: Study, labels: Labels, certain: StatedErrors) -> tuple
     channels = collect(study.results)
     if study.has_one_instant or not channels:
         return {}, True
-    found = study.search_extremes(ChannelSearch(collect, certain.find_error), REPORTS, whole=True)
+    found = study.search_extremes(ChannelSearch(collect, stated_errors.find_error), REPORTS, whole=True)
     order = [quantity for quantities in QUANTITIES.values() for quantity in quantities]
     instants: dict[str, float] = {}
     for k in sorted(range(len(channels)), key=lambda k: order.index(channels[k].quantity)):
         channel, ends = channels[k], (float(found.low[k]), float(found.high[k]))
         size = max(map(abs, ends))
-        if size > certain.rounding_of(channel.unit):  # never if it is indeterminate: nan
+        if size > stated_errors.rounding_of(channel.unit):  # never if it is indeterminate: nan
             lower = abs(ends[0]) > abs(ends[1])
             instants.setdefault(f"{channel.kind}.{channel.name}", float((found.low_at if lower else found.high_at)[k]))
     return instants, found.is_searched
@@ -294,7 +294,7 @@ def _choose_style(
 ) -> Style:
     """Choose the decimals of all vectors of one unit."""
     kind = "motion" if name == "position" else "reactions"
-    styles = [run.certain.choose_style(kind, unit, largest_magnitude(values) / size) for run in runs]
+    styles = [run.stated_errors.choose_style(kind, unit, largest_magnitude(values) / size) for run in runs]
     return min(styles, key=lambda style: style.decimals)
 
 

@@ -92,7 +92,7 @@ def format_indeterminate(groups: Iterable[IndeterminateGroup], labels: Labels, r
 
 
 def make_sums_table(
-    results: Results, certain: StatedErrors, last_instant: Results | None = None, unit: str = "N"
+    results: Results, stated_errors: StatedErrors, last_instant: Results | None = None, unit: str = "N"
 ) -> OutputTable | None:
     """Make the table of sums that are determinate although their terms are not; None if there are none.
 
@@ -102,7 +102,9 @@ def make_sums_table(
     if not results.certain_sums:
         return None
     ends = [None] * len(results.certain_sums) if last_instant is None else last_instant.certain_sums
-    all_lines = [_format_sum(block, certain, end, unit) for block, end in zip(results.certain_sums, ends, strict=True)]
+    all_lines = [
+        _format_sum(block, stated_errors, end, unit) for block, end in zip(results.certain_sums, ends, strict=True)
+    ]
     lines = [line for line in all_lines if line is not None]
     n_hidden = len(results.certain_sums) - len(lines)
     hidden_note = f"{n_hidden} more in --format json (moments, or more than {MAX_TERMS} terms)" if n_hidden else ""
@@ -116,7 +118,7 @@ def make_sums_table(
 
 
 def _format_sum(
-    block: DeterminateSum, certain: StatedErrors, last_instant: DeterminateSum | None, si_unit: str
+    block: DeterminateSum, stated_errors: StatedErrors, last_instant: DeterminateSum | None, si_unit: str
 ) -> str | None:
     """Format one sum with its value, or its first, last, smallest and largest value; None if it is too long or has
     moments.
@@ -124,12 +126,12 @@ def _format_sum(
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
     if len(terms) > MAX_TERMS or not all(_is_force(path) for path in terms):
         return None
-    unit, size = certain.units.find(si_unit)
+    unit, size = stated_errors.units.find(si_unit)
     values = np.asarray(block["value"], dtype=np.float64)
     numbers = [size * value for value in (values[0], values[-1], np.nanmin(values), np.nanmax(values))]
-    texts = write_numbers(numbers, certain.choose_style("reactions", si_unit, largest_magnitude(values)))
+    texts = write_numbers(numbers, stated_errors.choose_style("reactions", si_unit, largest_magnitude(values)))
     if last_instant is not None:
-        texts[1] = format_unclaimed(last_instant["value"][-1], si_unit, certain, texts[1])
+        texts[1] = format_unclaimed(last_instant["value"][-1], si_unit, stated_errors, texts[1])
     if texts == ["0"] * 4 and _states_equality(terms):
         return " = ".join(map(format_path, terms)) + "; magnitude indeterminate"
     sum_text = _format_terms(terms)

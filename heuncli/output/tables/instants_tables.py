@@ -23,7 +23,7 @@ Cells = dict[str, dict[str, list[Cell]]]  # group -> label -> a cell for each in
 
 
 def make_instants_tables(
-    block: TableBlock, times: Array, horizon: float | None, certain: StatedErrors
+    block: TableBlock, times: Array, horizon: float | None, stated_errors: StatedErrors
 ) -> list[OutputTable]:
     """Make the tables of a block with a row for each instant, group by group; for one instant a row for each group."""
     word, note = block.missing
@@ -33,8 +33,8 @@ def make_instants_tables(
     notes = list(block.notes)
     layout = _layout_single_instant if len(times) == 1 else _layout_instants
     for groups in _split_by_units(block.groups):
-        cells = {group.name: make_group_cells(block, group, times, horizon, certain) for group in groups}
-        units = {row.label: certain.units.find(row.unit)[0] for group in groups for row in group.rows}
+        cells = {group.name: make_group_cells(block, group, times, horizon, stated_errors) for group in groups}
+        units = {row.label: stated_errors.units.find(row.unit)[0] for group in groups for row in group.rows}
         labels = _find_nonzero_labels(groups, cells) if word == OPEN else _order_labels(groups)
         if len(labels) < len(units):
             notes.append(ZERO_NOTE if labels else f"all values 0: {', '.join(group.name for group in groups)}")
@@ -92,19 +92,19 @@ def _order_labels(groups: Sequence[RowGroup]) -> list[str]:
 
 
 def make_group_cells(
-    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, certain: StatedErrors
+    block: TableBlock, group: RowGroup, times: Array, horizon: float | None, stated_errors: StatedErrors
 ) -> dict[str, list[Cell]]:
     """Make the cells of a group by label, one for each instant; a word where a number is not known."""
     numbers = np.stack([row.values for row in group.rows], axis=1)
     within_horizon = [horizon is None or t < horizon for t in times.tolist()]
-    words = [{OPEN: UNKNOWN if t in certain.singular_times else block.missing[0]} for t in times.tolist()]
+    words = [{OPEN: UNKNOWN if t in stated_errors.singular_times else block.missing[0]} for t in times.tolist()]
     cells: dict[str, list[Cell]] = {}
-    for row, numbers_of_row in zip(group.rows, make_cells(group, numbers, certain), strict=True):
+    for row, numbers_of_row in zip(group.rows, make_cells(group, numbers, stated_errors), strict=True):
         if all(within_horizon) and not np.isnan(row.values).any():
             cells[row.label] = [*numbers_of_row]
             continue
         cells_of_row: list[Cell] = [
-            cell if is_known else format_unclaimed(value, row.unit, certain, cell.text)
+            cell if is_known else format_unclaimed(value, row.unit, stated_errors, cell.text)
             for value, cell, is_known in zip(row.values.tolist(), numbers_of_row, within_horizon, strict=True)
         ]
         cells[row.label] = [word.get(format_cell(cell), cell) for word, cell in zip(words, cells_of_row, strict=True)]

@@ -75,7 +75,7 @@ class Page(NamedTuple):
 
     results: Results
     labels: Labels
-    certain: StatedErrors
+    stated_errors: StatedErrors
     magnitudes: Magnitudes
     last_instant: Results | None = None
     impact_extremes: Sequence[Mapping[str, Extremes]] = ()
@@ -94,7 +94,7 @@ class Page(NamedTuple):
         blocks = self.make_blocks(self.results, only_searched=True)
         numbers = [row for block in blocks for group in block.groups for row in group.rows]
         selection = ChannelSelection.from_numbers(self.labels, numbers, has_cut_series=self.has_cut_series)
-        return ChannelSearch(selection.collect, self.certain.find_error)
+        return ChannelSearch(selection.collect, self.stated_errors.find_error)
 
     def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[OutputTable]:
         """Make the tables of extremes.
@@ -106,10 +106,12 @@ class Page(NamedTuple):
         times, last_values = self.results.time, self._find_last_values()
         for block in self.make_blocks(self.results, only_searched=True):
             part = search_result.find(block.paths)
-            tables += make_extremes_tables(block, times, part, self.certain, last_values, self.doubtful, full=self.full)
+            tables += make_extremes_tables(
+                block, times, part, self.stated_errors, last_values, self.doubtful, full=self.full
+            )
         for series in collect_cut_series(self.results, self.labels):
             cuts = self.cut_extremes.get(series.name)
-            tables += cut_tables.make_extremes_tables(series, times, search_result, self.certain, cuts)
+            tables += cut_tables.make_extremes_tables(series, times, search_result, self.stated_errors, cuts)
         share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
         return [*tables, *share_tables, *self._make_last_tables()]
 
@@ -123,7 +125,7 @@ class Page(NamedTuple):
         numbers = self._collect_shares(shares.compute_shares(instants)) if len(instants) else {}
         span, tables = float(np.ptp(self.results.time)), list[OutputTable]()
         for block in blocks:
-            tables += cause_tables.make_extremes_tables(block, numbers, instants, found, self.certain, span)
+            tables += cause_tables.make_extremes_tables(block, numbers, instants, found, self.stated_errors, span)
         for series in collect_cut_series(self.results, self.labels):
             tables += self._make_series_share_tables(series, search_result, shares)
         return tables
@@ -142,7 +144,7 @@ class Page(NamedTuple):
         found = search_result.find([load.path for load in series.loads])
         instants = np.unique(np.concatenate([found.low_at, found.high_at]))
         results = shares.compute_shares_along(series.name, instants, [place for both in found.places for place in both])
-        return cause_tables.make_series_extremes_tables(series, results, found, self.certain)
+        return cause_tables.make_series_extremes_tables(series, results, found, self.stated_errors)
 
     def make_tables_at_instants(
         self,
@@ -158,15 +160,15 @@ class Page(NamedTuple):
         """
         horizon = self.results.horizon
         unknown = frozenset(results.accuracy.get("unknown", ()))
-        certain = add_axis_errors(self.certain._replace(singular_times=unknown), results, self.magnitudes)
+        stated_errors = add_axis_errors(self.stated_errors._replace(singular_times=unknown), results, self.magnitudes)
         tables: list[OutputTable] = []
         for block in self.make_blocks(results):
-            tables += make_instants_tables(block, results.time, horizon, certain)
+            tables += make_instants_tables(block, results.time, horizon, stated_errors)
         for series in collect_cut_series(results, self.labels):
             if search_result is not None:
-                tables.append(cut_tables.make_extremes_table(series, results.time, search_result, self.certain))
+                tables.append(cut_tables.make_extremes_table(series, results.time, search_result, self.stated_errors))
             series_tables = cut_tables.make_instants_tables(
-                series, results.time, horizon, self.certain, every_cut=every_cut
+                series, results.time, horizon, self.stated_errors, every_cut=every_cut
             )
             tables += (
                 [series_tables[0]._replace(heading=""), *series_tables[1:]]
@@ -174,11 +176,11 @@ class Page(NamedTuple):
                 else series_tables
             )
         if shares is not None:
-            tables += self._make_instants_share_tables(results, certain, search_result, shares)
+            tables += self._make_instants_share_tables(results, stated_errors, search_result, shares)
         return [*tables, *self._make_last_tables(every_cut)]
 
     def _make_instants_share_tables(
-        self, results: Results, certain: StatedErrors, search_result: Extremes | None, shares: ShareSource
+        self, results: Results, stated_errors: StatedErrors, search_result: Extremes | None, shares: ShareSource
     ) -> list[OutputTable]:
         """Make the tables of what each cause contributes at the given instants."""
         from heuncli.output.tables import cause_tables  # few runs ask for them
@@ -186,12 +188,12 @@ class Page(NamedTuple):
         horizon = self.results.horizon
         numbers, tables = self._collect_shares(results), list[OutputTable]()
         for block in self.make_blocks(results):
-            tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, certain)
+            tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, stated_errors)
         for series in collect_cut_series(results, self.labels):
             if search_result is not None:
                 tables += self._make_series_share_tables(series, search_result, shares)
             else:
-                tables += cause_tables.make_series_instants_tables(series, results, horizon, certain)
+                tables += cause_tables.make_series_instants_tables(series, results, horizon, stated_errors)
         return tables
 
     def _find_last_values(self) -> dict[str, float]:
@@ -211,7 +213,7 @@ class Page(NamedTuple):
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
     def _make_last_tables(self, show_all: bool = False) -> list[OutputTable]:
-        sums = make_sums_table(self.results, self.certain, self.last_instant)
+        sums = make_sums_table(self.results, self.stated_errors, self.last_instant)
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
     def _make_event_tables(self, show_all: bool) -> list[OutputTable]:
@@ -227,7 +229,7 @@ class Page(NamedTuple):
         from heuncli.output.tables.event_tables import ImpactReport, make_impulse_tables  # if there are impacts
 
         report = ImpactReport(
-            self.results, self.labels, self.certain, self.magnitudes, self.impact_extremes, self.details
+            self.results, self.labels, self.stated_errors, self.magnitudes, self.impact_extremes, self.details
         )
         return make_impulse_tables(report, show_all=show_all)
 
@@ -240,13 +242,13 @@ def make_page(
     magnitudes: what its numbers are summed from
     """
     horizon = results.horizon
-    certain = find_stated_errors(results, labels, magnitudes)
+    stated_errors = find_stated_errors(results, labels, magnitudes)
     if horizon is None or results.time[-1] < horizon:
-        return Page(results, labels, certain, magnitudes, details=details, full=full)
+        return Page(results, labels, stated_errors, magnitudes, details=details, full=full)
     n_known = max(1, int(np.searchsorted(results.time, horizon)))
     last_instant = select_instants(results, slice(-1, None))
     known = select_instants(results, slice(n_known))
-    return Page(known, labels, certain, magnitudes, last_instant, details=details, full=full)
+    return Page(known, labels, stated_errors, magnitudes, last_instant, details=details, full=full)
 
 
 def select_instants(results: Results, which: slice) -> Results:
@@ -350,24 +352,24 @@ def search_page(page: Page, study: Study, reports: frozenset[str]) -> tuple[Page
     all_series = collect_cut_series(page.results, page.labels)
     for series in all_series:
         if series.stresses:
-            found = found.join(search_stresses(series, page.certain, study))
+            found = found.join(search_stresses(series, page.stated_errors, study))
     if len(page.results.time) > 1:
         page = page._replace(
-            cut_extremes={series.name: search_cuts(series, page.certain, study) for series in all_series}
+            cut_extremes={series.name: search_cuts(series, page.stated_errors, study) for series in all_series}
         )
     return page, found
 
 
-def search_stresses(series: CutSeries, certain: StatedErrors, study: Study) -> Extremes:
+def search_stresses(series: CutSeries, stated_errors: StatedErrors, study: Study) -> Extremes:
     """Search the extremes of the stresses along a series of cuts."""
 
     def collect(results: Results) -> tuple[Channel, ...]:
         return make_section_channels(series.name, results.sections[series.name])[len(RESULTANTS) :]
 
-    return study.search_extremes(ChannelSearch(collect, certain.find_error), SECTIONS)
+    return study.search_extremes(ChannelSearch(collect, stated_errors.find_error), SECTIONS)
 
 
-def search_cuts(series: CutSeries, certain: StatedErrors, study: Study) -> Extremes:
+def search_cuts(series: CutSeries, stated_errors: StatedErrors, study: Study) -> Extremes:
     """Search the extremes of all quantities at the cuts of a series that are shown."""
 
     def collect(results: Results) -> list[Channel]:
@@ -375,4 +377,4 @@ def search_cuts(series: CutSeries, certain: StatedErrors, study: Study) -> Extre
         return split_into_cuts(channels, shown_cuts)
 
     shown_cuts = choose_cuts(series)
-    return study.search_extremes(ChannelSearch(collect, certain.find_error), SECTIONS, whole=True)
+    return study.search_extremes(ChannelSearch(collect, stated_errors.find_error), SECTIONS, whole=True)

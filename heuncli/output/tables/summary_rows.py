@@ -216,9 +216,9 @@ class GreatestValues(NamedTuple):
         page, channel = self.searched.page, self.channels[path]
         low, high = self._find_extremes(path, channel)
         value, time, place = max(low, high, key=lambda end: (abs(end[0]), end[0] > 0.0))
-        if math.isnan(value) or abs(value) <= page.certain.rounding_of(channel.unit):
+        if math.isnan(value) or abs(value) <= page.stated_errors.rounding_of(channel.unit):
             return None
-        error = page.certain.find_error(channel)
+        error = page.stated_errors.find_error(channel)
         return SummaryRow(
             kind.word, name, path, describe_path(path, page.labels), channel.unit, value + 0.0, error, time=time,
             is_constant=high[0] - low[0] <= error and not channel.has_cuts, place=place,

@@ -78,7 +78,7 @@ class TableBlock(NamedTuple):
         return [row.path for group in self.groups for row in group.rows]
 
 
-def choose_styles(rows: Sequence[Channel], numbers: Array, certain: StatedErrors) -> list[Style]:
+def choose_styles(rows: Sequence[Channel], numbers: Array, stated_errors: StatedErrors) -> list[Style]:
     """Choose the number style of each row in its display unit, by the largest of its family.
 
     numbers (n, n_rows): those that are shown besides the values of the rows, SI
@@ -90,10 +90,10 @@ def choose_styles(rows: Sequence[Channel], numbers: Array, certain: StatedErrors
     styles = []
     for row, family in zip(rows, families, strict=True):
         row_style, term_style = (
-            certain.choose_style(row.error_kind, row.unit, scale) for scale in (scales[family], row.largest_term)
+            stated_errors.choose_style(row.error_kind, row.unit, scale) for scale in (scales[family], row.largest_term)
         )
         # a sum that is zero to the digits of its cancelling terms is shown as zero
-        is_zero = row.largest_term and term_style.write(certain.units.find(row.unit)[1] * scales[family]) == "0"
+        is_zero = row.largest_term and term_style.write(stated_errors.units.find(row.unit)[1] * scales[family]) == "0"
         styles.append(term_style if is_zero else row_style)
     return styles
 
@@ -102,16 +102,16 @@ def _find_family(row: Channel) -> tuple[str, ...]:
     return row.family, row.error_kind, row.unit
 
 
-def make_cells(group: RowGroup, numbers: Array, certain: StatedErrors) -> list[list[NumberCell]]:
+def make_cells(group: RowGroup, numbers: Array, stated_errors: StatedErrors) -> list[list[NumberCell]]:
     """Make the cells of each row from its numbers: n_rows lists of n. The rows of a family show the same decimals.
 
     numbers (n, n_rows): SI
     """
     cells: list[list[NumberCell]] = [[] for _ in group.rows]
-    styles = choose_styles(group.rows, numbers, certain)
-    sizes = [certain.units.find(row.unit)[1] for row in group.rows]
+    styles = choose_styles(group.rows, numbers, stated_errors)
+    sizes = [stated_errors.units.find(row.unit)[1] for row in group.rows]
     shown = numbers * np.array(sizes)
-    errors = [size * certain.find_error(row) for size, row in zip(sizes, group.rows, strict=True)]
+    errors = [size * stated_errors.find_error(row) for size, row in zip(sizes, group.rows, strict=True)]
     families = [_find_family(row) for row in group.rows]
     for family in dict.fromkeys(families):
         members = [i for i, other in enumerate(families) if other == family]

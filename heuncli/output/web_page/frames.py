@@ -56,9 +56,9 @@ class Peaks(NamedTuple):
     is_searched: bool
 
 
-def find_peaks(study: Study, labels: Labels, certain: StatedErrors) -> Peaks:
+def find_peaks(study: Study, labels: Labels, stated_errors: StatedErrors) -> Peaks:
     """Find the instants at which joint and foundation loads and section forces are largest."""
-    search = ChannelSearch(lambda results: _collect_loads(results, labels), certain.find_error)
+    search = ChannelSearch(lambda results: _collect_loads(results, labels), stated_errors.find_error)
     loads = search.collect(study.results)
     if not loads:
         return Peaks(np.zeros(0), is_searched=True)

@@ -97,8 +97,8 @@ def make_page_data(
     """
     original, spec, scene = study.results, study.spec, study.setup.scene
     labels = replace(make_labels(spec), units=units)
-    certain = find_stated_errors(original, labels, study.magnitudes)
-    peaks = find_peaks(study, labels, certain)
+    stated_errors = find_stated_errors(original, labels, study.magnitudes)
+    peaks = find_peaks(study, labels, stated_errors)
     frames = choose_frames(study, np.sort([*peaks.times, *instants]), max_frames)
     results = resample_at_frames(study, frames.times)
     horizon = original.horizon
@@ -123,10 +123,10 @@ def make_page_data(
         "scene": make_page_scene(
             make_page_machine(spec, scene), spec, results, extract_poses(results), labels, find_motion_plane(scene)
         ),
-        "acting": make_acting_loads(study, frames.times, labels, certain),
-        "blocks": make_blocks(results, labels, certain),
-        "blows": list(_iter_impacts(original, frames, labels, certain)),
-        "sections": make_sections(spec, results, labels, certain),
+        "acting": make_acting_loads(study, frames.times, labels, stated_errors),
+        "blocks": make_blocks(results, labels, stated_errors),
+        "blows": list(_iter_impacts(original, frames, labels, stated_errors)),
+        "sections": make_sections(spec, results, labels, stated_errors),
         "cutting": split_heading(SECTIONS.heading(results, labels)),
         "foundation": _find_moment_center(results),
     }
@@ -164,14 +164,14 @@ def _iter_notes(results: Results, horizon: float | None) -> Iterator[str]:
 
 
 def _iter_impacts(
-    results: Results, frames: PageFrames, labels: Labels, certain: StatedErrors
+    results: Results, frames: PageFrames, labels: Labels, stated_errors: StatedErrors
 ) -> Iterator[dict[str, Any]]:
     """Yield the impacts within the frames, each with the first frame at or after it and its tables."""
     for number, impact in enumerate(results.impulses[:MAX_IMPACTS]):
         time = float(impact["time"])
         if frames.times[0] <= time <= frames.times[-1]:
             caption = f"{', '.join(impact['names']) or 'impulse'}, {time:.6g} s"
-            tables = make_impact_page_tables(number, impact, results, labels, certain)
+            tables = make_impact_page_tables(number, impact, results, labels, stated_errors)
             yield {"number": number, "frame": _find_frame(frames, time), "words": escape(caption), "blocks": tables}
 
 

@@ -44,19 +44,19 @@ UNITS = {"force": "N", "moment": "N·m"}
 ORIGIN = (0.0, 0.0, 0.0)
 
 
-def make_blocks(results: Results, labels: Labels, certain: StatedErrors) -> list[dict[str, Any]]:
+def make_blocks(results: Results, labels: Labels, stated_errors: StatedErrors) -> list[dict[str, Any]]:
     """Make the tables of all quantities that run over the instants; each heading states signs and axes."""
     channels = [item for item in iter_channels(results, labels) if not item.cause]
     plans = [plan for plan in PLANS if plan.kind not in EXCLUDED_KINDS and (plan.only is None or plan is AXIS)]
-    found = [_make_block(plan, channels, plan.heading(results, labels), labels, certain) for plan in plans]
-    sums = make_sums_table(results, certain)
+    found = [_make_block(plan, channels, plan.heading(results, labels), labels, stated_errors) for plan in plans]
+    sums = make_sums_table(results, stated_errors)
     if sums is not None:
         found.append({**split_heading(sums.heading), "kind": "joints", "groups": [], "notes": list(sums.notes)})
     return [block for block in found if block["groups"] or block["notes"]]
 
 
 def make_impact_page_tables(
-    number: int, impact: Block, results: Results, labels: Labels, certain: StatedErrors
+    number: int, impact: Block, results: Results, labels: Labels, stated_errors: StatedErrors
 ) -> list[dict[str, Any]]:
     """Make the tables of one impact; their numbers hold only at its instant."""
     channels = [item for item in iter_impulse_channels(impact, labels) if not item.cause]
@@ -64,7 +64,7 @@ def make_impact_page_tables(
     for plan in IMPULSES:
         if plan.kind in ("foundation", "joints", "stops", "sections") and plan.only is None:
             plan_channels = [item for item in channels if item.quantity in plan.quantities and not item.has_cuts]
-            block = _make_block(plan, plan_channels, plan.heading(results, labels), labels, certain)
+            block = _make_block(plan, plan_channels, plan.heading(results, labels), labels, stated_errors)
             block["heading"] += f" at {float(impact['time']):.6g} s, {', '.join(impact['names']) or 'impulse'}"
             tables += [_prefix_paths(block, number)] if block["groups"] else []
     return tables
@@ -79,7 +79,7 @@ def _prefix_paths(block: dict[str, Any], number: int) -> dict[str, Any]:
 
 
 def _make_block(
-    plan: TablePlan, channels: Iterable[Channel], heading: str, labels: Labels, certain: StatedErrors
+    plan: TablePlan, channels: Iterable[Channel], heading: str, labels: Labels, stated_errors: StatedErrors
 ) -> dict[str, Any]:
     """Make one table: heading, groups of rows by object, a note on the rows that are zero throughout, word for nan."""
     head = {**split_heading(heading), "kind": plan.kind, "missing": plan.missing[0]}
@@ -99,7 +99,7 @@ def _make_block(
     for name, members in channels_by_name.items():
         label = name.replace("supports.", "support ", 1).replace("elements.", "element ", 1)
         channels_in_order = sorted(members, key=lambda item: plan.quantities.index(item.quantity))
-        rows = list(iter_page_rows(channels_in_order, labels, certain))
+        rows = list(iter_page_rows(channels_in_order, labels, stated_errors))
         shown = [row for row, is_nonzero in rows if is_nonzero or plan is AXIS]
         hidden = [row for row, is_nonzero in rows if not is_nonzero and plan is not AXIS]
         zero_labels += [f"{label} {row['label']}".strip() for row in hidden]
@@ -126,12 +126,12 @@ def _is_in_plan(plan: TablePlan, name: str) -> bool:
 
 
 def iter_page_rows(
-    channels: Sequence[Channel], labels: Labels, certain: StatedErrors
+    channels: Sequence[Channel], labels: Labels, stated_errors: StatedErrors
 ) -> Iterator[tuple[dict[str, Any], bool]]:
     """Yield the rows of one object, each with whether it is ever different from zero."""
     numbers_of = [channel.numbers for channel in channels]
     all_numbers = [number for numbers in numbers_of for number in numbers]
-    styles = iter(choose_styles(all_numbers, np.zeros((0, len(all_numbers))), certain))
+    styles = iter(choose_styles(all_numbers, np.zeros((0, len(all_numbers))), stated_errors))
     scales: dict[str, float] = {}
     for channel in channels:
         scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest_magnitude(channel.values))
@@ -140,10 +140,10 @@ def iter_page_rows(
     )
     for channel, numbers in zip(channels, numbers_of, strict=True):
         style, *_ = [next(styles) for _ in numbers]
-        shown = choose_shown_style(channel, scales[channel.unit], style, labels, certain)
+        shown = choose_shown_style(channel, scales[channel.unit], style, labels, stated_errors)
         if is_turning and channel.unit == "rad/s" and not labels.units.is_chosen("rad/s"):
-            shown = choose_rotational_speed(scales[channel.unit], certain.find_error(channel))
-        yield _make_row(channel, labels, shown), any(not is_zero(number, style, certain) for number in numbers)
+            shown = choose_rotational_speed(scales[channel.unit], stated_errors.find_error(channel))
+        yield _make_row(channel, labels, shown), any(not is_zero(number, style, stated_errors) for number in numbers)
 
 
 def _make_row(item: Channel, labels: Labels, style: dict[str, Any]) -> dict[str, Any]:
@@ -165,21 +165,23 @@ def _make_row(item: Channel, labels: Labels, style: dict[str, Any]) -> dict[str,
 
 
 def choose_shown_style(
-    channel: Channel, scale: float, style: Style, labels: Labels, certain: StatedErrors
+    channel: Channel, scale: float, style: Style, labels: Labels, stated_errors: StatedErrors
 ) -> dict[str, Any]:
     """Choose unit, size and style of a family of numbers whose largest magnitude is `scale`, SI.
 
     style: the one of the tables, which says what is rounding, and whether any digit is known
     """
-    reader = choose_reader_style(channel.unit, scale, labels.units, certain.find_error(channel))
+    reader = choose_reader_style(channel.unit, scale, labels.units, stated_errors.find_error(channel))
     rounding = style.rounding * reader.size / labels.units.find(channel.unit)[1]
     return _to_shown(reader.unit, reader.size, scale, reader.error, (rounding, style.is_known))
 
 
-def choose_family_style(kind: str, unit: str, scale: float, labels: Labels, certain: StatedErrors) -> dict[str, Any]:
+def choose_family_style(
+    kind: str, unit: str, scale: float, labels: Labels, stated_errors: StatedErrors
+) -> dict[str, Any]:
     """Choose unit, size and style of numbers of a kind and unit whose largest magnitude is `scale`, SI."""
-    reader = choose_reader_style(unit, scale, labels.units, certain.error_of(kind, unit))
-    rounding = reader.size * certain.rounding_of(unit)
+    reader = choose_reader_style(unit, scale, labels.units, stated_errors.error_of(kind, unit))
+    rounding = reader.size * stated_errors.rounding_of(unit)
     return _to_shown(reader.unit, reader.size, scale, reader.error, (rounding, reader.error < reader.size * scale))
 
 
@@ -204,13 +206,13 @@ def _to_shown(unit: str, size: float, scale: float, error: float, certainty: tup
     }  # fmt: skip
 
 
-def is_zero(channel: Channel, style: Style, certain: StatedErrors) -> bool:
+def is_zero(channel: Channel, style: Style, stated_errors: StatedErrors) -> bool:
     """Return whether a channel shows 0 at all instants."""
-    largest = certain.units.find(channel.unit)[1] * float(np.abs(channel.values).max(initial=0.0))
+    largest = stated_errors.units.find(channel.unit)[1] * float(np.abs(channel.values).max(initial=0.0))
     return not np.isnan(channel.values).any() and style.write(largest) == "0"
 
 
-def make_acting_loads(study: Study, times: Array, labels: Labels, certain: StatedErrors) -> list[dict[str, Any]]:
+def make_acting_loads(study: Study, times: Array, labels: Labels, stated_errors: StatedErrors) -> list[dict[str, Any]]:
     """Make an entry for each force and moment ON the `to` body: name, point of action and vector at all frames.
 
     times: of the frames (n,)
@@ -229,7 +231,7 @@ def make_acting_loads(study: Study, times: Array, labels: Labels, certain: State
         size = _find_size(vectors)
         rounding = tolerances.NOTHING_ACTS * study.load_magnitudes.by_unit.get(UNITS[what], 0.0)
         if size > max(rounding, MIN_LOAD * largest[what]):
-            style = choose_family_style("forces", UNITS[what], size, labels, certain)
+            style = choose_family_style("forces", UNITS[what], size, labels, stated_errors)
             entries.append({
                 "name": name, "caption": describe_object("forces", name, labels), "what": what, **style,
                 "at": pack_points(points), "forces": pack_values(vectors, 3),
@@ -242,7 +244,7 @@ def _find_size(vectors: Array) -> float:
     return float(np.sqrt((np.asarray(vectors) ** 2).sum(axis=1)).max(initial=0.0))
 
 
-def make_sections(spec: Spec, results: Results, labels: Labels, certain: StatedErrors) -> list[dict[str, Any]]:
+def make_sections(spec: Spec, results: Results, labels: Labels, stated_errors: StatedErrors) -> list[dict[str, Any]]:
     """Make the page's entry for every section: points of the cuts and axes n, e1, e2 in body axes, and the section
     forces.
     """
@@ -257,7 +259,8 @@ def make_sections(spec: Spec, results: Results, labels: Labels, certain: StatedE
             "cuts": _compute_cut_points(section, block, normal).tolist(),
             "s": [float(s) for s in block["s"]] if "s" in block else None,
             "side": list(block.get("side", [])), "normal": normal.tolist(), "first": first_axis.tolist(),
-            "second": np.cross(normal, first_axis).tolist(), "loads": make_section_loads(name, block, labels, certain),
+            "second": np.cross(normal, first_axis).tolist(),
+            "loads": make_section_loads(name, block, labels, stated_errors),
         })  # fmt: skip
     return sections
 
@@ -271,23 +274,23 @@ def _compute_cut_points(section: Section, block: dict[str, Any], normal: Array) 
 
 
 def make_section_loads(
-    name: str, section: Mapping[str, Any], labels: Labels, certain: StatedErrors
+    name: str, section: Mapping[str, Any], labels: Labels, stated_errors: StatedErrors
 ) -> list[dict[str, Any]]:
     """Make the rows of a section's forces and stresses, each (n_t, n_cuts), without those that show 0 everywhere.
 
     Rows of one family (forces; moments) have the same decimals.
     """
     channels = make_section_channels(name, section)
-    styles = choose_styles(channels, np.zeros((0, len(channels))), certain)
+    styles = choose_styles(channels, np.zeros((0, len(channels))), stated_errors)
     scales: dict[str, float] = {}
     for channel in channels:
         scales[channel.unit] = max(scales.get(channel.unit, 0.0), largest_magnitude(channel.values))
     loads = []
     for channel, style in zip(channels, styles, strict=True):
-        if not is_zero(channel, style, certain):
+        if not is_zero(channel, style, stated_errors):
             loads.append({
                 "path": channel.path, "label": channel.label, "caption": describe_path(channel.path, labels),
-                **choose_shown_style(channel, scales[channel.unit], style, labels, certain),
+                **choose_shown_style(channel, scales[channel.unit], style, labels, stated_errors),
                 "values": pack_values(channel.values, channel.values[0].size),
             })  # fmt: skip
     return loads

@@ -103,7 +103,7 @@ def read_segments(entries: Sequence[SegmentEntry], base: Expression | None, dime
         message = f"{len(entries)} segments; there may be 1 to {MAX_SEGMENTS}"
         problems.append(SegmentProblem(("segments",), message, "for example [{to: 0.5 s, rise: 20 mm, law: cycloid}]"))
     problems += _iter_wrong_dimensions(("base",), {"": base}, {"": dimension})
-    x, value = 0.0, _number(base)
+    x, value = 0.0, _read_constant(base)
     start = value
     for i, entry in enumerate(entries[:MAX_SEGMENTS]):
         found = [*_iter_entry_problems(("segments", i), entry, dimension)]
@@ -117,7 +117,8 @@ def read_segments(entries: Sequence[SegmentEntry], base: Expression | None, dime
     return SegmentMotion(tuple(segments), start, tuple(problems))
 
 
-def _number(value: Expression | None) -> float:
+def _read_constant(value: Expression | None) -> float:
+    """Return the number of a constant, 0 if there is none."""
     return 0.0 if value is None or value.constant is None else value.constant
 
 
@@ -126,8 +127,14 @@ def _make_segment(entry: SegmentEntry, begin: float, value: float) -> LawSegment
     to, duration, dwell = (getattr(entry, name) for name in ("to", "for_", "dwell"))
     if dwell is not None:
         return LawSegment(begin, begin + dwell, value, 0.0)
-    rise = entry.at.constant - value if entry.at is not None and entry.at.constant is not None else _number(entry.rise)
-    limits = tuple(_number(getattr(entry, name)) for name in LIMITS.get(entry.law or "", ()) if _is_limited(entry))
+    rise = (
+        entry.at.constant - value
+        if entry.at is not None and entry.at.constant is not None
+        else _read_constant(entry.rise)
+    )
+    limits = tuple(
+        _read_constant(getattr(entry, name)) for name in LIMITS.get(entry.law or "", ()) if _is_limited(entry)
+    )
     if limits:
         duration = find_profile_duration(rise, limits)
     end = to if to is not None else begin + duration
@@ -195,8 +202,8 @@ def _iter_law_problems(
     values = {name: getattr(entry, name) for name in limited}
     yield from _iter_wrong_dimensions(place, values, {name: (x, y, z - 1 - LIMIT_KEYS.index(name)) for name in limited})
     for name, value in values.items():
-        if not _number(value) > 0.0:
-            message = f"{name} must be greater than 0, but is {_number(value):.6g}"
+        if not _read_constant(value) > 0.0:
+            message = f"{name} must be greater than 0, but is {_read_constant(value):.6g}"
             yield SegmentProblem((*place, name), message, "a motion backwards has a negative rise")
 
 

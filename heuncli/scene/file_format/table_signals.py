@@ -35,7 +35,7 @@ NOISE_HINT = "give smooth: a lower cut-off frequency; or measure more finely"
 KeyedFinding = tuple[str, Finding]
 
 
-class KeyFinding(Exception):
+class SignalKeyError(Exception):
     """A problem of one key of an entry."""
 
     def __init__(self, key: str, message: str, hint: str, code: str = "table-form") -> None:
@@ -44,7 +44,7 @@ class KeyFinding(Exception):
 
 
 def has_signal_keys(entry: TableEntry) -> bool:
-    """Whether an entry treats its points as a signal."""
+    """Return whether an entry treats its points as a signal."""
     return any(key is not None for key in (entry.smooth, entry.derivative, entry.integral))
 
 
@@ -85,32 +85,32 @@ def prepare_signal(table: TableFunction, entry: TableEntry) -> tuple[TableFuncti
         return integrate_entry(table, entry, notes), []
     if entry.derivative is None:
         return replace(table, notes=tuple(notes)), []
-    times, curve = entry.derivative, table.interpolation
-    derivative = differentiate_points(x, np.frombuffer(table.y), curve, is_periodic, times)
-    error = estimate_derivative_error(x, y, curve, is_periodic, times, cut_off)
-    dimension = derive_dimension(table, -times)
+    order, curve = entry.derivative, table.interpolation
+    derivative = differentiate_points(x, np.frombuffer(table.y), curve, is_periodic, order)
+    error = estimate_derivative_error(x, y, curve, is_periodic, order, cut_off)
+    dimension = derive_dimension(table, -order)
     largest = float(np.abs(derivative).max())
     amount = "is not known: too few points" if error is None else f"up to {format_amount(error, dimension)}"
     size = f"error of the derivative {amount}, of at most {format_amount(largest, dimension)}"
     warnings = []
     if error is None or error > tolerances.DERIVATIVE_ERROR * largest:
         warnings.append(("derivative", Finding("table-derivative", f"table {table.name}: {size}", NOISE_HINT)))
-    notes.append(f"table {table.name}: differentiated {TIMES[times]}; {size}")
+    notes.append(f"table {table.name}: differentiated {TIMES[order]}; {size}")
     made = rebuild_table(table, entry, derivative)
     return replace(made, dimensions=(table.dimensions[0], dimension), notes=tuple(notes)), warnings
 
 
 def integrate_entry(table: TableFunction, entry: TableEntry, notes: list[str]) -> TableFunction:
     """Return the integral of a table, through the exact values; where it is no spline, with the exact slopes."""
-    times, drift = entry.integral or 1, entry.drift or "keep"
-    found = integrate_table(table, times, drift)
-    values, dimension = found.values, derive_dimension(table, times)
+    order, drift = entry.integral or 1, entry.drift or "keep"
+    found = integrate_table(table, order, drift)
+    values, dimension = found.values, derive_dimension(table, order)
     if entry.period is not None:
         values[-1] = values[0]
     taken = f"offset {format_amount(found.offset, table.dimensions[1])} taken out (drift: {drift})"
     moved = f"it would have moved the end by {format_amount(found.displacement, dimension)}"
     what = "no drift taken out" if drift == "keep" else f"{taken}, {moved}"
-    note = f"table {table.name}: integrated {TIMES[times]}; {what}"
+    note = f"table {table.name}: integrated {TIMES[order]}; {what}"
     made = rebuild_table(table, entry, values, found.slopes if entry.interpolation != "cubic" else None)
     return replace(made, dimensions=(table.dimensions[0], dimension), notes=(*notes, note))
 
@@ -128,20 +128,24 @@ def choose_cut_off(table: TableFunction, entry: TableEntry) -> float:
     cut_off, own, expected = entry.smooth.constant, entry.smooth.dimension, table.dimensions[0]
     if own is not None and expected is not None and own != expected:
         hint = "give the period at the cut-off in the unit of x" + (", or its frequency in Hz" * (expected == TIME))
-        raise KeyFinding("smooth", f"the cut-off is {describe(own)}, but x is {describe(expected)}", hint, "dimension")
+        raise SignalKeyError(
+            "smooth", f"the cut-off is {describe(own)}, but x is {describe(expected)}", hint, "dimension"
+        )
     x = np.frombuffer(table.x)
     step, span = float(np.median(np.diff(x))), float(x[-1] - x[0])
     if cut_off <= 0.0:
-        raise KeyFinding("smooth", f"the cut-off is {cut_off:g}", "give a period above 0, or a frequency in Hz")
+        raise SignalKeyError("smooth", f"the cut-off is {cut_off:g}", "give a period above 0, or a frequency in Hz")
     if len(x) < MIN_POINTS:
-        raise KeyFinding("smooth", f"{len(x)} points are too few to be smoothed", f"give at least {MIN_POINTS} points")
+        raise SignalKeyError(
+            "smooth", f"{len(x)} points are too few to be smoothed", f"give at least {MIN_POINTS} points"
+        )
     text = describe_cut_off(cut_off, table)
     if cut_off < 2.0 * step:
         message = f"{text} is shorter than two steps of the points ({format_amount(step, expected)} each)"
-        raise KeyFinding("smooth", message, FINE_HINT)
+        raise SignalKeyError("smooth", message, FINE_HINT)
     if cut_off > min(span, MAX_CUT_OFF_STEPS * step):
         limit = "the table" if cut_off > span else f"{MAX_CUT_OFF_STEPS:g} of its steps"
-        raise KeyFinding("smooth", f"{text} is longer than {limit}", "give a shorter period (a higher frequency)")
+        raise SignalKeyError("smooth", f"{text} is longer than {limit}", "give a shorter period (a higher frequency)")
     return cut_off
 
 
@@ -152,12 +156,12 @@ def describe_cut_off(cut_off: float, table: TableFunction) -> str:
     return f"cut-off {frequency}period {period}"
 
 
-def derive_dimension(table: TableFunction, times: int) -> Dimension | None:
+def derive_dimension(table: TableFunction, order: int) -> Dimension | None:
     """Return the dimension of y times a power of x; None if one of them is not known."""
     x, y = table.dimensions
     if x is None or y is None:
         return None
-    return y[0] + times * x[0], y[1] + times * x[1], y[2] + times * x[2]
+    return y[0] + order * x[0], y[1] + order * x[1], y[2] + order * x[2]
 
 
 def format_amount(value: float, dimension: Dimension | None) -> str:

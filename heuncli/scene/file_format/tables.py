@@ -29,7 +29,7 @@ from heuncli.scene.file_format.format import TableEntry
 from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.quantity import Scope, read_number
-from heuncli.scene.file_format.table_signals import KeyFinding, check_signal_keys, has_signal_keys, prepare_signal
+from heuncli.scene.file_format.table_signals import SignalKeyError, check_signal_keys, has_signal_keys, prepare_signal
 
 # hints
 SLOPES_HINT = "keep x and y within about ten powers of ten; x_unit and y_unit set their units"
@@ -105,7 +105,7 @@ def build_table(
     if has_signal_keys(entry):
         try:
             table, warnings = prepare_signal(table, entry)
-        except KeyFinding as error:
+        except SignalKeyError as error:
             return None, [*problems, TableProblem((error.key,), error.finding)]
         problems += [TableProblem((key,), finding, is_warning=True) for key, finding in warnings]
         problems += check_magnitudes([table.x, table.y], None)

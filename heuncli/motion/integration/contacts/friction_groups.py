@@ -117,8 +117,8 @@ def make_groups(
     groups: list[tuple[list[int], list[float]]] = []
     for k in [*leaders, *(k for k in places if k not in leaders)]:
         for members, transmissions in groups:
-            is_able = all(can_join[i] and response.moves[i] for i in (k, members[0]))
-            if is_able and response.is_proportional(k, members[0]):
+            can_be_joined = all(can_join[i] and response.moves[i] for i in (k, members[0]))
+            if can_be_joined and response.is_proportional(k, members[0]):
                 members.append(k)
                 transmissions.append(response.find_transmission(k, members[0]))
                 break

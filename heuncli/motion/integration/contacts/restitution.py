@@ -311,13 +311,13 @@ def solve_sequence(
     e = np.where(is_plastic, 0.0, contacts_touching.restitution)
     noise = contacts_touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates)
 
-    def solve_impulses(v: Array, own: Indices, e: Array, noise: Array) -> tuple[Array, Mask]:
+    def solve_together(v: Array, own: Indices, e: Array, noise: Array) -> tuple[Array, Mask]:
         part = A[np.ix_(own, own)]
         sequence = solve_round(part, v[own], np.zeros(len(own)), np.arange(len(own)), e, noise)
         return sequence.z, sequence.depends
 
     sequence = strike_in_sequence(
-        contacts_touching, A, contacts_touching.rate + added_rates, noise, moves, e, solve_impulses
+        contacts_touching, A, contacts_touching.rate + added_rates, noise, moves, e, solve_together
     )
     v = np.where(np.abs(sequence.rate) <= sequence.noise, 0.0, sequence.rate)
     comes_to_rest = (sequence.count > 1) & (e > 0.0) & (v == 0.0)

@@ -58,14 +58,14 @@ Choice = tuple[int, ...]  # a state for each group at rest
 class StateTrial(NamedTuple):
     """The motion with a choice: whether its results agree with it, and what to try instead where they do not.
 
-    replaceable: the sticking frictions could be replaced by others, so that their values are indeterminate
+    is_replaceable: the sticking frictions could be replaced by others, so that their values are indeterminate
     jam: what the kernel found of friction by a coefficient: its outcome and row; None if it found one solution
     """
 
     agrees: bool
-    better: Choice
+    next_choice: Choice
     accelerations: Array
-    replaceable: bool
+    is_replaceable: bool
     jam: tuple[int, int] | None
 
 
@@ -271,7 +271,7 @@ class StateSearch:
                 members = [int(n) for n in group]
                 if any(found[n] != STICKS and n != self.broken for n in members):
                     found = self.find_among(members, found)
-        if self.trials[found].replaceable:
+        if self.trials[found].is_replaceable:
             raise self.indeterminate_error(found)
         return found
 
@@ -293,7 +293,7 @@ class StateSearch:
             trial = self.solve_trial(choice)
             if trial.agrees:
                 return choice
-            choice = trial.better
+            choice = trial.next_choice
         return None
 
     def find_among(self, members: list[int], choice: Choice) -> Choice:
@@ -308,7 +308,7 @@ class StateSearch:
             raise self.undecided_error("no choice of them agrees with the motion that it leads to")
         most = max(found, key=lambda other: other.count(STICKS))
         for other in found:
-            differs = any(x == STICKS != y for x, y in zip(other, most, strict=True)) or (
+            differs = any(x == STICKS and y != STICKS for x, y in zip(other, most, strict=True)) or (
                 other != most and (self.friction.has_one_size or STICKS not in most)
             )
             scale = np.abs(self.trials[most].accelerations).max(initial=0.0)
@@ -337,7 +337,7 @@ class StateSearch:
         rows, loads = evaluation.rows[0][friction.rows], evaluation.loads[0][friction.load_rows]
         noise = self.noise + tolerances.CONTACT_ACCELERATION * rows["terms"]
         is_met = bool(evaluation.residual[0] <= evaluation.allowed_residual[0])
-        better = list(choice)
+        next_states = list(choice)
         for n, (group, k) in enumerate(zip(self.groups, self.leaders, strict=True)):
             acceleration, reserve = float(rows["acceleration"][k]), float(loads["reserve"][k])
             value = group.sum_at_leader(loads["value"])
@@ -345,12 +345,12 @@ class StateSearch:
                 # what more would only accelerate by rounding
                 allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve)) + self.slack[k]
                 if not (is_met and reserve >= -allowed):
-                    better[n] = -1 if value > 0.0 else 1
+                    next_states[n] = -1 if value > 0.0 else 1
             elif n == self.broken:
                 if not choice[n] * acceleration >= -noise[k]:
-                    better[n] = -choice[n]
+                    next_states[n] = -choice[n]
             elif not choice[n] * acceleration > noise[k]:
-                better[n] = STICKS
+                next_states[n] = STICKS
         jam = next(
             (
                 (int(loads["span"][k]), friction.load_rows[k])
@@ -359,9 +359,9 @@ class StateSearch:
             ),
             None,
         )
-        agrees = tuple(better) == choice and jam is None and bool(np.isfinite(rows["acceleration"]).all())
+        agrees = tuple(next_states) == choice and jam is None and bool(np.isfinite(rows["acceleration"]).all())
         return StateTrial(
-            agrees, tuple(better), rows["acceleration"].copy(), self.is_replaceable(evaluation, choice), jam
+            agrees, tuple(next_states), rows["acceleration"].copy(), self.is_replaceable(evaluation, choice), jam
         )
 
     def is_replaceable(self, evaluation: Evaluation, choice: Choice) -> bool:
