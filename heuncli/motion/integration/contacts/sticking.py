@@ -2,11 +2,13 @@
 
     at rest:  rate = 0 and |value| <= what it can hold,   or   value = -slip kinetic size and slip acceleration > 0
 
-Every choice of a state for each place at rest is a motion of its own, which the kernel solves with all its couplings:
-those whose results agree with it are possible. What can stick does: of several possible ones the one is taken in which
-all those stick that stick in any other. What has just reached what it can hold must slip, the way that it was pushed.
-Several that differ otherwise, or none, are errors, as is a sticking friction that others could replace. Those of one
-freedom are one place, which sticks or slips as a whole (friction_groups.py).
+A choice gives each place at rest a state: it sticks, or slips in one direction. The kernel solves the motion of a
+choice with all its couplings. A choice is possible if its results agree with it.
+
+    - A friction that has just reached its limit slips, in the direction in which it was pushed.
+    - Of several possible choices that one is taken in which every place sticks that sticks in any of them.
+    - Errors are: no possible choice, two that differ otherwise, a sticking friction whose value others could take over.
+    - The frictions of one freedom are one place, which sticks or slips as a whole (friction_groups.py).
 
 How a friction comes here, from the scene's text to the kernel and back:
 
