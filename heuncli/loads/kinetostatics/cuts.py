@@ -31,6 +31,7 @@ from heuncli.scene.shapes.section_axes import make_first_axis
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
+    from heuncli.loads.kinetostatics.deflection import Beam
 
 
 MIN_RUN_FACTOR = 4.0  # times the plane tolerance: the distance at which corners of a run are separate (stretch.py)
@@ -54,6 +55,7 @@ class Cuts:
     warnings: sentences on what the planes meet
     form: the shapes that are cut
     is_impulse: whether the cuts are for an impulse, which has no stresses and no kinetic energy
+    beam: of a run whose deflection is computed
 
     Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
@@ -76,6 +78,7 @@ class Cuts:
     warnings: tuple[str, ...]
     form: CompositeSolid | None = None
     is_impulse: bool = False
+    beam: Beam | None = None
 
     @cached_property
     def auto_properties(self) -> CutProperties:
@@ -109,7 +112,7 @@ class Cuts:
     @property
     def for_impulse(self) -> Cuts:
         """The cuts for an impulse, without stresses and energies."""
-        return replace(self, properties=None, is_impulse=True)
+        return replace(self, properties=None, is_impulse=True, beam=None)
 
 
 class Attachment(NamedTuple):
@@ -240,7 +243,12 @@ def _make_section_cuts(
     )  # fmt: skip
     if section.properties is not None and section.properties.kind == "auto":
         _require_properties(location, cuts)
-    return cuts
+    if section.beam_theory is None:
+        return cuts
+    from heuncli.loads.kinetostatics.deflection import make_beam  # few scenes ask for it
+
+    acting = [attachment.place for attachment in attachments if attachment.place.ndim == 1]
+    return replace(cuts, beam=make_beam(cuts, section.beam_theory, acting, [line.place for line in lines]))
 
 
 def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
