@@ -22,7 +22,7 @@ from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array
-from heuncli.scene.file_format.models import Properties, Section, Spec
+from heuncli.scene.file_format.models import BeamTheory, Properties, Section, Spec
 from heuncli.scene.file_format.profiles import FAMILIES
 from heuncli.scene.shapes.composite_solid import NO_MATTER, CompositeSolid
 from heuncli.scene.shapes.inertia import pseudo_inertia
@@ -31,7 +31,6 @@ from heuncli.scene.shapes.section_axes import make_first_axis
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
-    from heuncli.loads.kinetostatics.deflection import Beam
 
 
 MIN_RUN_FACTOR = 4.0  # times the plane tolerance: the distance at which corners of a run are separate (stretch.py)
@@ -113,6 +112,29 @@ class Cuts:
     def for_impulse(self) -> Cuts:
         """The cuts for an impulse, without stresses and energies."""
         return replace(self, properties=None, is_impulse=True, beam=None)
+
+
+@record
+class Beam:
+    """A run whose deflection is computed (loads/kinetostatics/deflection.py).
+
+    theory: modulus, reference and length factor
+    run: its own cuts
+    corners (m + 1,): heights along n, between which loads and compliance are polynomials
+    nodes: the cuts between corners from which these follow, where no load moves over the body
+    euler_load: [N]
+    """
+
+    theory: BeamTheory
+    run: Cuts
+    corners: Array
+    nodes: Cuts
+    euler_load: float
+
+    @property
+    def length(self) -> float:
+        """Length of the run [m]."""
+        return float(self.corners[-1] - self.corners[0])
 
 
 class Attachment(NamedTuple):
@@ -243,12 +265,7 @@ def _make_section_cuts(
     )  # fmt: skip
     if section.properties is not None and section.properties.kind == "auto":
         _require_properties(location, cuts)
-    if section.beam_theory is None:
-        return cuts
-    from heuncli.loads.kinetostatics.deflection import make_beam  # few scenes ask for it
-
-    acting = [attachment.place for attachment in attachments if attachment.place.ndim == 1]
-    return replace(cuts, beam=make_beam(cuts, section.beam_theory, acting, [line.place for line in lines]))
+    return cuts
 
 
 def _require_properties(location: SourceLocation, cuts: Cuts) -> None:

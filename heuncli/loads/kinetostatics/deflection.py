@@ -22,11 +22,11 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.errors import Finding
-from heuncli.base.records import record, replace
+from heuncli.base.errors import Finding, Problem, SpecError
+from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.auto_properties import CutProperties
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.cuts import Cuts
+from heuncli.loads.kinetostatics.cuts import Beam, Cuts, list_attachments, list_distributed_loads
 from heuncli.loads.kinetostatics.member_stress import find_given_factors
 from heuncli.loads.kinetostatics.sections import (
     AttachedLoad,
@@ -47,8 +47,9 @@ from heuncli.loads.kinetostatics.stretch import (
     make_cuts_at,
     make_stretch,
 )
+from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block, Mask
-from heuncli.scene.file_format.models import BeamTheory
+from heuncli.scene.file_format.models import BeamTheory, Spec
 from heuncli.scene.file_format.profiles import FAMILIES
 
 HALVINGS = 12  # of pieces, until the compliance is a polynomial: a 4096th of a taper
@@ -56,37 +57,29 @@ MAX_PIECES = 4096  # into which a run is divided at most
 COMPLIANCE_ERROR = tolerances.QUADRATURE * 1e3  # relative to the largest of a piece
 CHECKED = np.array([-0.93, -0.45, 0.1, 0.62, 0.97])
 # Chebyshev coefficients of the first and second integral from -1 of each T_k, in columns
-ONCE = np.polynomial.chebyshev.chebint(np.eye(DEGREE + 1), lbnd=-1)
-TWICE = np.polynomial.chebyshev.chebint(np.eye(DEGREE + 1), m=2, lbnd=-1)
+ONCE = np.asarray(np.polynomial.chebyshev.chebint(np.eye(DEGREE + 1), lbnd=-1), dtype=np.float64)
+TWICE = np.asarray(np.polynomial.chebyshev.chebint(np.eye(DEGREE + 1), m=2, lbnd=-1), dtype=np.float64)
 
 
-@record
-class Beam:
-    """A run whose deflection is computed.
-
-    theory: modulus, reference and length factor
-    stretch: the run, with corners between which its compliance is a polynomial
-    euler_load: [N]
-    """
-
-    theory: BeamTheory
-    stretch: Stretch
-    euler_load: float
-
-    @property
-    def length(self) -> float:
-        """Length of the run [m]."""
-        return float(self.stretch.corners[-1] - self.stretch.corners[0])
+def add_beams(all_cuts: Sequence[Cuts], mechanism: Mechanism, spec: Spec) -> tuple[Cuts, ...]:
+    """Return all cuts, with their beams where a deflection is computed. Raises SpecError where that is impossible."""
+    found: list[Cuts] = []
+    for cuts in all_cuts:
+        section = spec.sections[cuts.name]
+        try:
+            theory = section.beam_theory
+            found.append(cuts if theory is None else replace(cuts, beam=make_beam(cuts, theory, mechanism)))
+        except Finding as finding:
+            place, message = spec.location(f"sections.{cuts.name}"), f"{section.body}: {finding.message}"
+            raise SpecError(Problem(finding.code, message, place, finding.hint)) from finding
+    return tuple(found)
 
 
-def make_beam(cuts: Cuts, theory: BeamTheory, points: Sequence[Array], lines: Sequence[Array]) -> Beam:
-    """Make the beam of a run. Raises Finding where its compliance is unbounded or changes too fast to integrate.
-
-    points: where loads and joints act on the body
-    lines: the two ends (2, 3) of each distributed load
-    """
-    stretch = make_stretch(cuts, points, lines)
-    corners = stretch.corners
+def make_beam(cuts: Cuts, theory: BeamTheory, mechanism: Mechanism) -> Beam:
+    """Make the beam of a run. Raises Finding where its compliance is unbounded or changes too fast to integrate."""
+    points = [attachment.place for attachment in list_attachments(mechanism, cuts.body)]
+    lines = [line.place for line in list_distributed_loads(mechanism, cuts.body)]
+    corners = make_stretch(cuts, points, lines).corners
     for _ in range(HALVINGS):
         is_resolved = find_resolved(cuts, corners)
         if is_resolved.all() or len(corners) > MAX_PIECES:
@@ -96,10 +89,15 @@ def make_beam(cuts: Cuts, theory: BeamTheory, points: Sequence[Array], lines: Se
     if not find_resolved(cuts, corners).all():
         message = "the second moment of area falls to nearly zero along the run, or changes too fast for beam theory"
         raise Finding("no-deflection", message, "end the run before the tip")
-    stretch = replace(stretch, corners=corners, jumps=np.full(len(corners), False))
-    weakest = float(np.linalg.eigvalsh(find_compliance(stretch.fixed_cuts))[..., -1].max())
+    nodes = make_plain_stretch(cuts, corners).fixed_cuts
+    weakest = float(np.linalg.eigvalsh(find_compliance(nodes))[..., -1].max())
     free_length = theory.length_factor * float(corners[-1] - corners[0])
-    return Beam(theory, stretch, math.pi**2 * theory.modulus / (weakest * free_length**2))
+    return Beam(theory, cuts, corners, nodes, math.pi**2 * theory.modulus / (weakest * free_length**2))
+
+
+def make_plain_stretch(cuts: Cuts, corners: Array) -> Stretch:
+    """Make a stretch for its nodes alone, without the places where loads jump."""
+    return Stretch(cuts, corners, np.full(len(corners), False))
 
 
 def find_resolved(cuts: Cuts, corners: Array) -> Mask:
@@ -168,7 +166,9 @@ def deflection_block(
     """
     assert cuts.beam is not None and cuts.s is not None
     beam, theory = cuts.beam, cuts.beam.theory
-    nodes = beam.stretch.place_for_loads(attached_loads)
+    nodes = beam.nodes
+    if any(load.point.ndim == 2 for load in attached_loads):
+        nodes = make_plain_stretch(beam.run, beam.corners).place_for_loads(attached_loads)
     force, moment = find_piece_loads(nodes, acceleration_matrix(cuts.body, states, gravity), attached_loads)
     if planar:
         force[2], moment[:2] = 0.0, 0.0
