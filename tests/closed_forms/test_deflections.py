@@ -12,7 +12,8 @@ import pytest
 
 from heuncli.base.errors import HeunError
 from heuncli.results.results import Block, Results
-from tests.shared.scenes import near, solved
+from heuncli.study.queries.expectations import compare
+from tests.shared.scenes import near, solved, study
 
 E, L = 210e9, 1.5
 WIDTH, HEIGHT, DENSITY = 0.03, 0.06, 7850.0  # along y, z
@@ -148,6 +149,24 @@ def test_a_taper_is_integrated_with_its_own_second_moment(end: float) -> None:
     near(curve(found, "slope2")[-1], -slope, slope, 1e-9)
     euler = math.pi**2 * E * math.pi / 4 * end**4 / L**2
     near(found.sections["along"]["buckling"], min(euler / 5.0, 1000.0), euler / 5.0, 1e-9)
+
+
+def test_the_largest_deflection_lies_between_the_cuts() -> None:
+    """A force at b = 0.3 L from the right: P b (L^2 - b^2)^(3/2)/(9 sqrt(3) L E I), at sqrt((L^2 - b^2)/3)."""
+    b = 0.3 * L
+    sag = 500.0 * b * (L**2 - b**2) ** 1.5 / (9 * math.sqrt(3) * L * E * I1)
+    done = study(f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0], below: [{L}, 0, -1], aside: [{L}, 1, 0]}}}}
+bodies: {{bar: {{shapes: [{BOX}], points: {{root: [0, 0, 0], at: [{L - b}, 0, 0], tip: [{L}, 0, 0]}}}}}}
+{ON_TWO_SUPPORTS}
+forces: {{push: {{type: force, on: bar.at, vector: [0, 0, -500]}}}}
+sections: {{along: {{body: bar, {along("reference: chord")}}}}}
+expect: [{{of: sections.along.deflection.w2, peak: min, is: {-sag!r}, rel: 1e-10}}]
+""")
+    verdict = compare(done, done.spec.expect[0])
+    assert verdict.is_met, verdict
+    assert np.abs(done.results.sections["along"]["deflection"]["w2"]).max() < 0.999 * sag
 
 
 def test_a_load_that_travels_along_the_beam() -> None:
