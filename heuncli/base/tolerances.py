@@ -375,6 +375,7 @@ INERTIA_TYPED = 1e-9
 NO_IMPORTED_MOMENT = 1e-20
 AT_LIMIT = 1e-9  # relative to the size, or rad: a start past a limit by less is at the limit, given ten typed digits
 LEAST_STRENGTH = 1e6  # [Pa] below what bars are made of (foams aside): a strength in MPa was written without its unit
+GREATEST_SAFETY = 1e3  # against buckling that is reported: no bar needs more, and in tension it has no bound
 DERIVATIVE_ERROR = 0.1  # of its largest value: a derivative of measured points with a larger error is warned of
 TABLE_ENDS = 1e-6  # relative to the span: a table's period and its end values are printed with seven digits
 EXPECTED_RELATIVE = 1e-6  # relative to the largest expected number: default of `rel` (manual/format.md, "Expect")

@@ -39,7 +39,7 @@ ALIASES = {  # what other programs and textbooks call quantities, by what they a
 }
 MAGNITUDE = frozenset({"mag", "magnitude", "norm", "abs", "total", "resultant", "res", "xyz", "len", "value", "r"})
 DEFAULT_QUANTITIES = ("force", "center", "position", "angle", "travel", "value", "N")  # where a path names no quantity
-INNER_BLOCKS = ("stress", "axis", "mass_effect", "supports", "elements", "line")
+INNER_BLOCKS = ("stress", "deflection", "axis", "mass_effect", "supports", "elements", "line")
 COMPONENT = re.compile(r"(.+?)_?([xyz])\Z", re.IGNORECASE)
 BALANCE = "system_vector"  # rarely requested, and never by a short name
 MAX_READINGS = 5000  # readings that are tried

@@ -74,7 +74,8 @@ IMPULSE_UNITS = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impul
 IMPULSE_BLOCKS = ("foundation", "joints", "stops", "couplings", "sections", "certain_sums")
 
 
-NOT_IN_IMPULSES = ("joints.JOINT.pressure", "sections.SECTION.stress.", "sections.SECTION.energy")
+NOT_IN_IMPULSES = ("joints.JOINT.pressure", "sections.SECTION.stress.", "sections.SECTION.energy",
+    "sections.SECTION.deflection.", "sections.SECTION.buckling")  # fmt: skip
 
 
 Node: TypeAlias = "dict[str, Node | Quantity]"
@@ -178,6 +179,8 @@ def error_kind_of_path(kind: str, name: str, number: str) -> str:
         return "reactions"
     if kind == "foundation" and name == "axis":
         return "axis"
+    if kind == "sections" and (number == "buckling" or words[-1] == "deflection"):
+        return "deflections"
     if kind == "forces":
         return LOAD_ERROR_KINDS.get(number, "forces")
     if number.startswith("energy_"):

@@ -130,6 +130,7 @@ DIRECT = (
 SECTION_FORCES, SECTION_MOMENTS = ("N", "Q1", "Q2"), ("T", "M1", "M2")
 RESULTANTS = SECTION_FORCES + SECTION_MOMENTS
 RESULTANT_UNITS = dict.fromkeys(SECTION_FORCES, "N") | dict.fromkeys(SECTION_MOMENTS, "N·m")
+DEFLECTIONS = ("w1", "w2", "slope1", "slope2")
 STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
 # The loads of a joint that are one number: along its axis, across it, about axes across it; of a rod.
 AXIAL_FORCES, TILTING_MOMENTS = ("axial", "radial", "tension"), ("tilting",)
@@ -237,6 +238,10 @@ ROWS: tuple[Quantity, ...] = (
         *(cut_scalar(name, "1" if name == "utilisation" else "Pa") for name in STRESSES)),
     *rows("sections.SECTION.stress.points.CORNER", "at a corner of a [member](stresses.md#members), in its `web`",
         cut_scalar("normal", "Pa"), cut_scalar("shear", "Pa")),
+    *rows("sections.SECTION.deflection", "of a run with [`deflection`](stresses.md#deflection): along e1, e2, and d/ds",
+        *(cut_scalar(name, "rad" if name.startswith("slope") else "m") for name in DEFLECTIONS)),
+    *rows("sections.SECTION", "its safety against buckling; 1000 stands for any larger one, and for tension",
+        scalar("buckling", "1")),
     *rows("sections.SECTION", "kinetic energy of the far side", cut_scalar("energy", "J")),
     *rows("sections.SECTION", "for a series of cuts: distance from its first point to each cut",
         scalar("s", "m", (CUT,), is_timed=False)),
@@ -334,6 +339,7 @@ ESTIMATE_OF_ERROR_KIND = {
     "rodrigues": "motion",
     "strains": "motion",
     "travels": "motion",
+    "deflections": "sections",
 }
 
 

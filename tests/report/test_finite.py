@@ -25,7 +25,7 @@ from tests.shared.folders import ROOT
 
 # together they hold every quantity
 SCENES = ("stick_slip", "door", "table", "percussion", "ladder", "door_closer", "swing", "jib", "crane", "cardan",
-          "sprung", "planetary", "coupled", "hoist_beam", "screw_jack")  # fmt: skip
+          "sprung", "planetary", "coupled", "hoist_beam", "screw_jack", "bracket")  # fmt: skip
 NOT_FLOATS = {"events.EVENT.begins", "events.EVENT.to", "accuracy.horizon"}
 SPRUNG = """\
 heun: 1

@@ -22,7 +22,7 @@ from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.loads import GROUND, PointLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array
-from heuncli.scene.file_format.models import Properties, Section, Spec
+from heuncli.scene.file_format.models import BeamTheory, Properties, Section, Spec
 from heuncli.scene.file_format.profiles import FAMILIES
 from heuncli.scene.shapes.composite_solid import NO_MATTER, CompositeSolid
 from heuncli.scene.shapes.inertia import pseudo_inertia
@@ -54,6 +54,7 @@ class Cuts:
     warnings: sentences on what the planes meet
     form: the shapes that are cut
     is_impulse: whether the cuts are for an impulse, which has no stresses and no kinetic energy
+    beam: of a run whose deflection is computed
 
     Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
@@ -76,6 +77,7 @@ class Cuts:
     warnings: tuple[str, ...]
     form: CompositeSolid | None = None
     is_impulse: bool = False
+    beam: Beam | None = None
 
     @cached_property
     def auto_properties(self) -> CutProperties:
@@ -109,7 +111,30 @@ class Cuts:
     @property
     def for_impulse(self) -> Cuts:
         """The cuts for an impulse, without stresses and energies."""
-        return replace(self, properties=None, is_impulse=True)
+        return replace(self, properties=None, is_impulse=True, beam=None)
+
+
+@record
+class Beam:
+    """A run whose deflection is computed (loads/kinetostatics/deflection.py).
+
+    theory: modulus, reference and length factor
+    run: its own cuts
+    corners (m + 1,): heights along n, between which loads and compliance are polynomials
+    nodes: the cuts between corners from which these follow, where no load moves over the body
+    euler_load: [N]
+    """
+
+    theory: BeamTheory
+    run: Cuts
+    corners: Array
+    nodes: Cuts
+    euler_load: float
+
+    @property
+    def length(self) -> float:
+        """Length of the run [m]."""
+        return float(self.corners[-1] - self.corners[0])
 
 
 class Attachment(NamedTuple):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import reduce
+from operator import getitem
 
 import numpy as np
 
@@ -83,7 +85,7 @@ def _add_place(
         return extreme
     _, name, *quantity = path.split(".")
     section = run.results.sections[name]
-    values = section["stress"][quantity[1]] if quantity[0] == "stress" else section[quantity[0]]
+    values = reduce(getitem, quantity, section)
     if not np.isfinite(values[0]).any():
         return extreme
     cut = int(find_index(values[0]))
@@ -92,8 +94,10 @@ def _add_place(
 
 
 def _is_open(run: ReportedRun, path: str) -> bool:
-    """Return whether a number is indeterminate at some instant; a stress is if any load of its section is."""
-    name = ".".join(path.split(".")[:2]) if ".stress." in path else path
+    """Return whether a number is indeterminate at some instant; a stress or a deflection is if any load of its
+    section is.
+    """
+    name = ".".join(path.split(".")[:2]) if ".stress." in path or ".deflection." in path else path
     return any(each == name or each.startswith(f"{name}.") for each in run.snapshot.open)
 
 

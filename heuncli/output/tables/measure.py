@@ -101,6 +101,9 @@ def find_absent_quantity(path: str, spec: Spec) -> tuple[str, str] | None:
     block, name, word = [*split_path(path), "", ""][:3]
     if block == "sections" and word == "stress" and name in spec.sections and not spec.sections[name].properties:
         return f"'{path}': the section has no properties", "stresses need `properties`: heun explain stresses"
+    section = spec.sections.get(name) if block == "sections" and word in ("deflection", "buckling") else None
+    if section is not None and section.beam_theory is None:
+        return f"'{path}': the section has no deflection", "give it `deflection: true`: heun explain stresses"
     joint = spec.joints.get(name) if block == "joints" else None
     if joint is not None and word in KINDS and joint.kind != KINDS[word]:
         return (

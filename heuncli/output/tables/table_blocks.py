@@ -155,7 +155,11 @@ def _group_channels(plan: TablePlan, results: Results, channels: Iterable[Channe
         if channel.cause or channel.kind != plan.kind or channel.quantity not in plan.quantities:
             continue
         is_mass_effect = plan.is_foundation and channel.name == MASS_EFFECT.only
-        if plan.only not in (None, channel.name) or is_mass_effect or channel.name.split(".")[0] in cut_series:
+        if (
+            plan.only not in (None, channel.name)
+            or is_mass_effect
+            or (channel.has_cuts and channel.name.split(".")[0] in cut_series)
+        ):
             continue
         name = channel.name.removesuffix(".stress") if plan.kind == "sections" else channel.name
         found.setdefault(name, {})[channel.quantity] = channel

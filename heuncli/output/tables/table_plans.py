@@ -176,6 +176,13 @@ SECTIONS = TablePlan(
     lambda results, labels: "SECTIONS  force of the far side on the near side of the cut; N > 0 tension; e2 = n × e1",
     _make_section_note,
 )
+BUCKLING = TablePlan(
+    "sections",
+    "sections",
+    "section",
+    ("buckling",),
+    lambda results, labels: "BUCKLING  Euler's load over the largest compression along the run; 1000: that or more",
+)
 ENERGY = TablePlan(
     "energy",
     "energy",
@@ -224,6 +231,7 @@ PLANS = (
     STOPS,
     COUPLINGS,
     SECTIONS,
+    BUCKLING,
     FORCES,
     ENERGY,
 )

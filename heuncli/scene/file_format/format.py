@@ -243,6 +243,10 @@ class SectionEntry(Entry):
         Annotated[Annotated[Literal["auto"], Tag("single")] | Annotated[PropertiesEntry, Tag("mapping")], FORM] | None
     ) = None
     strength: Pressure | None = None
+    deflection: Switch = False
+    modulus: Pressure | None = None
+    reference: Literal["chord", "start", "end"] | None = None
+    length_factor: Number | None = None
     piece: PieceEntry | None = None
 
 

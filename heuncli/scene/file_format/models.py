@@ -297,6 +297,19 @@ class Properties(NamedTuple):
     values: Mapping[str, float]
 
 
+class BeamTheory(NamedTuple):
+    """How the deflection of a run of cuts is computed.
+
+    modulus: Young's modulus [Pa]
+    reference: where the deflection is zero: at both ends (chord), or with its slope at the start or the end
+    length_factor: buckling length over the length of the run
+    """
+
+    modulus: float
+    reference: Literal["chord", "start", "end"] = "chord"
+    length_factor: float = 1.0
+
+
 @record
 class Section:
     """A cut (`at`), or a run of `count` cuts from `from_` to `to`, in body axes; the normal is given or points from ->
@@ -314,6 +327,7 @@ class Section:
     side: Literal["before", "beyond"] | None = None
     properties: Properties | None = None
     strength: float | None = None
+    beam_theory: BeamTheory | None = None
     piece: MassProperties | None = None
 
 

@@ -310,10 +310,15 @@ class Resolver:
             normal = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
         point = find_reduction_end(section.reduce_to)
         reduce_to: Any = self.end(point) if point is not None else section.reduce_to
+        beam_theory = None
+        if section.deflection:
+            assert section.modulus is not None
+            beam_theory = m.BeamTheory(section.modulus, section.reference or "chord", section.length_factor or 1.0)
         return m.Section(
             body=section.body, normal=normal, at=at, from_=start, to=end, count=section.count or 1,
             first_axis=section.first_axis, reduce_to=reduce_to, side=section.side,
             properties=make_properties(section.properties), strength=section.strength,
+            beam_theory=beam_theory,
             piece=self.piece(section.piece or (body.piece if at is not None else None)),
         )  # fmt: skip
 

@@ -12,7 +12,8 @@ whose numbers are channels as well, and their texts the cells of an `OutputTable
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,6 +31,9 @@ from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBl
 from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.selection import select_blocks
+
+if TYPE_CHECKING:
+    from heuncli.loads.kinetostatics.cuts import Cuts
 
 
 def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
@@ -151,7 +155,7 @@ def make_stop_blocks(joints: Sequence[JointLoads]) -> Block:
 
 def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
     """Make the blocks of all sections; by_cause: with their shares."""
-    scene, states, stress = recovery.setup.scene, recovery.states, recovery.indeterminate
+    scene, states = recovery.setup.scene, recovery.states
     block: Block = {}
     if not recovery.setup.cuts:
         return block
@@ -166,23 +170,34 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
     for requested_cuts in recovery.setup.cuts:
         attached = find_attachments(requested_cuts.body, states, actions)
         cuts = requested_cuts.place_for_loads(attached)
-        is_open: Mapping[str, Mask] = {}
-        if stress is not None:
-            from heuncli.loads.redundancy.indeterminate_components import (
-                find_indeterminate_section,
-                list_indeterminate_section_names,
-            )
+        is_open = find_open_section(recovery, cuts)
+        gravity, planar = scene.mechanism.gravity, scene.mechanism.planar
+        block[cuts.name] = section_block(cuts, states, gravity, attached, is_open, planar)
+        if is_open:
+            from heuncli.loads.redundancy.indeterminate_components import list_indeterminate_section_names
 
-            is_open = find_indeterminate_section(cuts, states, recovery.joints, recovery.couplings, stress)
-        section_results = section_block(
-            cuts, states, scene.mechanism.gravity, attached, is_open, scene.mechanism.planar
-        )
-        block[cuts.name] = section_results | ({"open": list_indeterminate_section_names(is_open)} if is_open else {})
+            block[cuts.name]["open"] = list_indeterminate_section_names(is_open)
+        if cuts.beam is not None:
+            from heuncli.loads.kinetostatics.deflection import deflection_block  # few scenes ask for it
+
+            find_open = partial(find_open_section, recovery)
+            block[cuts.name] |= deflection_block(cuts, states, gravity, attached, find_open, planar)
         if by_cause:
             from heuncli.loads.kinetostatics.shares import section_shares_block
 
             block[cuts.name]["shares"] = section_shares_block(cuts, scene.layout, states, recovery.shares, is_open)
     return block
+
+
+def find_open_section(recovery: Recovery, cuts: Cuts) -> Mapping[str, Mask]:
+    """Return which loads of cuts are indeterminate, by name; empty where none is."""
+    if recovery.indeterminate is None:
+        return {}
+    from heuncli.loads.redundancy.indeterminate_components import find_indeterminate_section
+
+    return find_indeterminate_section(
+        cuts, recovery.states, recovery.joints, recovery.couplings, recovery.indeterminate
+    )
 
 
 def make_bushing_block(load: BushingLoad, applied_load: AppliedLoad, states: BodyStates) -> ForceBlock:

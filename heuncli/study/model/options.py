@@ -205,6 +205,8 @@ def is_in_results(row: Quantity, setup: Setup) -> bool:
         return False
     if row.path.startswith("sections.SECTION.stress.points."):
         return any(cuts.cuts_members for cuts in setup.cuts)
+    if row.path.startswith(("sections.SECTION.deflection.", "sections.SECTION.buckling")):
+        return any(cuts.beam for cuts in setup.cuts)
     return not row.path.startswith("sections.SECTION.stress.") or any(cuts.properties for cuts in setup.cuts)
 
 

@@ -263,7 +263,12 @@ def build_with_cuts(spec: Spec, stages: Stages = NO_CACHE) -> tuple[Mechanism, t
         return mechanism, ()
     from heuncli.loads.kinetostatics.cuts import make_cuts  # with the shapes 9 ms that other scenes do not need
 
-    return mechanism, make_cuts(mechanism, spec, forms)
+    cuts = make_cuts(mechanism, spec, forms)
+    if any(section.beam_theory for section in spec.sections.values()):
+        from heuncli.loads.kinetostatics.deflection import add_beams  # few scenes ask for it
+
+        cuts = add_beams(cuts, mechanism, spec)
+    return mechanism, cuts
 
 
 ENTRY_PATH = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|couplings|rolling|sections|analysis)\.\w+")

@@ -131,8 +131,10 @@ class Channel(NamedTuple):
 
     @property
     def is_nonlinear(self) -> bool:
-        """Whether it belongs to a section and is no polynomial of its loads: stresses, and the reduction line."""
-        return self.kind == "sections" and self.name.split(".")[1:2] in (["stress"], ["line"])
+        """Whether it belongs to a section and is no polynomial of its loads: stresses, deflections, and the reduction
+        line.
+        """
+        return self.kind == "sections" and self.name.split(".")[1:2] in (["stress"], ["line"], ["deflection"])
 
     @property
     def label(self) -> str:
@@ -241,13 +243,15 @@ def collect_series_loads(results: Results) -> list[Channel]:
 def make_section_channels(
     name: str, section: Mapping[str, Any], units: Mapping[str, str] = NO_UNITS
 ) -> tuple[Channel, ...]:
-    """Make the channels of a section: its forces, then the stresses it has; of a series of cuts (n_t, n_cuts) each.
+    """Make the channels of a section: its forces, then the stresses and deflections it has; of a series of cuts
+    (n_t, n_cuts) each.
 
     units: replacements of units, for impulses instead of forces
     """
     stress = section.get("stress", {})
     parts = [(name, quantity, section[quantity]) for quantity in RESULTANTS if quantity in section]
     parts += [(f"{name}.stress", quantity, stress[quantity]) for quantity in STRESSES if quantity in stress]
+    parts += [(f"{name}.deflection", quantity, values) for quantity, values in section.get("deflection", {}).items()]
     channels = []
     for part, quantity, values in parts:
         unit = find_row(f"sections.SECTION{part.removeprefix(name)}.{quantity}").select_unit()

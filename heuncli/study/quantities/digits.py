@@ -21,6 +21,7 @@ from typing import Literal
 
 import numpy as np
 
+from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.path_words import BY_CAUSE
 from heuncli.results.results import Array, Magnitudes, Results
@@ -128,10 +129,24 @@ def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes)
         errors["sections", "Pa"] = stress * error
         errors["sections", "1"] = scales.get(("sections", "1"), 0.0) / load * error
         rounding["Pa"] = stress * rounding["N"]
+        for unit in ("m", "rad"):
+            errors["deflections", unit] = scales.get(("deflections", unit), 0.0) / load * error
+        errors["deflections", "1"] = find_buckling_error(results, errors["sections", "N"])
     horizon = results.horizon
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
     return StatedErrors(errors, rounding, units=labels.units)
+
+
+def find_buckling_error(results: Results, force_error: float) -> float:
+    """Return the error of the safety against buckling: relative to it, that of the compression [N]."""
+    largest = 0.0
+    for section in results.sections.values():
+        for safety, N in zip(section.get("buckling", ()), section["N"], strict=False):
+            if safety < tolerances.GREATEST_SAFETY:  # then some N is below 0, but perhaps between the cuts
+                compression = -float(np.min(N))
+                largest = max(largest, float(safety) * force_error / compression if compression > 0.0 else math.inf)
+    return largest
 
 
 def find_scales(results: Results, labels: Labels, only_kind: str | None = None) -> dict[tuple[str, str], float]:

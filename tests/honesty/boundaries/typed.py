@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from heuncli.base.errors import HeunError
@@ -90,6 +92,24 @@ def strength(x: float) -> str:
     return read(bar(tail=f"sections: {{c: {cut}, properties: {{circle: {{radius: 0.01}}}}, strength: {x!r}}}}}"))
 
 
+def buckling(x: float) -> str:
+    """A bar whose weight is so small against its modulus that its safety against buckling is x."""
+    size = "from: [0, 0, -1], to: [0, 0, 0], radius: 0.01"
+    modulus = x * WEIGHT / (math.pi**2 * math.pi / 4 * 0.01**4)
+    done = study(f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  bar: {{shapes: [{{type: cylinder, {size}, mass: 1}}], points: {{foot: [0, 0, -1], head: [0, 0, 0]}}}}
+joints: {{head: {{type: weld, from: ground.O, to: bar.head}}}}
+forces: {{push: {{type: force, on: bar.foot, vector: [0, 0, {WEIGHT}]}}}}
+sections:
+  c: {{body: bar, from: foot, to: head, count: 2, properties: auto, deflection: true, modulus: {modulus!r}}}
+""")
+    safety = float(done.results.sections["c"]["buckling"][0])
+    return "as it is" if abs(safety / x - 1) < 1e-9 else "the greatest"
+
+
 def expectation(wanted: str) -> str:
     done = study(bar(tail=f"expect: [{wanted}]"))
     return "passed" if compare(done, done.spec.expect[0]).is_met else "failed"
@@ -115,6 +135,7 @@ PART = Part(
         Row("DERIVATIVE_ERROR", derivative, "fine", "warned: table-derivative", (0.01, 1 / 3, 3.0)),
         Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),
         Row("LEAST_STRENGTH", strength, "warned: strength-small", "fine"),
+        Row("GREATEST_SAFETY", buckling, "as it is", "the greatest"),
         Row("EXPECTED_RELATIVE", relatively_off, "passed", "failed"),
         Row("EXPECTED_ABSOLUTE", absolutely_off, "passed", "failed"),
         Row("AT_LIMIT", start_beyond, "fine", "refused: beyond-stop"),

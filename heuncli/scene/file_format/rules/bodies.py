@@ -26,7 +26,8 @@ POSITIVE_HINTS = {
     "inner_radius": "a solid cylinder has no inner_radius",
     "length": "leave it out for the length as assembled; for 0 use a ball",
     "scale": "the length of one unit of the file: 1 mm",
-    "strength": "in Pa, or with a unit: 235 MPa", "density": "in kg/m^3: 7850 is steel",
+    "strength": "in Pa, or with a unit: 235 MPa", "modulus": "in Pa, or with a unit: 210 GPa",
+    "length_factor": "1 between two pins, 2 for a mast with a free end", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
 MASSLESS_HINT = "leave the inertia out: a frame without mass; or give the body a mass"
 NEGATIVE_HINTS = {
@@ -131,7 +132,7 @@ def check_positive(draft: DraftDocument) -> Iterator[Violation]:
 
 def iter_section_sizes(path: Path_, section: f.SectionEntry) -> Iterator[Violation]:
     """Yield the sizes of a section that are not more than 0."""
-    yield from require_positive(path, section, "strength")
+    yield from require_positive(path, section, "strength", "modulus", "length_factor")
     if section.piece is not None:
         yield from require_positive((*path, "piece"), section.piece, "mass")
     for kind in ("circle", "tube", "rectangle"):

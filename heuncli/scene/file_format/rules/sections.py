@@ -17,6 +17,7 @@ GENERAL_KEYS = ("area", "I1", "I2", "J", "c1", "c2")
 SECTION_SHAPES = ("circle", "tube", "rectangle", "I", "C", "L", "T", "box", "profile")
 REDUCED_TO = ("at", "centroid", "line")
 MAX_CUTS = 50_000  # in a run: finer than any figure shows, and validate still takes only a second
+ADD_DEFLECTION = "add deflection: true"
 SHEAR_FACTOR_HINT = "1 is a uniform stress; a rectangle has 1.5, a circle 4/3"
 
 
@@ -130,13 +131,14 @@ def check_first_axis(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("strength-small", is_warning=True)
 def check_strength_unit(draft: DraftDocument) -> Iterator[Violation]:
-    """A plain number is in Pa: a strength of some hundreds is probably meant in MPa."""
+    """A plain number is in Pa: a strength of some hundreds is probably meant in MPa, such a modulus in GPa."""
     for name, section in draft.document.sections.items():
-        strength = section.strength
-        if strength is not None and 0.0 < strength < tolerances.LEAST_STRENGTH:
-            suggestion = f"{strength:g} MPa" if strength <= MAX_PLAUSIBLE_STRENGTH else "235 MPa"
-            message = f"a strength of {strength:g} Pa is unusually low: a plain number is in Pa"
-            yield Violation(("sections", name, "strength"), message, f"give the unit, for example {suggestion}")
+        for key, unit, example in (("strength", "MPa", "235 MPa"), ("modulus", "GPa", "210 GPa")):
+            value = getattr(section, key)
+            if value is not None and 0.0 < value < tolerances.LEAST_STRENGTH:
+                suggestion = f"{value:g} {unit}" if value <= MAX_PLAUSIBLE_STRENGTH else example
+                message = f"a {key} of {value:g} Pa is unusually low: a plain number is in Pa"
+                yield Violation(("sections", name, key), message, f"give the unit, for example {suggestion}")
 
 
 @rule("properties-form")
@@ -193,3 +195,21 @@ def check_shear_factor(properties: f.PropertiesEntry, path: tuple[str, ...]) -> 
         yield Violation(
             path, f"the largest shear stress over the mean must be at least 1, not {factor:g}", SHEAR_FACTOR_HINT
         )
+
+
+@rule("deflection-form")
+def check_deflection_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A deflection is that of a series of cuts with properties and a modulus."""
+    for name, section in draft.document.sections.items():
+        path = ("sections", name)
+        if not section.deflection:
+            for key in ("modulus", "reference", "length_factor"):
+                if getattr(section, key) is not None:
+                    yield Violation((*path, key), f"{key} is given without a deflection", ADD_DEFLECTION, key=True)
+            continue
+        if not is_run(section):
+            hint = "give from, to and count instead of at and normal"
+            yield Violation((*path, "deflection"), "a single cut has no deflection", hint, key=True)
+        for key, hint in (("properties", "add properties: auto"), ("modulus", "add modulus: 210 GPa, for steel")):
+            if getattr(section, key) is None:
+                yield Violation((*path, "deflection"), f"a deflection needs {key}", hint, key=True)
