@@ -123,21 +123,20 @@ def estimate_derivative_error(
 ) -> float | None:
     """Estimate the largest error of the derivative of points that are smoothed before, unless `cut_off` is None.
 
-    It is three times how much the derivative changes with half the period at the cut-off; without smoothing, if every
-    second point is left out. None for too few points.
+    It is three times how much the derivative changes if every second point is left out, or, if that is more, with half
+    the period at the cut-off. None for too few points.
     """
     if len(x) < MIN_POINTS:
         return None
-    if cut_off is None:
-        half = np.append(np.arange(0, len(x) - 1, 2), len(x) - 1)
-        fine = differentiate_points(x, y, curve, is_periodic, times)[half]
-        coarse = differentiate_points(x[half], y[half], curve, is_periodic, times)
-        return ERROR_FACTOR * float(np.abs(fine - coarse).max())
-    rough = y
-    if cut_off >= 4.0 * float(np.median(np.diff(x))):
-        rough = smooth_points(x, y, 0.5 * cut_off, is_periodic)
-    change = smooth_points(x, y, cut_off, is_periodic) - rough
-    return ERROR_FACTOR * float(np.abs(differentiate_points(x, change, curve, is_periodic, times)).max())
+    smoothed = y if cut_off is None else smooth_points(x, y, cut_off, is_periodic)
+    fine = differentiate_points(x, smoothed, curve, is_periodic, times)
+    half = np.append(np.arange(0, len(x) - 2, 2), len(x) - 1)
+    changes = [fine[half] - differentiate_points(x[half], smoothed[half], curve, is_periodic, times)]
+    if cut_off is not None:
+        is_fine = cut_off >= 4.0 * float(np.median(np.diff(x)))
+        rough = smooth_points(x, y, 0.5 * cut_off, is_periodic) if is_fine else y
+        changes.append(fine - differentiate_points(x, rough, curve, is_periodic, times))
+    return ERROR_FACTOR * max(float(np.abs(change).max()) for change in changes)
 
 
 # Integrals
