@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.interpolate import make_smoothing_spline
+from scipy.interpolate import PPoly, make_smoothing_spline
 
 from heuncli.base import tolerances
 from heuncli.base.errors import SpecError
@@ -225,6 +225,34 @@ def test_a_linear_law_is_integrated_exactly_between_its_points_too(times: int) -
         s = level + speed * h + value * h**2 / 2.0 + slope * h**3 / 6.0
         near(np.polyval(piece[::-1], h), v if times == 1 else s, 1.0, 1e-14)
         speed, level = float(v[-1]), float(s[-1])
+
+
+def make_polynomial(found: TableFunction) -> PPoly:
+    numbers = np.frombuffer(found.numbers)
+    knots, pieces = numbers[1 : found.pieces + 2], numbers[found.pieces + 2 :].reshape(-1, 4)
+    return PPoly(pieces[:, ::-1].T, knots)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+@pytest.mark.parametrize(
+    "keys",
+    ["linear", "cubic", "cubic, ends: natural", "pchip", "cubic, drift: mean", "cubic, period: 1.5, drift: mean"],
+)
+@pytest.mark.parametrize("count", [2, 3, 4, 9])
+def test_the_integral_of_a_curve_through_few_points_is_right_between_them(keys: str, times: int, count: int) -> None:
+    """As of 2 x through two points, whose integral at x = 0.5 is 0.25, not 0.5."""
+    x = np.sort(np.array([0.0, 1.5, 0.2, 0.45, 0.5, 0.7, 0.8, 1.1, 1.3])[:count])
+    y = np.cos(3.0 * x)
+    if "period" in keys:
+        y[-1] = y[0]
+    curve = make_polynomial(table(x, y, f"interpolation: {keys.split(', drift')[0]}"))
+    at = np.linspace(0.0, 1.5, 301)
+    mean = curve.integrate(0.0, 1.5) / 1.5 if "mean" in keys else 0.0
+    first, second = curve.antiderivative(1)(at) - mean * at, curve.antiderivative(2)(at) - 0.5 * mean * at**2
+    start = second[-1] / 1.5 if "mean" in keys else 0.0
+    true = first - start if times == 1 else second - start * at
+    found = make_polynomial(table(x, y, f"integral: {times}, interpolation: {keys}"))
+    near(found(at), true, float(np.ptp(true)) or 1.0, 2e-6)
 
 
 def test_a_vibration_keeps_neither_offset_nor_mean_speed() -> None:

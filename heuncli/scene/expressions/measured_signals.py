@@ -13,11 +13,13 @@ The ends of a smoothing spline have no curvature. So the points are continued be
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
 from heuncli.results.results import Array
 from heuncli.scene.expressions.curves import COEFFICIENTS, SLOPES
 from heuncli.scene.expressions.programs import TableFunction
@@ -163,6 +165,37 @@ def integrate_table(table: TableFunction, times: int, drift: str) -> Integrals:
     if times == 1:
         return Integrals(first - drift_of_first, y - offset, offset, float(offset * along[-1]))
     return Integrals(second - drift_of_second, first - drift_of_first, offset, float(drift_of_second[-1]))
+
+
+def halve_pieces(table: TableFunction) -> TableFunction:
+    """Return the same curve with a point in the middle of each piece; the same table where one is too short for it."""
+    numbers, count = np.frombuffer(table.numbers), table.pieces
+    x, (c0, c1, c2, c3) = numbers[1 : count + 2], numbers[count + 2 :].reshape(-1, COEFFICIENTS).T
+    points = np.empty(2 * count + 1)
+    points[::2], points[1::2] = x, x[:-1] + 0.5 * np.diff(x)
+    if not (np.diff(points) > 0.0).all():
+        return table
+    h = points[1::2] - x[:-1]
+    coefficients, y = np.empty((2 * count, COEFFICIENTS)), np.empty(2 * count + 1)
+    coefficients[::2] = np.stack([c0, c1, c2, c3], axis=1)
+    middles = [c0 + h * (c1 + h * (c2 + h * c3)), c1 + h * (2.0 * c2 + 3.0 * h * c3), c2 + 3.0 * h * c3, c3]
+    coefficients[1::2] = np.stack(middles, axis=1)
+    y[::2], y[1::2] = np.frombuffer(table.y), middles[0]
+    halved = array("d", np.concatenate([numbers[:1], points, coefficients.ravel()]).tobytes())
+    x_array, y_array = array("d", points.tobytes()), array("d", y.tobytes())
+    return replace(table, pieces=2 * count, numbers=halved, x=x_array, y=y_array)
+
+
+def find_deviation(table: TableFunction, values: Array) -> float:
+    """Return the largest deviation of a table from values (4 n + 1,): at its points and at three places in each of its
+    n pieces.
+    """
+    numbers, count = np.frombuffer(table.numbers), table.pieces
+    h = np.diff(numbers[1 : count + 2])
+    c = numbers[count + 2 :].reshape(-1, COEFFICIENTS).T
+    rows = [np.polynomial.polynomial.polyval(share * h, c, tensor=False) - values[k:-1:4]
+            for k, share in enumerate((0.0, 0.25, 0.5, 0.75))]  # fmt: skip
+    return float(np.abs(rows).max())
 
 
 def accumulate(parts: Sequence[float] | Array) -> Array:
