@@ -252,7 +252,7 @@ def test_the_integral_of_a_curve_through_few_points_is_right_between_them(keys: 
     start = second[-1] / 1.5 if "mean" in keys else 0.0
     true = first - start if times == 1 else second - start * at
     found = make_polynomial(table(x, y, f"integral: {times}, interpolation: {keys}"))
-    near(found(at), true, float(np.ptp(true)) or 1.0, 2e-6)
+    near(found(at), true, float(np.ptp(true)) or 1.0, 2e-9)
 
 
 def test_a_vibration_keeps_neither_offset_nor_mean_speed() -> None:

@@ -30,7 +30,7 @@ from heuncli.scene.expressions.measured_signals import (
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format.format import TableEntry
 
-INTEGRAL_ERROR = 1e-6  # of the range of an integral, between its points
+INTEGRAL_ERROR = 1e-9  # of the range of an integral, between its points
 MAX_ADDED_PIECES = 20_000  # of finer points at which an integral is compared; larger tables are fine enough
 MAX_CUT_OFF_STEPS = 1e5  # beyond, the smoothed values lose more than eight digits to rounding
 TIMES = {1: "once", 2: "twice"}
