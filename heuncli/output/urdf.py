@@ -294,9 +294,9 @@ def format_pose(place: Array, R: Array) -> str:
     return f'<origin xyz="{format_numbers(place)}" rpy="{format_numbers(angles)}"/>'
 
 
-def choose_name(name: str, taken: Collection[str]) -> str:
-    """Return a name that is not taken, with as many underscores behind it as that needs."""
-    while name in taken:
+def choose_name(name: str, others: Collection[str]) -> str:
+    """Return a name that no other has, with as many underscores behind it as that needs."""
+    while name in others:
         name += "_"
     return name
 

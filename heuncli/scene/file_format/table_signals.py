@@ -123,15 +123,15 @@ def integrate_entry(table: TableFunction, entry: TableEntry, notes: list[str]) -
     return replace(made, dimensions=(table.dimensions[0], dimension), notes=(*notes, note))
 
 
-def rebuild_integral(table: TableFunction, entry: TableEntry, found: Integrals) -> TableFunction:
+def rebuild_integral(table: TableFunction, entry: TableEntry, integrals: Integrals) -> TableFunction:
     """Return the table through the exact values of an integral: of a spline a not-a-knot one, because the integral of a
     natural one is not straight at its ends; of other curves with the exact slopes.
     """
     if entry.period is not None:
-        found.values[-1] = found.values[0]
+        integrals.values[-1] = integrals.values[0]
     is_spline = entry.interpolation == "cubic"
     source = replace(table, interpolation="cubic") if is_spline else table
-    return rebuild_table(source, entry, found.values, None if is_spline else found.slopes)
+    return rebuild_table(source, entry, integrals.values, None if is_spline else integrals.slopes)
 
 
 def rebuild_table(table: TableFunction, entry: TableEntry, y: Array, slopes: Array | None = None) -> TableFunction:
