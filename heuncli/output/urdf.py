@@ -11,7 +11,7 @@ What URDF has no words for changes the motion and is refused; what is not part o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -31,6 +31,7 @@ CODE = "export-urdf"
 WORLD = "world"
 KINDS = {"pin": "continuous", "slide": "prismatic", "weld": "fixed"}
 FAR = 1e6  # [m] limit of a slide without stops: URDF takes a missing limit for 0
+START_ROUNDING = 1e-9  # of start coordinates and velocities [rad, m, rad/s, m/s]
 STRONG = 1e9  # effort and velocity, which URDF wants to have limits
 ATTITUDE_ROUNDING = 1e-14  # of the elements of a rotation
 STANDARD_GRAVITY_TEXT = "0 0 -9.81"
@@ -64,11 +65,11 @@ def write_urdf(spec: Spec, scene: PreparedScene) -> UrdfText:
     origins = [np.zeros(3) for _ in mechanism.bodies]
     for placed in tree:
         origins[placed.child] = placed.joint.p if placed.is_reversed else placed.joint.q
-    notes = list_notes(spec, mechanism)
+    notes = [*list_notes(spec, mechanism), *list_start_notes(scene, tree)]
     held = {placed.child for placed in tree}
     lines = ['<?xml version="1.0"?>', f"<robot name={quoteattr(plain(spec.title) or 'robot')}>"]
     lines += [f"  <!-- {plain(note).replace('--', '- -')} -->" for note in notes]
-    world = next(name for name in (WORLD, f"{WORLD}_", f"{WORLD}__") if name not in spec.bodies)
+    world = choose_name(WORLD, spec.bodies)
     lines.append(f'  <link name="{world}"/>')
     for i, body in enumerate(mechanism.bodies):
         lines += iter_link(body, origins[i], spec.bodies[body.name].shapes or ())
@@ -76,7 +77,7 @@ def write_urdf(spec: Spec, scene: PreparedScene) -> UrdfText:
         lines += iter_joint(placed, origins, scene, spec, world)
     for i in sorted(set(range(len(mechanism.bodies))) - held):
         pose = format_pose(scene.start.position[i], scene.start.rotation[i])
-        name = f"free_{mechanism.bodies[i].name}"
+        name = choose_name(f"free_{mechanism.bodies[i].name}", spec.joints)
         ends = f'<parent link="{world}"/><child link="{mechanism.bodies[i].name}"/>'
         lines.append(f'  <joint name="{name}" type="floating">{ends}{pose}</joint>')
     lines += iter_points(spec, mechanism, origins)
@@ -144,6 +145,26 @@ def list_notes(spec: Spec, mechanism: Mechanism) -> list[str]:
     return notes
 
 
+def list_start_notes(scene: PreparedScene, tree: Sequence[PlacedJoint]) -> Iterator[str]:
+    """Yield sentences on start values, for which URDF has no words: it starts at rest with all coordinates at 0."""
+    start, moved = scene.start, []
+    for placed in tree:
+        joint = placed.joint
+        x, y = (place + get_rotation(scene, body) @ point
+                for body, point, place in ((joint.a, joint.p, get_position(scene, joint.a)),
+                                           (joint.b, joint.q, get_position(scene, joint.b))))  # fmt: skip
+        turn = get_rotation(scene, placed.parent).T @ get_rotation(scene, placed.child) - find_attitude(placed, scene)
+        reach = 1.0 + float(np.abs(x).max())
+        if np.abs(turn).max() > START_ROUNDING or np.abs(y - x).max() > START_ROUNDING * reach:
+            moved.append(joint.name)
+    if moved:
+        yield f"start coordinates left out: {list_words(moved)}"
+    rates = np.abs(np.hstack([start.velocity, start.angular_velocity])).max(axis=1, initial=0.0)
+    moving = [body.name for body, rate in zip(scene.mechanism.bodies, rates, strict=True) if rate > START_ROUNDING]
+    if moving:
+        yield f"start velocities left out: {list_words(moving)}"
+
+
 def is_limit(stop: object) -> bool:
     """Whether a stop has both limits, as the limits of a joint of URDF."""
     return getattr(stop, "low", None) is not None and getattr(stop, "high", None) is not None
@@ -205,9 +226,7 @@ def iter_joint(
     """Yield the lines of a joint. world: the name of the root link"""
     joint, mechanism = placed.joint, scene.mechanism
     in_parent = joint.q if placed.is_reversed else joint.p
-    attitude = np.eye(3)
-    if joint.kind != "pin" or joint.to_axis_given:  # as assembled; other pins are at 0 where the axes agree
-        attitude = get_rotation(scene, placed.parent).T @ get_rotation(scene, placed.child)
+    attitude = find_attitude(placed, scene)
     in_child = joint.to_axis if joint.kind == "pin" else attitude.T @ joint.axis
     axis = -joint.axis if placed.is_reversed else in_child
     kind, parts = KINDS[joint.kind], ""
@@ -230,6 +249,18 @@ def iter_joint(
     base = np.zeros(3) if placed.parent == GROUND else origins[placed.parent]
     yield f"    {format_pose(in_parent - base, attitude)}{parts}"
     yield "  </joint>"
+
+
+def find_attitude(placed: PlacedJoint, scene: PreparedScene) -> Array:
+    """Return the axes of the child in those of the parent (3, 3) with the joint at 0."""
+    if placed.joint.kind == "pin" and not placed.joint.to_axis_given:  # at 0 where the axes agree
+        return np.eye(3)
+    return get_rotation(scene, placed.parent).T @ get_rotation(scene, placed.child)  # as assembled
+
+
+def get_position(scene: PreparedScene, body: int) -> Array:
+    """Return the place (3,) of a body's origin, or of the ground's, at the start."""
+    return np.zeros(3) if body == GROUND else scene.start.position[body]
 
 
 def get_rotation(scene: PreparedScene, body: int) -> Array:
@@ -261,6 +292,13 @@ def format_pose(place: Array, R: Array) -> str:
     rows = [tuple(map(float, row)) for row in exact]
     angles = compute_roll_pitch_yaw(tuple(rows))  # type: ignore[arg-type]
     return f'<origin xyz="{format_numbers(place)}" rpy="{format_numbers(angles)}"/>'
+
+
+def choose_name(name: str, others: Collection[str]) -> str:
+    """Return a name that no other has, with as many underscores behind it as that needs."""
+    while name in others:
+        name += "_"
+    return name
 
 
 def format_numbers(values: Sequence[float] | Array) -> str:

@@ -80,6 +80,44 @@ def test_a_first_row_of_numbers_is_a_point(text: str, expected: object) -> None:
     assert (found[0] if isinstance(found, list) else found[1]) == expected  # type: ignore[index]
 
 
+WIDE = [
+    "x y\n1 0 5\n2 1 6\n",  # of R: the first column has the names of the rows, and no heading
+    '"x","y"\n"1",0,5\n"2",1,6\n',
+    "x,y\n0,1\n1,2,5\n2,3\n",  # 2,5 is 2.5
+    "x;y\n0;1;7\n1;2;8\n",
+    "x,y\n0,1\n# half way\n1,2,5\n",
+]
+
+
+@pytest.mark.parametrize("text", WIDE)
+def test_more_numbers_than_headings_may_be_other_columns(text: str) -> None:
+    with pytest.raises(CsvError) as caught:
+        read_column_numbers(text, "x", "y")
+    assert "the row has 3 cells, rows before it 2" in str(caught.value)
+    assert caught.value.line == text[: text.index("5" if "5" in text else "7")].count("\n") + 1
+
+
+@pytest.mark.parametrize("text", ["0,1\n1,2,5\n", "title of it,\n0,1\n1,2,5\n"])
+def test_a_number_beyond_the_columns_by_number_is_refused_too(text: str) -> None:
+    with pytest.raises(CsvError, match="3 cells, rows before it 2"):
+        read_column_numbers(text, 1, 2)
+
+
+def test_words_and_empty_cells_beyond_the_headings_and_rows_below_a_title_are_read() -> None:
+    assert outcome("x,y\n0,1,\n1,2,end\n") == [[0, 1], [1, 2]]
+    assert outcome("Measurement 5\n1 2 3\n2 3 4\n") == [[1, 2], [2, 3]]
+
+
+@pytest.mark.parametrize("word", ["#N/A", "#NV", "#VALUE!", "#DIV/0!", "#NAME?"])
+@pytest.mark.parametrize("mark", [",", ";", "\t"])
+def test_an_error_of_a_spreadsheet_is_a_cell_not_a_comment(word: str, mark: str) -> None:
+    rows = [["x", "y"], ["0", "1"], [word, "2"], ["2", "9"]]
+    with pytest.raises(CsvError) as caught:
+        read_column_numbers("\n".join(mark.join(row) for row in rows), "x", "y")
+    assert caught.value.line == 3
+    assert outcome(f"0{mark}1\n#A comment!\n#N/A of it\n2{mark}9\n") == [[0, 2], [1, 9]]
+
+
 @pytest.mark.heavy
 def test_two_million_rows(tmp_path: Path) -> None:
     rows = "\n".join(map("%d,1".__mod__, range(2_000_000)))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.interpolate import make_smoothing_spline
+from scipy.interpolate import PPoly, make_smoothing_spline
 
 from heuncli.base import tolerances
 from heuncli.base.errors import SpecError
@@ -159,6 +159,25 @@ def test_the_stated_error_of_a_derivative_bounds_the_true_one(
     assert stated is not None and error <= stated <= 30.0 * error
 
 
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("cut_off", [None, 0.3, 0.6])
+@pytest.mark.parametrize(("curve", "times"), [("pchip", 1), ("natural", 1), ("cubic", 1)])
+@pytest.mark.parametrize("count", [10, 20, 200])
+def test_the_stated_error_holds_the_one_of_the_curve_between_uneven_points_too(
+    seed: int, cut_off: float | None, curve: str, times: int, count: int
+) -> None:
+    """A smoothed signal whose curve through the points is the coarser part: flat at peaks, straight at its ends."""
+    rng = np.random.default_rng(seed)
+    x = np.sort(np.concatenate([[0.0, 1.0], rng.uniform(0.0, 1.0, count - 2)]))
+    rate = 2.0 * math.pi * rng.uniform(0.3, 0.9)
+    y = np.sin(rate * x + seed)
+    true = rate * np.cos(rate * x + seed) if times == 1 else -(rate**2) * np.sin(rate * x + seed)
+    smoothed = y if cut_off is None else smooth_points(x, y, cut_off, False)
+    error = float(np.abs(differentiate_points(x, smoothed, curve, False, times) - true).max())
+    stated = estimate_derivative_error(x, y, curve, False, times, cut_off)
+    assert stated is not None and error <= stated
+
+
 def test_a_derivative_too_noisy_is_warned_of_and_its_error_stands_in_the_notes() -> None:
     rng = np.random.default_rng(3)
     x = np.linspace(0.0, 1.0, 501)
@@ -206,6 +225,34 @@ def test_a_linear_law_is_integrated_exactly_between_its_points_too(times: int) -
         s = level + speed * h + value * h**2 / 2.0 + slope * h**3 / 6.0
         near(np.polyval(piece[::-1], h), v if times == 1 else s, 1.0, 1e-14)
         speed, level = float(v[-1]), float(s[-1])
+
+
+def make_polynomial(found: TableFunction) -> PPoly:
+    numbers = np.frombuffer(found.numbers)
+    knots, pieces = numbers[1 : found.pieces + 2], numbers[found.pieces + 2 :].reshape(-1, 4)
+    return PPoly(pieces[:, ::-1].T, knots)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+@pytest.mark.parametrize(
+    "keys",
+    ["linear", "cubic", "cubic, ends: natural", "pchip", "cubic, drift: mean", "cubic, period: 1.5, drift: mean"],
+)
+@pytest.mark.parametrize("count", [2, 3, 4, 9])
+def test_the_integral_of_a_curve_through_few_points_is_right_between_them(keys: str, times: int, count: int) -> None:
+    """As of 2 x through two points, whose integral at x = 0.5 is 0.25, not 0.5."""
+    x = np.sort(np.array([0.0, 1.5, 0.2, 0.45, 0.5, 0.7, 0.8, 1.1, 1.3])[:count])
+    y = np.cos(3.0 * x)
+    if "period" in keys:
+        y[-1] = y[0]
+    curve = make_polynomial(table(x, y, f"interpolation: {keys.split(', drift')[0]}"))
+    at = np.linspace(0.0, 1.5, 301)
+    mean = curve.integrate(0.0, 1.5) / 1.5 if "mean" in keys else 0.0
+    first, second = curve.antiderivative(1)(at) - mean * at, curve.antiderivative(2)(at) - 0.5 * mean * at**2
+    start = second[-1] / 1.5 if "mean" in keys else 0.0
+    true = first - start if times == 1 else second - start * at
+    found = make_polynomial(table(x, y, f"integral: {times}, interpolation: {keys}"))
+    near(found(at), true, float(np.ptp(true)) or 1.0, 2e-9)
 
 
 def test_a_vibration_keeps_neither_offset_nor_mean_speed() -> None:

@@ -13,11 +13,13 @@ The ends of a smoothing spline have no curvature. So the points are continued be
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
 from heuncli.results.results import Array
 from heuncli.scene.expressions.curves import COEFFICIENTS, SLOPES
 from heuncli.scene.expressions.programs import TableFunction
@@ -123,21 +125,20 @@ def estimate_derivative_error(
 ) -> float | None:
     """Estimate the largest error of the derivative of points that are smoothed before, unless `cut_off` is None.
 
-    It is three times how much the derivative changes with half the period at the cut-off; without smoothing, if every
-    second point is left out. None for too few points.
+    It is three times how much the derivative changes if every second point is left out, or, if that is more, with half
+    the period at the cut-off. None for too few points.
     """
     if len(x) < MIN_POINTS:
         return None
-    if cut_off is None:
-        half = np.append(np.arange(0, len(x) - 1, 2), len(x) - 1)
-        fine = differentiate_points(x, y, curve, is_periodic, times)[half]
-        coarse = differentiate_points(x[half], y[half], curve, is_periodic, times)
-        return ERROR_FACTOR * float(np.abs(fine - coarse).max())
-    rough = y
-    if cut_off >= 4.0 * float(np.median(np.diff(x))):
-        rough = smooth_points(x, y, 0.5 * cut_off, is_periodic)
-    change = smooth_points(x, y, cut_off, is_periodic) - rough
-    return ERROR_FACTOR * float(np.abs(differentiate_points(x, change, curve, is_periodic, times)).max())
+    smoothed = y if cut_off is None else smooth_points(x, y, cut_off, is_periodic)
+    fine = differentiate_points(x, smoothed, curve, is_periodic, times)
+    half = np.append(np.arange(0, len(x) - 2, 2), len(x) - 1)
+    changes = [fine[half] - differentiate_points(x[half], smoothed[half], curve, is_periodic, times)]
+    if cut_off is not None:
+        is_fine = cut_off >= 4.0 * float(np.median(np.diff(x)))
+        rough = smooth_points(x, y, 0.5 * cut_off, is_periodic) if is_fine else y
+        changes.append(fine - differentiate_points(x, rough, curve, is_periodic, times))
+    return ERROR_FACTOR * max(float(np.abs(change).max()) for change in changes)
 
 
 # Integrals
@@ -164,6 +165,37 @@ def integrate_table(table: TableFunction, times: int, drift: str) -> Integrals:
     if times == 1:
         return Integrals(first - drift_of_first, y - offset, offset, float(offset * along[-1]))
     return Integrals(second - drift_of_second, first - drift_of_first, offset, float(drift_of_second[-1]))
+
+
+def halve_pieces(table: TableFunction) -> TableFunction:
+    """Return the same curve with a point in the middle of each piece; the same table where one is too short for it."""
+    numbers, count = np.frombuffer(table.numbers), table.pieces
+    x, (c0, c1, c2, c3) = numbers[1 : count + 2], numbers[count + 2 :].reshape(-1, COEFFICIENTS).T
+    points = np.empty(2 * count + 1)
+    points[::2], points[1::2] = x, x[:-1] + 0.5 * np.diff(x)
+    if not (np.diff(points) > 0.0).all():
+        return table
+    h = points[1::2] - x[:-1]
+    coefficients, y = np.empty((2 * count, COEFFICIENTS)), np.empty(2 * count + 1)
+    coefficients[::2] = np.stack([c0, c1, c2, c3], axis=1)
+    middles = [c0 + h * (c1 + h * (c2 + h * c3)), c1 + h * (2.0 * c2 + 3.0 * h * c3), c2 + 3.0 * h * c3, c3]
+    coefficients[1::2] = np.stack(middles, axis=1)
+    y[::2], y[1::2] = np.frombuffer(table.y), middles[0]
+    halved = array("d", np.concatenate([numbers[:1], points, coefficients.ravel()]).tobytes())
+    x_array, y_array = array("d", points.tobytes()), array("d", y.tobytes())
+    return replace(table, pieces=2 * count, numbers=halved, x=x_array, y=y_array)
+
+
+def find_deviation(table: TableFunction, values: Array) -> float:
+    """Return the largest deviation of a table from values (4 n + 1,): at its points and at three places in each of its
+    n pieces.
+    """
+    numbers, count = np.frombuffer(table.numbers), table.pieces
+    h = np.diff(numbers[1 : count + 2])
+    c = numbers[count + 2 :].reshape(-1, COEFFICIENTS).T
+    rows = [np.polynomial.polynomial.polyval(share * h, c, tensor=False) - values[k:-1:4]
+            for k, share in enumerate((0.0, 0.25, 0.5, 0.75))]  # fmt: skip
+    return float(np.abs(rows).max())
 
 
 def accumulate(parts: Sequence[float] | Array) -> Array:

@@ -31,6 +31,7 @@ NUMERIC_CHARACTERS = frozenset("0123456789+-.,eEdD_% ")
 NOT_FINITE = frozenset({"nan", "inf", "infinity"})
 GAP_WORDS = frozenset({"", "nan", "-nan", "+nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"})
 FORTRAN_EXPONENT = re.compile(r"(?<=[0-9.])[dD](?=[-+]?[0-9])")
+ERROR_CELL = re.compile(r"#(?:N/A|NV|[A-ZÄÖÜ/0]+[!?])[ ]*(?:[,;\t]|\Z)")  # of a spreadsheet
 BEGINS_AS_NUMBER = re.compile(r"[-+]?[.,]?[0-9]")
 QUOTED = re.compile(r'"[^"]*"')
 DECLARED_SEPARATOR = re.compile(r'"?sep=([;,\t])"?\s*\Z', re.IGNORECASE)  # the first line of a file for Excel
@@ -40,6 +41,7 @@ SKIP_HINT = "in tables, skip: N passes over the first N lines"
 NUMBERS_HINT = f"one number per cell, with a decimal point; start lines of text with #; {SKIP_HINT}"
 GAPS_HINT = "fill the gap; in tables, gaps: skip leaves such rows out, gaps: linear fills them"
 DECIMALS_HINT = "write decimals with a point, put each number in quotes, or separate the cells by semicolons"
+WIDTH_HINT = f"give each column a heading, and cells with decimal commas semicolons between them; {SKIP_HINT}"
 QUOTES_HINT = "close each quote; plain numbers need none"
 TEXT_HINT = "save it as CSV in UTF-8"
 
@@ -127,9 +129,9 @@ def iter_rows(text: str, header_lines: int = 0) -> Iterator[tuple[int, str]]:
 
 
 def is_row(line: str) -> bool:
-    """Whether a line holds a row: neither empty nor a comment."""
+    """Whether a line holds a row: neither empty nor a comment; #N/A is a cell without a number."""
     stripped = line.lstrip()
-    return stripped != "" and not stripped.startswith("#")
+    return stripped != "" and (not stripped.startswith("#") or ERROR_CELL.match(stripped) is not None)
 
 
 def detect_layout(text: str, skip: int = 0) -> ColumnLayout:

@@ -20,6 +20,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results_schema import parse_index
 from heuncli.scene.file_format.column_layout import (
     ROWS_HINT,
+    WIDTH_HINT,
     ColumnLayout,
     Columns,
     CsvError,
@@ -96,10 +97,13 @@ def read_columns(text: str, *keys: object, skip: int = 0, gaps: str = "refuse") 
         layout = ColumnLayout(layout.separator, [], layout.width, layout.header_lines - 1)
     if has_only_numbers and layout.separator is None and layout.has_hash_names:
         layout = layout._replace(names=[])  # words behind # that happen to be as many as the numbers
+    if has_only_numbers:  # the headings, or a title, do not matter
+        n, row = next(iter_rows(text, layout.header_lines), (0, ""))
+        layout = layout._replace(width=max(layout.width, len(split_cells(n, row, layout.separator))))
     columns: Columns = [array("d") for _ in keys]
     for line, lines in iter_line_pieces(text, layout.header_lines):
-        if not read_plain(lines, layout.separator, indices, columns):
-            read_rows(lines, line, layout.separator, indices, columns, gaps != "refuse")
+        if not read_plain(lines, layout, indices, columns):
+            read_rows(lines, line, layout, indices, columns, gaps != "refuse")
         if len(columns[0]) > MOST_ROWS:
             raise CsvError(
                 1, 1, Finding("too-large", f"more than {MOST_ROWS} rows, the maximum that is read", FEWER_ROWS_HINT)
@@ -169,9 +173,9 @@ def check_decimal_marks(text: str, layout: ColumnLayout, indices: Sequence[int])
         raise CsvError(first[2], 1, Finding("table-file", message, NO_GROUPS_HINT))
 
 
-def read_plain(lines: list[str], separator: str | None, indices: Sequence[int], columns: Columns) -> bool:
+def read_plain(lines: list[str], layout: ColumnLayout, indices: Sequence[int], columns: Columns) -> bool:
     """Append lines of plain numbers to the columns. Returns False, and appends nothing, if a line is not plain."""
-    text = "\n".join(lines)
+    text, separator = "\n".join(lines), layout.separator
     if not text.isascii():
         return False
     others = set(text.encode().translate(None, PLAIN_CHARACTERS).decode()) - {separator}
@@ -181,6 +185,8 @@ def read_plain(lines: list[str], separator: str | None, indices: Sequence[int], 
         return False
     if not text.strip():
         return True
+    if any((len(line.split()) if separator is None else line.count(separator) + 1) > layout.width for line in lines):
+        return False
     try:
         values = np.loadtxt(lines, delimiter=separator, comments=None, usecols=indices, ndmin=2, encoding=None)
     except ValueError:
@@ -193,13 +199,16 @@ def read_plain(lines: list[str], separator: str | None, indices: Sequence[int], 
 
 
 def read_rows(
-    lines: list[str], first: int, separator: str | None, indices: Sequence[int], columns: Columns, allows_gaps: bool
+    lines: list[str], first: int, layout: ColumnLayout, indices: Sequence[int], columns: Columns, allows_gaps: bool
 ) -> None:
     """Append lines to the columns, cell by cell; a gap is NaN if gaps are allowed. Raises CsvError."""
     for n, line in enumerate(lines, first):
         if not is_row(line):
             continue
-        row = split_cells(n, line, separator)
+        row = split_cells(n, line, layout.separator)
+        if any(parse_number(cell) is not None for cell in row[layout.width :]):
+            message = f"the row has {len(row)} cells, rows before it {layout.width}"
+            raise CsvError(n, layout.width + 1, Finding("table-file", message, WIDTH_HINT))
         for index, numbers in zip(indices, columns, strict=True):
             cell = row[index] if index < len(row) else ""
             if allows_gaps and is_gap(cell):

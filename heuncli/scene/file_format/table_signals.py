@@ -19,14 +19,19 @@ from heuncli.results.results import Array
 from heuncli.scene.expressions.curves import interpolate_points
 from heuncli.scene.expressions.measured_signals import (
     MIN_POINTS,
+    Integrals,
     differentiate_points,
     estimate_derivative_error,
+    find_deviation,
+    halve_pieces,
     integrate_table,
     smooth_points,
 )
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format.format import TableEntry
 
+INTEGRAL_ERROR = 1e-9  # of the range of an integral, between its points
+MAX_ADDED_PIECES = 20_000  # of finer points at which an integral is compared; larger tables are fine enough
 MAX_CUT_OFF_STEPS = 1e5  # beyond, the smoothed values lose more than eight digits to rounding
 TIMES = {1: "once", 2: "twice"}
 FINE_HINT = "give a longer period (a lower frequency), or leave smooth out"
@@ -101,18 +106,32 @@ def prepare_signal(table: TableFunction, entry: TableEntry) -> tuple[TableFuncti
 
 
 def integrate_entry(table: TableFunction, entry: TableEntry, notes: list[str]) -> TableFunction:
-    """Return the integral of a table, through the exact values; where it is no spline, with the exact slopes."""
+    """Return the integral of a table, with points added until it is right between them, too."""
     order, drift = entry.integral or 1, entry.drift or "keep"
-    found = integrate_table(table, order, drift)
-    values, dimension = found.values, derive_dimension(table, order)
-    if entry.period is not None:
-        values[-1] = values[0]
+    found, dimension = integrate_table(table, order, drift), derive_dimension(table, order)
     taken = f"offset {format_amount(found.offset, table.dimensions[1])} taken out (drift: {drift})"
     moved = f"it would have moved the end by {format_amount(found.displacement, dimension)}"
     what = "no drift taken out" if drift == "keep" else f"{taken}, {moved}"
     note = f"table {table.name}: integrated {TIMES[order]}; {what}"
-    made = rebuild_table(table, entry, values, found.slopes if entry.interpolation != "cubic" else None)
+    made, finest = rebuild_integral(table, entry, found), halve_pieces(halve_pieces(table))
+    while 4 * table.pieces == finest.pieces <= MAX_ADDED_PIECES:
+        exact = integrate_table(finest, order, drift).values
+        if find_deviation(made, exact) <= INTEGRAL_ERROR * float(np.ptp(exact)):
+            break
+        table, finest = halve_pieces(table), halve_pieces(finest)
+        made = rebuild_integral(table, entry, integrate_table(table, order, drift))
     return replace(made, dimensions=(table.dimensions[0], dimension), notes=(*notes, note))
+
+
+def rebuild_integral(table: TableFunction, entry: TableEntry, integrals: Integrals) -> TableFunction:
+    """Return the table through the exact values of an integral: of a spline a not-a-knot one, because the integral of a
+    natural one is not straight at its ends; of other curves with the exact slopes.
+    """
+    if entry.period is not None:
+        integrals.values[-1] = integrals.values[0]
+    is_spline = entry.interpolation == "cubic"
+    source = replace(table, interpolation="cubic") if is_spline else table
+    return rebuild_table(source, entry, integrals.values, None if is_spline else integrals.slopes)
 
 
 def rebuild_table(table: TableFunction, entry: TableEntry, y: Array, slopes: Array | None = None) -> TableFunction:
