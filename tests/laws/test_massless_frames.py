@@ -198,3 +198,20 @@ def test_a_gimbal_in_line_is_refused() -> None:
 def test_some_body_has_mass() -> None:
     with pytest.raises(SpecError, match="mass must be greater than 0"):
         solved(f"{HEAD}bodies: {{x: {{{FRAME}}}}}\njoints: {{u: {{type: pin, from: ground.O, to: x.c}}}}\n{RUN}")
+
+
+@pytest.mark.parametrize("origin", [0.0, -0.2])
+def test_a_planar_bar_without_mass_has_the_angle_of_its_pin(origin: float) -> None:
+    """Wherever its origin is, also at the pin: a load on a bar of length L at the angle a, a'' = -g cos a/L."""
+    L = 0.8
+    results = solved(
+        "heun: 1\nspace: planar\ngravity: [0, -9.81, 0]\nground: {points: {O: [0, 0, 0]}}\n"
+        f"bodies:\n  bar: {{mass: 0, points: {{root: [{origin}, 0, 0], end: [{origin + L}, 0, 0]}}}}\n"
+        "  load: {mass: 2, center: [0, 0, 0], inertia: 0.0, points: {c: [0, 0, 0]}}\njoints:\n"
+        "  u: {type: pin, from: ground.O, to: bar.root}\n  fixed: {type: weld, from: bar.end, to: load.c}\n"
+        "analysis: {duration: 1, samples: 11}\n"
+    )
+    swing, position = results.coordinates["u"], results.bodies["load"]["center"]
+    near(swing["angle"], np.arctan2(position[:, 1], position[:, 0]), 1.0, 1e-12)
+    near(swing["acceleration"], -9.81 * np.cos(swing["angle"]) / L, 10.0, 1e-9)
+    near(results.joints["u"]["radial"], np.linalg.norm(results.joints["u"]["force"], axis=1), 20.0, 1e-12)

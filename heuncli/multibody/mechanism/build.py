@@ -186,12 +186,17 @@ def find_named_points(spec: m.Spec, values: Sequence[Expression], index: dict[st
 
 
 def to_spun_pin(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
-    """Turn a pin at the centre of a body without inertia into a "spun pin" if nothing determines or uses its angle."""
+    """Turn a pin at the centre of a point mass into a "spun pin" if nothing determines or uses its angle.
+
+    A body without mass must be held in rotation anyway: its pins keep their angle.
+    """
     given = (joint.angle, joint.rate, joint.drive)
     if joint.kind != "pin" or joint.to_axis_given or any(value is not None for value in given):
         return joint
     for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
-        if end != GROUND and bodies[end].inertia[2, 2] <= 0.0 and np.array_equal(point, bodies[end].center):
+        if end == GROUND or bodies[end].mass <= 0.0:
+            continue
+        if bodies[end].inertia[2, 2] <= 0.0 and np.array_equal(point, bodies[end].center):
             return replace(joint, kind="spun pin")
     return joint
 
