@@ -74,7 +74,8 @@ def leaning(x: float) -> str:
 
 def hardly_moved(x: float) -> str:
     """A contact on a body of 1 kg that gives way to a part of what it would if it were free."""
-    layout: Any = SimpleNamespace(bodies={"mass": np.ones(1)}, size=1.0)
+    mechanism, links = SimpleNamespace(scale_masses=np.ones(1)), [SimpleNamespace(body=0)]
+    layout: Any = SimpleNamespace(mechanism=mechanism, spanning=SimpleNamespace(links=links), size=1.0)
     one = np.ones(1)
     touch = TouchingContacts(np.zeros(1, dtype=int), np.array([[[0.0, 0, 0, 0, 0, 1.0]]]), one, one, one, one, one)
     return "moves" if can_move_bodies(layout, touch, np.array([[x]]))[0] else "held"
