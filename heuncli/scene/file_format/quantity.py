@@ -41,8 +41,8 @@ WITH_UNIT = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|(?<=\s)1/)[^,]*+)\Z")
 WHOLE_NUMBER = re.compile(r"(?<![\w.*])\d(?![\w.])|(?<=[^*]\*)\d(?![\w.])")
 PLAIN_OR_WITH_UNIT = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 CALL = re.compile(r"([^\W\d]\w*+)\s*+\(")  # a name before a parenthesis
-UNIT_NAME = re.compile(r"[^\W\d]+|°")
-EXPRESSION_MARK = re.compile(r"[-+*/(<>]|\bif\b")
+UNIT_NAME = re.compile(r"[^\W\d]\w*|°")
+EXPRESSION_MARK = re.compile(r"\+|(?<![*^])-|(?<!\*)[*/][\s(]*[0-9.]")  # a sum, or a product with a number
 OVER_UNIT = re.compile(rf"{FIGURE}/\s*+([^\W\d]++)\s*\Z")
 USES_TIME = re.compile(r"(?<![\w.])t(?![\w.])")
 CONDITIONS_HINT = "for example guide.travel > 0.2, shaft.rate < 0 and t > 1, or {of: joints.wall.force.x, below: 0}"
@@ -110,7 +110,7 @@ def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scop
     with_unit = match_quantity(value)
     if with_unit is None:
         return require_dimension(compile_text(value, scope), dimension, scope)
-    if is_expression_after_unit(with_unit):
+    if is_expression_after_unit(with_unit, scope):
         return require_dimension(compile_text(value, scope), dimension, scope)
     size, unit_dimension = evaluate_quantity(with_unit, scope)
     if dimension is not None and unit_dimension != dimension:
@@ -121,15 +121,17 @@ def read_unbounded_function(value: Any, dimension: Dimension | None, scope: Scop
     return replace(Expression.from_number(size), source=value, dimension=unit_dimension)
 
 
-def is_expression_after_unit(number: WrittenQuantity) -> bool:
+def is_expression_after_unit(number: WrittenQuantity, scope: Scope) -> bool:
     """Return whether the text goes on after the unit, as in '2 kN*sin(3*t)' and '40 mm + 3 mm'."""
-    unit = UNIT_NAME.match(number.unit)
-    if unit is None or canonical_symbol(unit[0]) not in UNITS or correct_unit(number.unit) is not None:
+    names = UNIT_NAME.findall(number.unit)
+    if not UNIT_NAME.match(number.unit) or canonical_symbol(names[0]) not in UNITS:
         return False
     try:
         parse_unit(number.unit)
     except Finding:
-        return EXPRESSION_MARK.search(number.unit) is not None
+        known = (scope.parameters, scope.joints, scope.own, RESERVED)
+        has_name = any(name in block and canonical_symbol(name) not in UNITS for name in names for block in known)
+        return has_name or EXPRESSION_MARK.search(number.unit) is not None
     return False
 
 
