@@ -13,7 +13,7 @@ RALSTON2 = Addition(
     "A method",
     {
         "heuncli/motion/integration/methods/explicit.py": (
-            after("from heuncli.motion.integration.methods.method import Method\n", """
+            after("from heuncli.motion.integration.methods.method import GLOBAL, RECENTRED, Method\n", """
 RALSTON2 = Method(
     name="Ralston2", order=2, has_fixed_step=True, nodes=(0.0, 2 / 3), stages=(((0, 2 / 3),),),
     solution=((0, 1 / 4), (1, 3 / 4)),

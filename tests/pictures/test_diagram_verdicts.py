@@ -100,7 +100,7 @@ def with_errors(errors: dict[str, float], monkeypatch: pytest.MonkeyPatch) -> li
         "c: {type: couple, on: bar.end, vector: [0.02, 0, 0], frame: body}"
     )
     own = StatedErrors({("sections", unit): error for unit, error in errors.items()}, {"N": 1e-12, "N·m": 1e-12})
-    monkeypatch.setattr(WholeBar, "certain", own)
+    monkeypatch.setattr(WholeBar, "stated_errors", own)
     figure = make_diagrams([FigureSource("", study(CANTILEVER.format(forces=forces)))], ["along"], SI)
     words = [item.text for panel in figure.panels for item in panel.items if isinstance(item, Blank)]
     return [*(panel.y.label.partition(" ")[0] for panel in diagrams(figure)), *words, *figure.notes]
