@@ -126,16 +126,26 @@ def find_first_step(
 
 
 def find_load_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
-    """Return a fraction of the rate that the applied loads could cause, for parts that are held at rest [1/s]."""
+    """Return a fraction of the rate that the applied loads could cause, for parts that are held at rest [1/s].
+
+    Loads on a body without mass move others: they are taken to act on the lightest.
+    """
     i: cython.Py_ssize_t
     u: cython.double
     g: cython.double
+    lightest: cython.double = 0.0
     largest: cython.double = norm(scene.gravity) / scene.size
     run.control.energy_scale = 0.0
+    for i in range(scene.body_count):
+        g = scene.bodies[i].mass * scene.size
+        if g > 0.0 and (lightest == 0.0 or g < lightest):
+            lightest = g
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         g = body.mass * scene.size
         run.control.energy_scale += g * scene.size
+        if g == 0.0:
+            g = lightest
         u = (sum_magnitudes(body.f_applied) + sum_magnitudes(body.M_applied) / scene.size) / g
         if u > largest:
             largest = u
