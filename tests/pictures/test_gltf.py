@@ -128,6 +128,10 @@ def volume(shape: Shape) -> float:
     if shape.mesh is not None and shape.scale is not None:
         return shape.mesh.volume * shape.scale**3
     length = math.dist(shape.from_ or (), shape.to or ())
+    if shape.member is not None:  # drawn without its fillets; those of the specs are I and C, and do not taper
+        assert shape.member.family in "IC" and shape.member.start == shape.member.end
+        m = shape.member.start
+        return length * (m.height * m.web + 2.0 * (m.width - m.web) * (m.flange - 0.5 * m.slope * m.web))
     if shape.type == "rod":
         return math.pi * OF_CIRCLE * length * (ROD_RADIUS_RATIO * length) ** 2
     r, inner = shape.radius or 0.0, shape.inner_radius or 0.0

@@ -267,7 +267,7 @@ def in_units(tree: Tree, mass: float = 1.0, length: float = 1.0, time: float = 1
         cut.pop("strength", None)
         if "properties" in cut and length != 1.0:
             raise NotTold("a cross-section")
-        tell(cut, ENDS)
+        tell(cut, {**ENDS, "modulus": (1, -1, -2)})
         tell(cut.get("piece", {}), BODY)
     tell(tree.get("foundation", {}), {"about": LENGTH})
     if any(isinstance(value, dict) and "of" in value for value in _conditions(tree)):
