@@ -152,7 +152,7 @@ def find_auto_compliance(properties: CutProperties, count: int) -> Array:
     return K
 
 
-def deflection_block(
+def make_deflection_block(
     cuts: Cuts,
     states: BodyStates,
     gravity: Array,
@@ -211,8 +211,8 @@ def integrate_twice(
     breaks = np.maximum.accumulate(np.where(is_short, 0.0, ends[..., 1]), axis=1)
     starts = np.concatenate([np.zeros((n_t, 1)), breaks[:, :-1]], axis=1)
     h = 0.5 * (breaks - starts)
-    slopes = add_up(h * once.sum(axis=2))
-    deflections = add_up(2.0 * h * slopes[:, :-1] + h * h * twice.sum(axis=2))
+    slopes = accumulate_steps(h * once.sum(axis=2))
+    deflections = accumulate_steps(2.0 * h * slopes[:, :-1] + h * h * twice.sum(axis=2))
     rows = slice(None if nodes.ndim > 1 or s.ndim > 1 else 1)  # one, where nothing moves along the run
     s = np.broadcast_to(s, (n_t, s.shape[-1]))[rows]
     piece = np.minimum((breaks[rows, None] < s[..., None]).sum(axis=2), h.shape[1] - 1)
@@ -237,7 +237,7 @@ def integrate_twice(
     return w, slope
 
 
-def add_up(steps: Array) -> Array:
+def accumulate_steps(steps: Array) -> Array:
     """Return 0 and the sums of the first steps, (n_t, m + 1) of (n_t, m)."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
 

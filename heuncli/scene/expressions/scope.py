@@ -147,7 +147,7 @@ class Scope:
     points: the points of each body and of the ground
     in_time: whether time, coordinates and points may be used
     given: the parameters that have a dimension, as they are written
-    with_units: numbers may have units, and compared values need the same dimension
+    with_units: compared values need the same dimension, and a unit goes before a parameter of its name
     calculations: cache of numbers of parameters alone, from a spec with the same names
     own: the quantities of the load itself by name, such as `length` of a spring
     """

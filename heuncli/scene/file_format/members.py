@@ -114,7 +114,7 @@ def find_section_measures(entry: f.PropertiesEntry) -> Properties | None:
     return None
 
 
-def mean_area(member: Member | NamedProfile) -> float:
+def compute_mean_area(member: Member | NamedProfile) -> float:
     """Return the volume of a member over its length [m2]; the area of a tapered one is quadratic along it."""
     if isinstance(member, NamedProfile):
         return math.pi * (member.radius - member.inner_radius) * (member.radius + member.inner_radius)

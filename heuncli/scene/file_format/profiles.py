@@ -159,7 +159,7 @@ def _make_hollow(name: str, kind: str, sizes: list[float], is_cold: bool) -> Nam
     wall = sizes[-1]
     if kind == "CHS":
         if not 0.0 < 2.0 * wall < sizes[0]:
-            raise wall_error(wall * MM, sizes[0] * MM, "diameter")
+            raise make_wall_error(wall * MM, sizes[0] * MM, "diameter")
         return NamedProfile("tube", None, 0.5 * sizes[0] * MM, (0.5 * sizes[0] - wall) * MM)
     outer, inner = (1.5, 1.0) if not is_cold else (2.0, 1.0) if wall <= 6.0 else (2.5, 1.5) if wall <= 10.0 else (3, 2)
     t = wall * MM
@@ -168,7 +168,7 @@ def _make_hollow(name: str, kind: str, sizes: list[float], is_cold: bool) -> Nam
     return NamedProfile("box", measures)
 
 
-def wall_error(wall: float, size: float, name: str) -> Finding:
+def make_wall_error(wall: float, size: float, name: str) -> Finding:
     """Make the error for walls that leave nothing between them."""
     message = f"a wall of {wall:g} m leaves nothing of a {name} of {size:g} m between its two sides"
     return Finding("member-form", message, "walls are thinner than half of the section")
@@ -188,7 +188,7 @@ def check_measures(family: Family, m: Measures) -> None:
     for count, wall, size, name in ((webs, m.web, m.width, "width"), (flanges, m.flange, m.height, "height")):
         if count * wall >= size:
             if count == 2:
-                raise wall_error(wall, size, name)
+                raise make_wall_error(wall, size, name)
             message = f"a wall of {wall:g} m is not less than the {name} of {size:g} m"
             raise Finding("member-form", message, f"give a {name} larger than the wall")
     for key, limit in _radius_limits(family, m):

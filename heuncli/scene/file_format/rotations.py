@@ -32,6 +32,11 @@ def cross_product(a: Vec, b: Vec) -> Vec:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
+def are_parallel(a: Vec, b: Vec) -> bool:
+    """Return whether two directions, neither of them 0, are parallel or opposite."""
+    return vector_length(cross_product(unit_vector(a), unit_vector(b))) < tolerances.PARALLEL
+
+
 def matrix_product(a: Matrix, b: Matrix) -> Matrix:
     rows = [tuple(sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)) for i in range(3)]
     return rows[0], rows[1], rows[2]  # type: ignore[return-value]

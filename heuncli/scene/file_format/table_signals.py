@@ -76,7 +76,7 @@ def check_signal_keys(entry: TableEntry) -> Iterator[KeyedFinding]:
 def prepare_signal(table: TableFunction, entry: TableEntry) -> tuple[TableFunction, list[KeyedFinding]]:
     """Return the table of an entry after smoothing, and its derivative or integral, with notes; and warnings.
 
-    Raises KeyFinding.
+    Raises SignalKeyError.
     """
     x, y = np.frombuffer(table.x), np.frombuffer(table.y)
     is_periodic, notes = entry.period is not None, []
@@ -142,7 +142,7 @@ def rebuild_table(table: TableFunction, entry: TableEntry, y: Array, slopes: Arr
 
 
 def choose_cut_off(table: TableFunction, entry: TableEntry) -> float:
-    """Return the period at the cut-off [as x]. Raises KeyFinding if the points cannot be smoothed by it."""
+    """Return the period at the cut-off [as x]. Raises SignalKeyError if the points cannot be smoothed by it."""
     assert entry.smooth is not None and entry.smooth.constant is not None
     cut_off, own, expected = entry.smooth.constant, entry.smooth.dimension, table.dimensions[0]
     if own is not None and expected is not None and own != expected:

@@ -114,7 +114,7 @@ def make_member_section(family: Family, m: Measures) -> MemberSection:
     wall_moments, flows, shear_center = _find_shear_flow(nodes, walls, family == "box")
     thickness = np.array([max(wall.start_thickness, wall.end_thickness) for wall in walls])
     if family == "box":
-        J, torsion_stress = _box_torsion(m)
+        J, torsion_stress = _find_box_torsion(m)
         stresses = np.full(4, torsion_stress)
     else:
         J = TORSION_CONSTANTS[family](m)
@@ -214,11 +214,11 @@ def _find_shear_flow(nodes: Array, walls: tuple[Wall, ...], is_closed: bool) -> 
 # Torsion
 
 
-def _i_torsion(m: Measures) -> float:
+def _find_i_torsion(m: Measures) -> float:
     return _t_part(m) * 2.0 + (m.height - 2.0 * m.flange) * m.web**3 / 3.0
 
 
-def _t_torsion(m: Measures) -> float:
+def _find_t_torsion(m: Measures) -> float:
     return _t_part(m) + (m.height - m.flange - 0.315 * m.web) * m.web**3 / 3.0
 
 
@@ -229,7 +229,7 @@ def _t_part(m: Measures) -> float:
     return (m.width - 0.63 * f) * f**3 / 3.0 + min(t / f, f / t) * (0.145 + 0.1 * r / f) * D**4
 
 
-def _c_torsion(m: Measures) -> float:
+def _find_c_torsion(m: Measures) -> float:
     t, f, r = m.web, m.flange, m.radius
     w, q = t / f, r / f
     alpha = -0.0908 + 0.2621 * w + 0.1231 * q - 0.0752 * w * q - 0.0945 * w * w
@@ -237,7 +237,7 @@ def _c_torsion(m: Measures) -> float:
     return 2.0 * m.width * f**3 / 3.0 + (m.height - 2.0 * f) * t**3 / 3.0 + 2.0 * alpha * D**4 - 0.42 * f**4
 
 
-def _l_torsion(m: Measures) -> float:
+def _find_l_torsion(m: Measures) -> float:
     thick, thin = max(m.web, m.flange), min(m.web, m.flange)
     long, short = (m.width, m.height) if m.flange >= m.web else (m.height, m.width)
     r = m.radius
@@ -248,10 +248,10 @@ def _l_torsion(m: Measures) -> float:
     return strips + alpha * D**4 - 0.105 * (thick**4 + thin**4)
 
 
-TORSION_CONSTANTS = {"I": _i_torsion, "T": _t_torsion, "C": _c_torsion, "L": _l_torsion}
+TORSION_CONSTANTS = {"I": _find_i_torsion, "T": _find_t_torsion, "C": _find_c_torsion, "L": _find_l_torsion}
 
 
-def _box_torsion(m: Measures) -> tuple[float, float]:
+def _find_box_torsion(m: Measures) -> tuple[float, float]:
     """Return the torsion constant of a box of one wall thickness, and its largest stress over the torque."""
     t, corner = m.web, 0.5 * (m.radius + m.toe_radius)
     h = 2.0 * (m.width + m.height - 2.0 * t) - 2.0 * corner * (4.0 - math.pi)

@@ -178,10 +178,10 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
 
             block[cuts.name]["open"] = list_indeterminate_section_names(is_open)
         if cuts.beam is not None:
-            from heuncli.loads.kinetostatics.deflection import deflection_block  # few scenes ask for it
+            from heuncli.loads.kinetostatics.deflection import make_deflection_block  # few scenes ask for it
 
             find_open = partial(find_open_section, recovery)
-            block[cuts.name] |= deflection_block(cuts, states, gravity, attached, find_open, planar)
+            block[cuts.name] |= make_deflection_block(cuts, states, gravity, attached, find_open, planar)
         if by_cause:
             from heuncli.loads.kinetostatics.shares import section_shares_block
 

@@ -167,7 +167,7 @@ def has_fixed_transmissions(
     return True
 
 
-def group_numbers(groups: Sequence[FrictionGroup], contacts: Sequence[int]) -> Array:
+def list_group_numbers(groups: Sequence[FrictionGroup], contacts: Sequence[int]) -> Array:
     """Return what the kernel is to know of groups of several members, (2 k,): for each place the contact of its leader,
     counted from 1, and its transmission; 0 for others.
 

@@ -41,8 +41,8 @@ from heuncli.motion.integration.contacts.contact_problem import make_jamming_pro
 from heuncli.motion.integration.contacts.friction_groups import (
     FrictionGroup,
     PlaceResponse,
-    group_numbers,
     has_fixed_transmissions,
+    list_group_numbers,
     make_groups,
     measure_response,
 )
@@ -117,7 +117,7 @@ class FrictionStates:
         if n:
             holding[self.indices] = sticks
             holding[len(holding) - 3 * n : len(holding) - 2 * n] = coordinate_or_sign
-            holding[len(holding) - 2 * n :] = group_numbers(groups, self.indices)
+            holding[len(holding) - 2 * n :] = list_group_numbers(groups, self.indices)
         return holding
 
     def release_all(self, holding: Array) -> Array:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 from heuncli.scene.file_format import format_shapes as fs
 from heuncli.scene.file_format.members import find_ends, find_member, find_section_measures, is_member
 from heuncli.scene.file_format.profiles import find_profile
-from heuncli.scene.file_format.rotations import cross_product, unit_vector, vector_length
+from heuncli.scene.file_format.rotations import are_parallel
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 
 
@@ -55,7 +54,7 @@ def check_member_form(draft: DraftDocument) -> Iterator[Violation]:
             axis = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
             if not any(axis) or not any(shape.first_axis):
                 continue
-            if vector_length(cross_product(unit_vector(shape.first_axis), unit_vector(axis))) < tolerances.PARALLEL:
+            if are_parallel(shape.first_axis, axis):
                 hint = "give one across the member: only its component across is used"
                 path = ("bodies", name, "shapes", i, "first_axis")
                 yield Violation(path, "first_axis points along the member", hint)

@@ -13,7 +13,7 @@ from heuncli.base.errors import Finding
 from heuncli.base.units import is_in_range, range_error
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format import format_shapes as fs
-from heuncli.scene.file_format.members import find_ends, find_member, is_member, mean_area
+from heuncli.scene.file_format.members import compute_mean_area, find_ends, find_member, is_member
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 
 
@@ -112,7 +112,7 @@ def shape_mass(shape: fs.ShapeEntry) -> float:
 def member_volume(shape: fs.ShapeEntry) -> float:
     """Return the volume of a member [m^3]; 0 if it cannot be one, which another rule reports."""
     try:
-        return mean_area(find_member(shape)) * math.dist(*find_ends(shape))
+        return compute_mean_area(find_member(shape)) * math.dist(*find_ends(shape))
     except Finding:
         return 0.0
 

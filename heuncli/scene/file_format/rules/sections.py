@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from heuncli.base import tolerances
 from heuncli.scene.file_format import format as f
-from heuncli.scene.file_format.rotations import cross_product, unit_vector, vector_length
+from heuncli.scene.file_format.rotations import are_parallel
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 from heuncli.scene.file_format.semantics import find_point
 
@@ -124,7 +124,7 @@ def check_first_axis(draft: DraftDocument) -> Iterator[Violation]:
                 normal = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
         if section.first_axis is None or normal is None or not any(normal) or not any(section.first_axis):
             continue
-        if vector_length(cross_product(unit_vector(section.first_axis), unit_vector(normal))) < tolerances.PARALLEL:
+        if are_parallel(section.first_axis, normal):
             hint = "give one not parallel to the normal: only its component perpendicular to the normal is used"
             yield Violation(("sections", name, "first_axis"), "first_axis points along the normal", hint)
 
