@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.app.cli.options import SolverRequest
 from heuncli.app.commands.report.command import solve_report_cases
 from heuncli.app.commands.report.request import ReportRequest
 from heuncli.base.records import replace
@@ -92,7 +93,7 @@ def test_strength_within_the_stated_error_is_no_comfort(heun: Heun, folder: Path
     coarse = ("--tolerance", "1e-4")
     first = read_of(heun, folder, SWING, *coarse).by_tag["header"][0]
     assert "Largest utilisation: " in first and "is added" not in first
-    request = ReportRequest(spec=str(folder / "own.yaml"), tolerance=1e-4, quiet=True)
+    request = ReportRequest(spec=str(folder / "own.yaml"), solver=SolverRequest(tolerance=1e-4), quiet=True)
     ends = find_extremes(solve_report_cases(request).runs[0], "sections.mid.stress.utilisation")
     assert ends is not None
     asked = ("--measure", "max sections.mid.stress.utilisation")

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from heuncli.app.cli import terminal, timeout
-from heuncli.app.cli.options import list_fields
+from heuncli.app.cli.options import REQUIRED, list_fields, make_request
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.cli.registry import ParsedCommand, find_command
 from heuncli.base.errors import HeunError, LimitError, Problem
@@ -210,9 +210,9 @@ def read_plain(argv: Sequence[str]) -> ParsedCommand | None:
         return None
     else:
         values |= {target.name: argument for target, argument in zip(targets, arguments, strict=False)}
-    if any(target.name not in values and target.name not in request._field_defaults for target in targets):
+    if any(target.name not in values and target.default is REQUIRED for target in targets):
         return None
-    return ParsedCommand(command, request(**values))
+    return ParsedCommand(command, make_request(request, values))
 
 
 def _read_with_typer(argv: list[str]) -> ParsedCommand | int:

@@ -1,12 +1,13 @@
 """The vocabulary of requests: the class of an option, and the options that many commands share.
 
 A request is a named tuple, one per command. Each field is an option or argument; its annotation holds the words and the
-help text. app/cli/entry.py fills it from the words of a line. Named tuples, not dataclasses, because those take
+help text. Options that several commands share are one field, a record of them (SolverRequest, CaptionRequest).
+app/cli/entry.py fills a request from the words of a line. Named tuples, not dataclasses, because those take
 0.6 ms each to define, and every command pays.
 """
 
-from collections.abc import Sequence
-from typing import Any, ClassVar, Protocol, get_type_hints
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, ClassVar, Protocol, cast, get_type_hints
 
 from heuncli.base.named_tuples import NamedTuple
 
@@ -70,6 +71,27 @@ PAPERS = ("a4", "letter")
 SPEC = Option((), "YAML file of the spec; - reads standard input.", "SPEC", completes="spec")
 
 
+class SolverRequest(NamedTuple):
+    """The options of the solver; a request has them as one field."""
+
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
+
+
+class CaptionRequest(NamedTuple):
+    """The options that change the words of a result; a request has them as one field."""
+
+    title: Annotated[str | None, TITLE] = None
+    label: Annotated[tuple[str, ...], LABEL] = ()
+
+
+OPTION_RECORDS = (SolverRequest, CaptionRequest)
+REQUIRED = object()  # the default of a field that has none
+
+
 class Request(Protocol):
     """A named tuple of options, such as RunRequest in app/commands/run/request.py; its docstring is the help."""
 
@@ -80,14 +102,44 @@ class Request(Protocol):
 
 
 class RequestField(NamedTuple):
-    """One field of a request: its name, its type, and its option."""
+    """An option or argument of a request.
+
+    type: of its value
+    default: its value if it is not given, or REQUIRED
+    record: the field of the request that holds it, if that is one of OPTION_RECORDS
+    """
 
     name: str
     type: object
     option: Option
+    default: object = REQUIRED
+    record: str = ""
+
+    def read_value(self, request: object) -> object:
+        """Return its value in a request."""
+        return getattr(getattr(request, self.record) if self.record else request, self.name)
 
 
 def list_fields(request: type[Request]) -> list[RequestField]:
-    """List the options and arguments of a command, in their order."""
+    """List the options and arguments of a command in their order, those of its records too."""
+    fields: list[RequestField] = []
     notes = get_type_hints(request, include_extras=True)
-    return [RequestField(name, notes[name].__origin__, notes[name].__metadata__[0]) for name in request._fields]
+    for name in request._fields:
+        default = request._field_defaults.get(name, REQUIRED)
+        if isinstance(default, OPTION_RECORDS):
+            fields += (field._replace(record=name) for field in list_fields(cast("type[Request]", notes[name])))
+        else:
+            fields.append(RequestField(name, notes[name].__origin__, notes[name].__metadata__[0], default))
+    return fields
+
+
+def make_request(request: type[Request], values: Mapping[str, Any]) -> Request:
+    """Make the request of a command from the values of its options; its records take theirs."""
+    records = {
+        name: default for name, default in request._field_defaults.items() if isinstance(default, OPTION_RECORDS)
+    }
+    filled = {
+        name: record._replace(**{key: values[key] for key in record._fields if key in values})
+        for name, record in records.items()
+    }
+    return request(**{name: values[name] for name in request._fields if name in values}, **filled)

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
+from heuncli.app.cli.options import CaptionRequest, SolverRequest
 from heuncli.app.cli.output import print_stderr
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.spelling import suggest
 from heuncli.base.text_safety import escape
 from heuncli.output.tables.run_description import collect_warnings
 from heuncli.results.results import Array, Results
+from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
 from heuncli.study.model.options import collect_results as collect_results  # re-exported for the commands
@@ -23,23 +25,8 @@ if TYPE_CHECKING:
     from heuncli.study.queries.study import Study
 
 
-class SolverRequest(Protocol):
-    """A request with the options of solving."""
-
-    @property
-    def tolerance(self) -> float | None: ...
-    @property
-    def method(self) -> str | None: ...
-    @property
-    def step(self) -> float | None: ...
-    @property
-    def least_norm(self) -> bool: ...
-    @property
-    def no_reduce(self) -> bool: ...
-
-
 def make_solver_options(request: SolverRequest) -> Options:
-    """Convert the options of a request to those of the solver. Raises UsageError."""
+    """Check the solver's options of a command line, and make those of the study of them. Raises UsageError."""
     return Options(
         tolerance=require_tolerance(request.tolerance),
         method=request.method,
@@ -60,6 +47,25 @@ def parse_overrides(words: Sequence[str]) -> dict[str, str]:
             )
         pairs[name.strip()] = value.strip()
     return pairs
+
+
+class SpecRequest(Protocol):
+    """A request with a spec, its load case and values set in it."""
+
+    @property
+    def spec(self) -> str: ...
+    @property
+    def set(self) -> Sequence[str]: ...
+    @property
+    def case(self) -> str | None: ...
+
+
+def load_spec(request: SpecRequest) -> Spec:
+    """Load the spec of a request in its load case, with the values of --set; its `expect` block is not checked.
+
+    Raises UsageError, SpecError.
+    """
+    return load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
 
 
 def require_cases(cases: Collection[str]) -> None:
@@ -128,15 +134,6 @@ def format_timings(work: Mapping[str, Any]) -> str:
 
 
 EXAMPLE = "for example --label joints.main='Main bearing'"
-
-
-class CaptionRequest(Protocol):
-    """A request with the options of captions."""
-
-    @property
-    def title(self) -> str | None: ...
-    @property
-    def label(self) -> Sequence[str]: ...
 
 
 def apply_captions(spec: Spec, request: CaptionRequest) -> Spec:

@@ -9,14 +9,14 @@ from __future__ import annotations
 import inspect
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from heuncli.app.cli import registry
-from heuncli.app.cli.options import RequestField, list_fields
+from heuncli.app.cli.options import REQUIRED, RequestField, list_fields, make_request
 from heuncli.app.cli.registry import Command, ParsedCommand
 
 EPILOG = (
@@ -77,16 +77,17 @@ def _make_reader(command: Command, take: Callable[[ParsedCommand], None]) -> Cal
 
     def run(**values: Any) -> None:
         arguments: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
-        take(ParsedCommand(command, request(**arguments)))
+        take(ParsedCommand(command, make_request(request, arguments)))
 
     request = command.request
-    parameters = [_make_parameter(field, request._field_defaults) for field in list_fields(request)]
+    parameters = [_make_parameter(field) for field in list_fields(request)]
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     return run
 
 
-def _make_parameter(field: RequestField, defaults: Mapping[str, Any]) -> inspect.Parameter:
+def _make_parameter(field: RequestField) -> inspect.Parameter:
+    """Make typer's parameter of an option or argument."""
     kind: Any = list[str] if field.type == tuple[str, ...] else field.type
     option = field.option
     if not option.words:
@@ -96,10 +97,10 @@ def _make_parameter(field: RequestField, defaults: Mapping[str, Any]) -> inspect
             show_default=False,
             autocompletion=COMPLETIONS.get(option.completes),
         )
-        default = defaults.get(field.name, inspect.Parameter.empty)
+        default = inspect.Parameter.empty if field.default is REQUIRED else field.default
         annotation = Annotated[kind, argument]
         return inspect.Parameter(field.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
-    default = defaults[field.name]
+    default = field.default
     return inspect.Parameter(
         field.name,
         inspect.Parameter.KEYWORD_ONLY,

@@ -25,7 +25,7 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, SPEC, Option
 from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
-from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.solving import load_spec, print_warnings
 from heuncli.app.cli.target import choose_format, require_other_file, require_save_form
 from heuncli.base.errors import Problem
 from heuncli.base.method_rows import AUTO, METHODS, find_method
@@ -43,7 +43,6 @@ from heuncli.output.documents.document import (
     make_panels,
 )
 from heuncli.output.drawing.drawing_files import encode_drawing
-from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.methods import method_hint
 from heuncli.version import VERSION
 
@@ -83,7 +82,7 @@ def main(request: ChartRequest) -> int:
         parse_numbers("--tolerances", request.tolerances, 1.0),
         parse_numbers("--steps", request.steps, math.inf),
     )
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = load_spec(request)
     require_other_file(request.output, [request.spec])
     if request.save is not None:
         require_other_file(request.save, [request.spec], "--save")

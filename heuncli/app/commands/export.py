@@ -10,23 +10,9 @@ from heuncli.analyses.load_cases.assembly import assemble_load_cases, select_res
 from heuncli.analyses.load_cases.model import LoadCases, convert_load_cases
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.options import (
-    CASE,
-    LABEL,
-    LEAST_NORM,
-    METHOD,
-    NO_REDUCE,
-    QUIET,
-    SET,
-    SPEC,
-    STEP,
-    TIME_LIMIT,
-    TITLE,
-    TOLERANCE,
-    Option,
-)
+from heuncli.app.cli.options import CASE, QUIET, SET, SPEC, TIME_LIMIT, CaptionRequest, Option, SolverRequest
 from heuncli.app.cli.output import emit, print_stderr
-from heuncli.app.cli.solving import apply_captions, make_solver_options, parse_overrides, print_warnings, require_choice
+from heuncli.app.cli.solving import apply_captions, load_spec, make_solver_options, print_warnings, require_choice
 from heuncli.app.cli.target import require_other_file, require_writable
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.files import STDOUT
@@ -36,7 +22,6 @@ from heuncli.base.records import replace
 from heuncli.base.spelling import list_words, suggest
 from heuncli.output.fe_decks.decks import DECKS, DeckNames, DeckNodes, explain_invalid_set
 from heuncli.output.tables.nouns import format_count
-from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.study.model.options import MemoryBudget, require_positive
@@ -110,13 +95,8 @@ class ExportRequest(NamedTuple):
     ] = None
     case: Annotated[str | None, CASE] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    title: Annotated[str | None, TITLE] = None
-    label: Annotated[tuple[str, ...], LABEL] = ()
-    method: Annotated[str | None, METHOD] = None
-    step: Annotated[float | None, STEP] = None
-    tolerance: Annotated[float | None, TOLERANCE] = None
-    no_reduce: Annotated[bool, NO_REDUCE] = False
-    least_norm: Annotated[bool, LEAST_NORM] = False
+    captions: CaptionRequest = CaptionRequest()
+    solver: SolverRequest = SolverRequest()
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
 
@@ -138,8 +118,8 @@ def main(request: ExportRequest) -> int:
     names = _parse_deck_names(request)
     instants = parse(request.at) if request.at is not None else []
     _require_one_case(request.case)
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
-    spec = apply_captions(spec, request)
+    spec = load_spec(request)
+    spec = apply_captions(spec, request.captions)
     require_other_file(request.output, [request.spec])
     body = _select_body(request.body, spec)
     instants = instants or _choose_instant(spec)
@@ -172,8 +152,8 @@ def export_urdf(request: ExportRequest) -> int:
     if request.output is not None and request.output != STDOUT:
         require_writable(request.output)
     _require_one_case(request.case, "a URDF")
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
-    spec = apply_captions(spec, request)
+    spec = load_spec(request)
+    spec = apply_captions(spec, request.captions)
     require_other_file(request.output, [request.spec])
     with attach_locations(spec):
         scene = set_up(spec, reduce=False, find_rest=False).scene
@@ -265,7 +245,7 @@ def _solve_scene(request: ExportRequest, spec: Spec, body: str, instants: Sequen
     what = select_results(body, [name for name, options in ends.items() if body in options], has_impulse)
     what = what.union(select_paths([one.path for one in path_measures], spec)) if path_measures else what
     options = replace(
-        make_solver_options(request),
+        make_solver_options(request.solver),
         requested_reports=what.reports,
         entries=what.entries,
         time_limit=timeout.remaining_time(),

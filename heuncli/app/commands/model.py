@@ -9,13 +9,12 @@ from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, VIEW, WIDTH, Option
 from heuncli.app.cli.output import emit
-from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.solving import load_spec, print_warnings
 from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputDocument, Sentence
 from heuncli.output.tables.run_description import make_description_parts
-from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.workflow import describe
 
@@ -44,7 +43,7 @@ def main(request: ModelRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = choose_format(request.format, request.output, FORMATS)
     require_sketch(request, form)
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = load_spec(request)
     require_other_file(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
     pieces = [*render_document(make_document(spec.title, model), form, request.output)]

@@ -9,7 +9,7 @@ from typing import Annotated
 from heuncli.analyses.modes import compute_spec_modes, exclude_entries
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, WITHOUT
-from heuncli.app.cli.solving import find_excluded, parse_overrides, print_warnings
+from heuncli.app.cli.solving import find_excluded, load_spec, print_warnings
 from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.named_tuples import NamedTuple
@@ -17,7 +17,6 @@ from heuncli.motion.linearisation.oscillations import Mode, SceneModes
 from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.tables.mode_words import describe_modes, format_mode, iter_notes
-from heuncli.scene.file_format.load import load
 
 
 class ModesRequest(NamedTuple):
@@ -37,7 +36,7 @@ def main(request: ModesRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = choose_format(request.format, request.output, FORMATS)
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = load_spec(request)
     entries = find_excluded(spec, request.without)
     require_other_file(request.output, [request.spec])
     scene_modes = compute_spec_modes(exclude_entries(spec, entries), entries)

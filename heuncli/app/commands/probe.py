@@ -11,11 +11,10 @@ from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, make_format_option
-from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.solving import load_spec, print_warnings
 from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import NumberCell, OutputColumn, OutputDocument, OutputTable
-from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 
 
@@ -41,7 +40,7 @@ def main(request: ProbeRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = choose_format(request.format, request.output, FORMATS)
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = load_spec(request)
     require_other_file(request.output, [request.spec])
     results = probe(spec, Options(time_limit=timeout.remaining_time()))
     emit_document(make_document(results), form, request.output)

@@ -16,21 +16,7 @@ from typing import Annotated
 
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.options import (
-    CASE,
-    LABEL,
-    LEAST_NORM,
-    METHOD,
-    NO_REDUCE,
-    QUIET,
-    SET,
-    SPEC,
-    STEP,
-    TIME_LIMIT,
-    TITLE,
-    TOLERANCE,
-    Option,
-)
+from heuncli.app.cli.options import CASE, QUIET, SET, SPEC, TIME_LIMIT, CaptionRequest, Option, SolverRequest
 from heuncli.app.cli.output import emit, save
 from heuncli.app.cli.solving import (
     apply_captions_to_cases,
@@ -185,14 +171,9 @@ class ShowRequest(NamedTuple):
     ] = None
     units: Annotated[str | None, Option(("--units",), "Units of the page, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    title: Annotated[str | None, TITLE] = None
-    label: Annotated[tuple[str, ...], LABEL] = ()
+    captions: CaptionRequest = CaptionRequest()
     case: Annotated[str | None, CASE] = None
-    method: Annotated[str | None, METHOD] = None
-    step: Annotated[float | None, STEP] = None
-    tolerance: Annotated[float | None, TOLERANCE] = None
-    no_reduce: Annotated[bool, NO_REDUCE] = False
-    least_norm: Annotated[bool, LEAST_NORM] = False
+    solver: SolverRequest = SolverRequest()
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False
 
@@ -215,7 +196,7 @@ def main(request: ShowRequest) -> int:
         require_other_file(name, [request.spec], option)
     programs = None if form is None else find_programs(form)
     units_shown, frame_count = parse_units(request.units), _parse_frame_count(request.frames)
-    specs = apply_captions_to_cases(_load_cases(request), request)
+    specs = apply_captions_to_cases(_load_cases(request), request.captions)
     for name, option in outputs:
         require_other_file(name, [request.spec], option)
     studies = {case: _solve_case(spec, request) for case, spec in specs.items()}
@@ -251,7 +232,9 @@ def _load_cases(request: ShowRequest) -> dict[str, Spec]:
 
 def _solve_case(spec: Spec, request: ShowRequest) -> Study:
     """Solve a spec for motion and loads."""
-    options = replace(make_solver_options(request), requested_reports=REPORTS, time_limit=timeout.remaining_time())
+    options = replace(
+        make_solver_options(request.solver), requested_reports=REPORTS, time_limit=timeout.remaining_time()
+    )
     with attach_locations(spec):
         study = solve(spec, options)
         require_claimed(study)

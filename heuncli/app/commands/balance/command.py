@@ -12,7 +12,7 @@ from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 from heuncli.app.cli.output import save
-from heuncli.app.cli.solving import parse_overrides, print_warnings, require_choice
+from heuncli.app.cli.solving import load_spec, print_warnings, require_choice
 from heuncli.app.cli.target import choose_format, require_other_file, require_save_form
 from heuncli.app.commands.balance.page import make_document
 from heuncli.base.errors import Finding, Problem
@@ -22,7 +22,6 @@ from heuncli.base.units import LENGTH, RATE, TIME, Dimension
 from heuncli.output.drawing.drawing_files import encode_drawing
 from heuncli.results.results import Array
 from heuncli.scene.expressions.scope import Scope
-from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.quantity import read_number
 from heuncli.study.quantities.table_units import Units
@@ -89,7 +88,7 @@ def main(request: BalanceRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = choose_format(request.format, request.output, FORMATS)
     figure_form = require_save_form(request.save, request.output)
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = load_spec(request)
     require_other_file(request.output, [request.spec])
     if request.save is not None:
         require_other_file(request.save, [request.spec], "--save")

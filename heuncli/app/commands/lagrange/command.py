@@ -15,7 +15,7 @@ from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option, make_format_option
 from heuncli.app.cli.output import emit
-from heuncli.app.cli.solving import parse_overrides, print_warnings
+from heuncli.app.cli.solving import load_spec, print_warnings
 from heuncli.app.cli.target import choose_format, note_si_format, parse_units, require_other_file
 from heuncli.app.commands.lagrange import forms, page
 from heuncli.app.commands.lagrange.forms import KEYS
@@ -25,7 +25,6 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
 from heuncli.base.units import LENGTH, NUMBER, Dimension
 from heuncli.scene.expressions.scope import Scope
-from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.quantity import read_number
 from heuncli.study.quantities.table_units import Units
@@ -107,7 +106,7 @@ def main(request: LagrangeRequest) -> int:
         outputs=parse_names(request.outputs),
         time_limit=timeout.remaining_time(),
     )
-    spec = load(request.spec, overrides=parse_overrides(request.set), checking=False, case=request.case)
+    spec = load_spec(request)
     require_other_file(request.output, [request.spec])
     require_instant(request.at, spec)
     write_result(spec, request, question, form, units_shown)

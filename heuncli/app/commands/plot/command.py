@@ -35,8 +35,9 @@ def main(request: PlotRequest) -> int:
     parse_units(request.units)  # raises UsageError before the work
     module = import_module(f"heuncli.app.commands.plot.{KINDS[target.kind].module}")
     figure: Figure = getattr(module, f"draw_{target.kind}")(target, request)
-    if request.title is not None:
-        figure = figure._replace(title=check_text("--title", request.title))
+    title = request.captions.title
+    if title is not None:
+        figure = figure._replace(title=check_text("--title", title))
     if form is None or request.output is None:
         emit(render_text(figure, request.width), None)
         return 0
@@ -85,11 +86,7 @@ def _iter_problems(kind: str, request: PlotRequest) -> Iterator[Problem]:
     figure_kind = KINDS[kind]
     for field in list_fields(cast("type[Request]", PlotRequest)):
         name = field.name
-        if (
-            name in COMMON_OPTIONS
-            or name in figure_kind.options
-            or getattr(request, name) == request._field_defaults[name]
-        ):
+        if name in (*COMMON_OPTIONS, *figure_kind.options) or field.read_value(request) == field.default:
             continue
         others = [other.what for other in KINDS.values() if name in other.options]
         message = f"{field.option.words[0]} has no effect on {figure_kind.what}"

@@ -2,22 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.app.cli.options import (
-    LABEL,
-    LEAST_NORM,
-    METHOD,
-    NO_REDUCE,
-    QUIET,
-    SET,
-    STEP,
-    TIME_LIMIT,
-    TITLE,
-    TOLERANCE,
-    VIEW,
-    WIDTH,
-    WITHOUT,
-    Option,
-)
+from heuncli.app.cli.options import QUIET, SET, TIME_LIMIT, VIEW, WIDTH, WITHOUT, CaptionRequest, Option, SolverRequest
 from heuncli.base.named_tuples import NamedTuple
 
 
@@ -71,13 +56,8 @@ class PlotRequest(NamedTuple):
     width: Annotated[int | None, WIDTH] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    title: Annotated[str | None, TITLE] = None
-    label: Annotated[tuple[str, ...], LABEL] = ()
+    captions: CaptionRequest = CaptionRequest()
     case: Annotated[str | None, Option(("--case",), "Overlay these load cases, or all.", "NAME,...|all")] = None
-    method: Annotated[str | None, METHOD] = None
-    step: Annotated[float | None, STEP] = None
-    tolerance: Annotated[float | None, TOLERANCE] = None
-    no_reduce: Annotated[bool, NO_REDUCE] = False
-    least_norm: Annotated[bool, LEAST_NORM] = False
+    solver: SolverRequest = SolverRequest()
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -70,16 +70,16 @@ def _load_cases(file: str, name: str, request: PlotRequest) -> Iterator[tuple[st
     """Yield the spec, or each of its load cases, with its name."""
     settings = parse_overrides(request.set)
     if request.case is None:
-        yield name, apply_captions(load(file, overrides=settings, checking=False), request)
+        yield name, apply_captions(load(file, overrides=settings, checking=False), request.captions)
     elif request.case == ALL_CASES:
         cases = load_with_cases(file, settings, checking=False)[1]
         require_cases(cases)
-        for case, spec in apply_captions_to_cases(cases, request).items():
+        for case, spec in apply_captions_to_cases(cases, request.captions).items():
             yield f"{name} {case}".lstrip(), spec
     else:
         for case in map(str.strip, request.case.split(",")):
             spec = load(file, overrides=settings, checking=False, case=case)
-            yield f"{name} {case}".lstrip(), apply_captions(spec, request)
+            yield f"{name} {case}".lstrip(), apply_captions(spec, request.captions)
     require_other_file(request.output, [file])
 
 
@@ -122,7 +122,7 @@ def solve_source(name: str, spec: Spec, paths: Sequence[str], request: PlotReque
     selection = select_paths(paths, spec)
     axes = "world" if request.axes is None else require_choice("--axes", request.axes, JOINT_AXES)
     options = replace(
-        make_solver_options(request),
+        make_solver_options(request.solver),
         requested_reports=selection.reports,
         entries=selection.entries,
         axes=axes,

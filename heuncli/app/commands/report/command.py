@@ -64,7 +64,7 @@ def _choose_output(request: ReportRequest) -> tuple[str, str]:
 
 def solve_report_cases(request: ReportRequest) -> ReportData:
     """Read the spec, solve the requested cases, and print their warnings. Raises what solving raises."""
-    units_shown, options = parse_units(request.units), make_solver_options(request)
+    units_shown, options = parse_units(request.units), make_solver_options(request.solver)
     settings = parse_overrides(request.set)
     report_options = reports.ReportOptions(
         options,
@@ -78,7 +78,7 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     text = read_text(request.spec)
     spec_files = reports.DigestedFiles(request.spec)
     spec, cases = load_with_cases(request.spec, settings, not settings, text, spec_files)
-    spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
+    spec, cases = apply_captions(spec, request.captions), apply_captions_to_cases(cases, request.captions)
 
     def report_warnings(study: Study, case: str) -> None:
         place = f"heun: case {case}" if case else "heun"
@@ -92,6 +92,6 @@ def _iter_given_options(request: ReportRequest) -> Iterator[str]:
     """Yield the options of the command line that change the numbers, as they were given."""
     yield from (f"--set {word}" for word in request.set)
     for name in SOLVER_OPTIONS:
-        if (value := getattr(request, name)) is not None:
+        if (value := getattr(request.solver, name)) is not None:
             yield f"--{name} {value}"
-    yield from (f"--{name.replace('_', '-')}" for name in SWITCHES if getattr(request, name))
+    yield from (f"--{name.replace('_', '-')}" for name in SWITCHES if getattr(request.solver, name))

@@ -3,20 +3,15 @@
 from typing import Annotated
 
 from heuncli.app.cli.options import (
-    LABEL,
-    LEAST_NORM,
-    METHOD,
-    NO_REDUCE,
     PAPERS,
     QUIET,
     REPORT_FORMATS,
     SET,
     SPEC,
-    STEP,
     TIME_LIMIT,
-    TITLE,
-    TOLERANCE,
+    CaptionRequest,
     Option,
+    SolverRequest,
 )
 from heuncli.base.named_tuples import NamedTuple
 
@@ -61,12 +56,7 @@ class ReportRequest(NamedTuple):
     ] = None
     units: Annotated[str | None, Option(("--units",), "Units of loads, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    title: Annotated[str | None, TITLE] = None
-    label: Annotated[tuple[str, ...], LABEL] = ()
-    method: Annotated[str | None, METHOD] = None
-    step: Annotated[float | None, STEP] = None
-    tolerance: Annotated[float | None, TOLERANCE] = None
-    no_reduce: Annotated[bool, NO_REDUCE] = False
-    least_norm: Annotated[bool, LEAST_NORM] = False
+    captions: CaptionRequest = CaptionRequest()
+    solver: SolverRequest = SolverRequest()
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

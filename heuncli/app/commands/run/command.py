@@ -70,10 +70,10 @@ def main(request: RunRequest) -> int:
     is_overview = request.summary or request.hardpoints
     if is_overview:
         require_alone(request)
-    options = replace(make_solver_options(request), axes=_choose_axes(request))
+    options = replace(make_solver_options(request.solver), axes=_choose_axes(request))
     start = time.perf_counter()
     spec, cases = read(request.spec, parse_overrides(request.set), request.case)
-    spec, cases = apply_captions(spec, request), apply_captions_to_cases(cases, request)
+    spec, cases = apply_captions(spec, request.captions), apply_captions_to_cases(cases, request.captions)
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - start, time_limit=timeout.remaining_time())
     options = replace(options, memory_budget=MemoryBudget(*result_memory("table" if measures or collectives else form)))

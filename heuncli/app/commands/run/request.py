@@ -3,19 +3,14 @@
 from typing import Annotated
 
 from heuncli.app.cli.options import (
-    LABEL,
-    LEAST_NORM,
-    METHOD,
-    NO_REDUCE,
     OUTPUT,
     QUIET,
     SET,
     SPEC,
-    STEP,
     TIME_LIMIT,
-    TITLE,
-    TOLERANCE,
+    CaptionRequest,
     Option,
+    SolverRequest,
     make_format_option,
 )
 from heuncli.base.named_tuples import NamedTuple
@@ -43,8 +38,7 @@ class RunRequest(NamedTuple):
         ),
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    title: Annotated[str | None, TITLE] = None
-    label: Annotated[tuple[str, ...], LABEL] = ()
+    captions: CaptionRequest = CaptionRequest()
     case: Annotated[
         str | None,
         Option(
@@ -100,11 +94,7 @@ class RunRequest(NamedTuple):
         str | None,
         Option(("--repeat",), "Repeat the motion N times as a cycle, or indefinitely (closed).", "N|closed"),
     ] = None
-    method: Annotated[str | None, METHOD] = None
-    step: Annotated[float | None, STEP] = None
-    tolerance: Annotated[float | None, TOLERANCE] = None
-    no_reduce: Annotated[bool, NO_REDUCE] = False
-    least_norm: Annotated[bool, LEAST_NORM] = False
+    solver: SolverRequest = SolverRequest()
     by_cause: Annotated[
         bool, Option(("--by-cause",), "Split every load by cause: gravity, each force, drives, motion.")
     ] = False

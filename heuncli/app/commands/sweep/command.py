@@ -90,7 +90,9 @@ def make_recipe(request: SweepRequest, path: str) -> Recipe:
         raise UsageError(Problem("bad-option", "--jobs and --dask cannot be combined", hint=hint))
     available, bytes_each = result_memory("table")
     room_per_job = MemoryBudget(available / jobs.max_jobs(request.jobs), bytes_each) if request.dask is None else None
-    options = replace(make_solver_options(request), time_limit=request.time_limit_each, memory_budget=room_per_job)
+    options = replace(
+        make_solver_options(request.solver), time_limit=request.time_limit_each, memory_budget=room_per_job
+    )
     measures = tuple(measure.parse_measures(request.measure))
     return Recipe(path, read_text(path), measures, options, parse_overrides(request.set))
 

@@ -2,19 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.app.cli.options import (
-    LEAST_NORM,
-    METHOD,
-    NO_REDUCE,
-    OUTPUT,
-    QUIET,
-    SET,
-    STEP,
-    TOLERANCE,
-    UNITS,
-    Option,
-    make_format_option,
-)
+from heuncli.app.cli.options import OUTPUT, QUIET, SET, UNITS, Option, SolverRequest, make_format_option
 from heuncli.base.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "csv", "parquet")
@@ -81,11 +69,7 @@ class SweepRequest(NamedTuple):
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    method: Annotated[str | None, METHOD] = None
-    step: Annotated[float | None, STEP] = None
-    tolerance: Annotated[float | None, TOLERANCE] = None
-    no_reduce: Annotated[bool, NO_REDUCE] = False
-    least_norm: Annotated[bool, LEAST_NORM] = False
+    solver: SolverRequest = SolverRequest()
     dask: Annotated[
         str | None,
         Option(
