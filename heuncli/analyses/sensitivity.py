@@ -258,6 +258,7 @@ def compute_one_sided(differences: Differences, h: float, sign: int, size: float
     """
 
     def has_step(x: float) -> bool:
+        """Return whether the measure is known at a step, its half and its quarter."""
         return differences.has_values(*(0.25 * x * sign * k for k in (1, 2, 4)))
 
     best = find_best_pair(lambda x: differences.compute_side_pair(x, sign), has_step, h, size)
@@ -333,6 +334,7 @@ def compute_outside(differences: Differences, sign: int, distance: float, h: flo
     """
 
     def has_step(x: float) -> bool:
+        """Return whether the measure is known at all places of a step."""
         return differences.has_values(*(sign * (distance + x * part) for part in (0.0, 0.25, 0.5, 1.0)))
 
     return (

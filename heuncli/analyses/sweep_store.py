@@ -237,6 +237,7 @@ def _connect_for_reading(name: str) -> sqlite3.Connection:
 
 
 def _dump_values(values: Values) -> str:
+    """Format the values of a variant as JSON."""
     return json.dumps([value if isinstance(value, str) else value.value for value in values.values()])
 
 

@@ -169,6 +169,7 @@ def convert_errors(name: str) -> Iterator[None]:
 
 
 def _make_error(name: str, error: sqlite3.Error) -> OutputError | UsageError:
+    """Make the error of a file that SQLite cannot use as a store."""
     kind = getattr(error, "sqlite_errorname", "")
     if kind.startswith("SQLITE_NOTADB"):
         return UsageError(Problem(NOT_A_STORE, f"{name}: not a store of sweeps", hint=OTHER_FILE_HINT))

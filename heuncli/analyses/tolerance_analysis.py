@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
-from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError, find_extreme, refine_extreme
+from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError
+from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
 from heuncli.analyses.variants.evaluation import SpecNumber, SpecNumbers
 from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.analyses.variants.parameters import AxisError, split_at_commas, split_name
@@ -128,6 +129,7 @@ def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -
     value = base.value or 0.0  # it is known where the tolerance is searched
 
     def evaluate_sample(x: float) -> Sample:
+        """Sample the measure at a distance from the number's value."""
         return make_sample(x, evaluate({name: x} if x else {}), value)
 
     course = MeasureCourse(evaluate_sample, -t, t, SCAN_COUNT, MAX_VARIANTS, value)
@@ -179,6 +181,7 @@ def compute_change(variant: NoisyValue, base: NoisyValue) -> tuple[float, float]
 
 
 def _get_magnitude(change: tuple[float, float]) -> float:
+    """Return the magnitude of a change."""
     return abs(change[0])
 
 

@@ -256,12 +256,14 @@ def _list_arguments(
 
 
 def _list_captions(title: object, labels: object) -> list[tuple[str, object, ArgumentKind]]:
+    """Return the captions as (name, value, kind)."""
     from heuncli.app.python.arguments import CAPTIONS, TEXT
 
     return [("title", title, TEXT), ("labels", labels, CAPTIONS)]
 
 
 def _check_booleans(**arguments: object) -> None:
+    """Raise UsageError for arguments that are not True or False."""
     from heuncli.app.python.arguments import BOOLEAN, check_arguments
 
     check_arguments(*((name, value, BOOLEAN) for name, value in arguments.items()), optional=False)
@@ -270,6 +272,7 @@ def _check_booleans(**arguments: object) -> None:
 def _make_options(
     error_tolerance: float | None, method: str | None, step: float | None, least_norm: bool, reduce: bool, axes: str
 ) -> Options:
+    """Check the solver's arguments, and make its options of them. Raises UsageError."""
     return Options(
         tolerance=require_tolerance(error_tolerance, ""),
         method=method,
@@ -281,6 +284,7 @@ def _make_options(
 
 
 def _parse_only(words: str | Iterable[str] | None) -> ReportChoice | None:
+    """Parse which results are requested; None for the spec's choice. Raises UsageError."""
     if words is None:
         return None
     return parse_choice(words.split(",") if isinstance(words, str) else words, "only", "study.measure")
@@ -305,6 +309,7 @@ def _suggest_options(parameters: Mapping[str, object], function: Callable[..., o
 
 
 def _check_time_limit(seconds: float | None) -> float | None:
+    """Return the time limit. Raises UsageError if it is not a positive number."""
     if seconds is not None and not 0.0 < seconds < math.inf:
         hint = "for example 60, in s; leave it out for no limit"
         raise UsageError(Problem("bad-option", f"time_limit {seconds:g}: expected a positive number", hint=hint))
@@ -312,6 +317,7 @@ def _check_time_limit(seconds: float | None) -> float | None:
 
 
 def _require_single_case(case: str | None) -> None:
+    """Raise UsageError if all load cases are requested."""
     if case == ALL_CASES:
         hint = "use heuncli.solve_cases for all load cases"
         raise UsageError(Problem("bad-option", "case all: solve() solves one load case", hint=hint))

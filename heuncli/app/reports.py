@@ -176,6 +176,7 @@ def has_met_expectations(data: ReportData) -> bool:
 
 
 def _summarise(data: ReportData) -> Summary:
+    """Return the summary of all cases."""
     from heuncli.output.client_report.summary_table import summarise_cases  # after solving, with the figures
 
     return summarise_cases(data)
@@ -244,6 +245,7 @@ def _select_reports(spec: Spec) -> frozenset[str]:
 
 
 def _compare_expectations(study: Study, spec_name: str, case: str) -> list[Outcome]:
+    """Compare a run with what its spec expects."""
     return [make_outcome(compare(study, item), spec_name, case) for item in study.spec.expect]
 
 

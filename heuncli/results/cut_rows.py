@@ -1,6 +1,6 @@
 """Select the rows of a series of cuts that a path means: `M2@0.28`, `M2@end`, `M2.7`, `M2@0.28:before`.
 
-A position is a distance from the run's first point, by default in metres, or one of its ends; it follows the quantity
+A position is a distance from the series' first point, by default in metres, or one of its ends; it follows the quantity
 or its component. A number is the index of a requested cut, from 0. Where a load acts in the plane of a cut there are
 two rows for it: then the side must be given, unless both rows have the same value.
 """
@@ -76,7 +76,7 @@ def cut_indices(s: Array) -> Indices:
 
 
 def cut_distances(first: Sequence[float], last: Sequence[float], count: int) -> Array:
-    """Return the distances [m] of the cuts of a run, evenly spaced from its first point to its last."""
+    """Return the distances [m] of the cuts of a series, evenly spaced from its first point to its last."""
     return np.linspace(0.0, float(np.linalg.norm(np.subtract(last, first))), count)
 
 

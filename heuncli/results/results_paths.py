@@ -138,10 +138,10 @@ def _find_axes(results: Results, keys: Sequence[str], row: Quantity | None, dime
     """Return the axes of the value at these keys, the instants included if it has them."""
     if row is None or not row.units:
         return (INDEX,) * dimensions
-    return ((INSTANT,) if is_timed else ()) + row.instant_axes(run=_is_in_cut_run(results, keys))
+    return ((INSTANT,) if is_timed else ()) + row.instant_axes(_is_in_cut_series(results, keys))
 
 
-def _is_in_cut_run(results: Results, keys: Sequence[str]) -> bool:
+def _is_in_cut_series(results: Results, keys: Sequence[str]) -> bool:
     """Whether the keys lead into a series of cuts, of the whole motion or of one impulse."""
     return "s" in find_section(results, keys)
 

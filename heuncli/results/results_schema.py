@@ -75,9 +75,9 @@ class Quantity(NamedTuple):
         """Return the unit for a sliding or a turning joint or force."""
         return self.units[-1 if turning else 0]
 
-    def instant_axes(self, run: bool = False) -> Shape:
-        """Return the axes at one instant; run: whether it is a series of cuts, which adds the axis of the cuts."""
-        return tuple(axis for axis in self.shape if run or axis is not CUT)
+    def instant_axes(self, in_series: bool = False) -> Shape:
+        """Return the axes at one instant; a series of cuts adds the axis of the cuts."""
+        return tuple(axis for axis in self.shape if in_series or axis is not CUT)
 
 
 def rows(prefix: str, meaning: str, *quantities: Quantity) -> tuple[Quantity, ...]:

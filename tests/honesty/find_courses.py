@@ -23,14 +23,14 @@ from typing import Any, NamedTuple
 import mpmath as mp
 import numpy as np
 
+from heuncli.analyses.find.results import FindResults
 from heuncli.analyses.find.study import find_meetings
 from heuncli.analyses.variants.measures import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.analyses.variants.samples import Sample
 from heuncli.app.cli.entry import enter
-from heuncli.app.commands.find.page import FindPage, to_block
+from heuncli.app.commands.find.as_json import to_block
 from heuncli.output.documents.as_data import dump_json
-from heuncli.study.quantities.table_units import Units
 
 Rng = np.random.Generator
 EPS = 2.0**-52
@@ -368,7 +368,7 @@ def found_directly(course: KnownCourse, relation: Any) -> Any:
     found = find_meetings(ask, course.low, course.high, relation, scan_count=7, max_evaluations=300, value=course.value)
     condition = Comparison("f", relation, course.value, "N")
     interval = DesignVariable("x", course.low, course.high, "")
-    return json.loads(dump_json(to_block(FindPage("", condition, interval, found, 7, 300, Units({})))))
+    return json.loads(dump_json(to_block(FindResults("", condition, interval, found, 7))))
 
 
 def judged(seed: int, kind: str = "all", *, direct: bool = False) -> tuple[KnownCourse, str, Verdict]:

@@ -15,7 +15,7 @@ from heuncli.results.results import Array, CutPosition, Extremes
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
-from heuncli.study.quantities.cut_runs import collect_cut_series, find_sample_extremes, merge_extremes
+from heuncli.study.quantities.cut_series import collect_cut_series, find_sample_extremes, merge_extremes
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.measure import find_peak
 from heuncli.study.queries.study import Study

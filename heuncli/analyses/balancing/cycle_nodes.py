@@ -144,6 +144,7 @@ class EvenNodes:
         amplitudes = self.compute_amplitudes(values, k).reshape(len(k), -1)
 
         def evaluate(x: Array) -> Array:
+            """Evaluate the Fourier series at distances x from the begin of the cycle."""
             waves = np.exp(1j * np.outer(self.begin + x, k / self.turns))
             return np.asarray((waves @ amplitudes).real.reshape(len(x), *values.shape[1:]))
 

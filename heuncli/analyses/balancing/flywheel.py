@@ -88,6 +88,7 @@ class WorkCurve:
             return 0.0, float(w.max())
 
         def evaluate_rate(x: Array) -> tuple[Array, Array]:
+            """Return the speed at x and its slope."""
             W, k, eps, half = self.interpolate(x)
             own = np.sqrt(2.0 * np.maximum(E0 + W, 0.0) / (eps + J))
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -99,6 +100,7 @@ class WorkCurve:
         """Return ΔE [J], the range of the energy exchanged by work and inertia at a constant rate."""
 
         def evaluate_energy(x: Array) -> tuple[Array, Array]:
+            """Return the energy that work and inertia exchange up to x, and its slope."""
             W, k, eps, half = self.interpolate(x)
             return W - 0.5 * eps * mean**2, k - half * mean**2
 
@@ -237,6 +239,7 @@ def compute_wheel_numbers(scene: LoadedScene) -> CycleNumbers:
     mechanism, size = scene.setup.scene.mechanism, scene.setup.scene.layout.size
 
     def compute_columns(recovery: Recovery) -> Array:
+        """Compute the columns that the interpolation needs: power of the loads, inertia and half its slope."""
         effects = compute_mass_effects(Cycle(mechanism, scene.followed_run.cycle, recovery.states, size), np.zeros(3))
         return np.concatenate([sum_load_powers(recovery), effects.eps, effects.half_slope], axis=1)
 

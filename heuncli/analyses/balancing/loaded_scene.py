@@ -243,6 +243,7 @@ def compute_cycle_loads(
     indeterminate: set[str] = set()
 
     def compute_columns(recovery: Recovery) -> Array:
+        """Compute the squares of the loads, (n, loads), and note which are indeterminate."""
         own = compute_squares(recovery, plan, reference_point)
         indeterminate.update(name for name, values in own.items() if np.isnan(values).any())
         return np.nan_to_num(np.stack([own[name] for name in names], axis=1))

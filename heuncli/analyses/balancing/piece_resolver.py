@@ -215,6 +215,7 @@ def make_scales(group_sizes: Sequence[int], rounding: Sequence[float]) -> Callab
     floors = np.array(rounding) / tolerances.ORDERS_SETTLED
 
     def compute_scales(values: Array) -> Array:
+        """Return the scale of each column: the largest value of its group, at least the group's floor."""
         ends = np.cumsum(group_sizes)
         sizes = np.abs(values).max(axis=0, initial=0.0)
         return np.concatenate([

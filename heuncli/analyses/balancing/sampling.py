@@ -84,6 +84,7 @@ def sample_on_pieces(followed_scene: FollowedScene, reference_point: Array) -> t
     run = followed_scene.followed_run
 
     def sample(x: Array) -> Array:
+        """Compute the mass effects at places of the cycle."""
         cycle = Cycle(
             followed_scene.scene.mechanism,
             run.cycle,
@@ -157,6 +158,7 @@ def compute_vector_magnitudes(kinds: Mapping[str, Array], nodes: CycleNodes) -> 
     errors = np.array([math.sqrt(float(np.sum(value_errors[part] ** 2))) for part in slices])
 
     def compute_squares(x: Array) -> Array:
+        """Return the squared magnitude of each vector at places."""
         own = interpolant(x) ** 2
         return np.stack([own[:, part].sum(axis=1) for part in slices], axis=1)
 
@@ -191,6 +193,7 @@ def find_peaks(squares: Interpolant, nodes: CycleNodes, errors: Array) -> list[t
     grid_squares = squares(grid)
 
     def sample(x: Array) -> Array:
+        """Return the squares at places; those of the grid are known."""
         return grid_squares if x is grid else squares(x)  # the search begins with the grid
 
     extremes = search_extremes(

@@ -148,6 +148,7 @@ class TwoPeriods:
         """Return nodes on pieces that resolve both periods, and whether they do."""
 
         def sample(x: Array) -> Array:
+            """Return the effects at places, with both limits where they jump."""
             both = [self.compute_effects(self.cycle, x, before) for before in (False, True)]
             return np.concatenate([own.reshape(len(x), -1) for two in both for own in sum_bodies(two).values()], axis=1)
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from heuncli.analyses.variants.measures import Comparison
+from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.analyses.variants.samples import Sample
 from heuncli.base.named_tuples import NamedTuple
 
@@ -120,3 +122,16 @@ class IntervalFindings(NamedTuple):
     def is_met_nowhere(self) -> bool:
         """Whether the samples show that the value is met nowhere."""
         return self.is_complete and not (self.crossings or self.touches or self.brackets or self.not_excluded)
+
+
+class FindResults(NamedTuple):
+    """All that a search found: the scene's title, the condition, the interval of the unknown, and the findings there.
+
+    scan: number of values in the scan
+    """
+
+    title: str
+    condition: Comparison
+    interval: DesignVariable
+    findings: IntervalFindings
+    scan: int

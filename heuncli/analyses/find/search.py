@@ -16,25 +16,17 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.analyses.find.narrowing import narrow_all
+from heuncli.analyses.find.poles import find_hidden_pole, has_pole, is_far_from_value
 from heuncli.analyses.find.touches import (
-    find_hidden_pole,
     find_touch_range,
     follow_minimum,
-    has_pole,
     is_deep,
-    is_far_from_value,
     iter_minima,
     leads_to_touch,
     step_towards_value,
 )
-from heuncli.analyses.variants.course import (
-    FIRST_DISTRUST,
-    GOLDEN,
-    MAX_DISTRUST,
-    NOISE,
-    MeasureCourse,
-    clip_inside,
-)
+from heuncli.analyses.variants.course import FIRST_DISTRUST, GOLDEN, MAX_DISTRUST, NOISE, MeasureCourse
+from heuncli.analyses.variants.course_extremes import clip_inside
 from heuncli.analyses.variants.samples import Sample, interpolate
 from heuncli.base import tolerances
 

@@ -23,7 +23,8 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.search import check_scan, iter_possible_meetings, search
 from heuncli.analyses.find.touches import find_touches, step_towards_value
-from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError, find_extreme, refine_extreme
+from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError
+from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
 from heuncli.analyses.variants.measures import SIDES, Relation
 from heuncli.analyses.variants.samples import Sample
 

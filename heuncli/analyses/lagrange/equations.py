@@ -234,11 +234,12 @@ def compute_section_forces(block: Mapping[str, Array], k: int, partials: Partial
 def to_lists(section: SectionForces) -> Any:
     """Return the forces as JSON lists: one per cut, or that of the only cut; None where indeterminate."""
     values = [None if np.isnan(s).any() else s.tolist() for s in section.s]
-    return values if section.is_run else values[0]
+    return values if section.is_cut_series else values[0]
 
 
 def list_cuts(name: str, section: SectionForces) -> list[tuple[str, Array | None]]:
     """Return the cuts by name with their forces; None where indeterminate."""
     return [
-        (f"{name}.{k}" if section.is_run else name, None if np.isnan(s).any() else s) for k, s in enumerate(section.s)
+        (f"{name}.{k}" if section.is_cut_series else name, None if np.isnan(s).any() else s)
+        for k, s in enumerate(section.s)
     ]

@@ -79,6 +79,7 @@ def compute_mean(curve: InertiaCurve) -> tuple[float, float]:
     e, slope, length = curve.epsilon, 2.0 * curve.half, float(curve.values[-1] - curve.values[0])
 
     def mean_with_stride(every: int) -> float:
+        """Return the mean by the trapezoidal rule with end correction, over every n-th sample."""
         f = e[::every]
         h = length / (len(f) - 1)
         ends = h * (slope[0] - slope[-1]) / 12.0

@@ -92,12 +92,14 @@ class RateSlopes:
         return self.turns[k], self.spins[k], self.linear_equations.omega[k], self.linear_equations.attitudes[k]
 
     def _position(self, body: int, point: Array) -> Array:
+        """Return where a point of a body is, (3,) in the world."""
         if body == GROUND:
             return point
         k, own = self.layout.place[body], self.layout.mechanism.bodies[body]
         return np.asarray(self.linear_equations.centres[k] + self.linear_equations.attitudes[k] @ (point - own.center))
 
     def _velocity(self, body: int, place: Array) -> Array:
+        """Return the velocity of a body at a place, (3,) in the world."""
         if body == GROUND:
             return np.zeros(3)
         k = self.layout.place[body]

@@ -32,12 +32,12 @@ class SectionForces:
     """Generalised forces that the piece beyond a section exerts, s (cuts, f); nan if the section is indeterminate.
 
     scale (f,): size of such loads at the largest partials of the body, for comparison
-    is_run: whether there are several cuts
+    is_cut_series: whether there are several cuts
     """
 
     s: Array
     scale: Array
-    is_run: bool
+    is_cut_series: bool
 
 
 @record

@@ -105,6 +105,7 @@ def _find_sources(mechanism: Mechanism, action: Action, body: int) -> list[str]:
 
 
 def _get_name(mechanism: Mechanism, body: int) -> str:
+    """Return the name of a body."""
     return "ground" if body == GROUND else mechanism.bodies[body].name
 
 
@@ -198,8 +199,10 @@ def _merge_actions(actions: Sequence[PointAction]) -> tuple[PointAction, ...]:
 
 
 def _find_largest(actions: Sequence[PointAction], field_name: str) -> float:
+    """Return the largest component of a field over all actions."""
     return max((float(np.abs(getattr(action, field_name)).max()) for action in actions), default=0.0)
 
 
 def _drop_rounding(vector: Array, threshold: float) -> Array:
+    """Return a vector with 0 in place of components below a threshold."""
     return np.where(np.abs(vector) <= threshold, 0.0, vector)

@@ -124,6 +124,7 @@ def _include_joints(body: int, recovery: Recovery) -> Recovery:
 
 
 def _select_rows(block: Block, which: Array) -> Block:
+    """Return the arrays of a block at some instants."""
     return {name: value[which] for name, value in block.items() if isinstance(value, np.ndarray)}
 
 
@@ -170,6 +171,7 @@ def _format_determinate_sums(sums: Sequence[DeterminateSum], names: Sequence[str
 
 
 def _format_sum(determinate_sum: DeterminateSum) -> str:
+    """Format a determinate sum as an equation."""
     terms = [
         f"{'-' if c < 0.0 else '+'} {'' if abs(c) == 1.0 else f'{abs(c):.6g} '}{name}"
         for name, c in ((name, float(np.ravel(factor)[0])) for name, factor in determinate_sum["terms"].items())

@@ -282,6 +282,7 @@ def convert_load_cases(cases: LoadCases, system: UnitSystem) -> LoadCases:
 
 
 def _convert_case(case: LoadCase, system: UnitSystem) -> LoadCase:
+    """Convert a load case from SI to a unit system."""
     # impulses have one more factor of time
     impulse_time = system.time if case.is_impulse else 1.0
     force, acceleration = system.force * impulse_time, system.acceleration * impulse_time
@@ -295,7 +296,10 @@ def _convert_case(case: LoadCase, system: UnitSystem) -> LoadCase:
 
 
 def _convert_action(action: PointAction, force: float, system: UnitSystem) -> PointAction:
+    """Convert an action from SI; force: the unit of its force or impulse."""
+
     def divide(vector: Array | None, size: float) -> Array | None:
+        """Divide a vector by a unit; None stays None."""
         return None if vector is None else np.asarray(vector / size)
 
     return replace(

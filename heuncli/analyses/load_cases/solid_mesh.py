@@ -136,6 +136,7 @@ def _parse_kind(words: Sequence[str], where: str) -> SolidKind:
 
 
 def _make_mesh(nodes: dict[int, tuple[float, ...]], corners: Sequence[tuple[int, ...]], name: str) -> SolidMesh:
+    """Make the mesh of the nodes that its elements use. Raises Finding."""
     if not corners:
         raise Finding(
             "bad-mesh", f"{name}: there are no elements", "give *NODE and *ELEMENT, as in the mesh of the deck"

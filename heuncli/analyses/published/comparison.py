@@ -115,11 +115,13 @@ def compare_case(case: PublishedCase, options: Options = DEFAULT_OPTIONS) -> tup
 
 
 def _solve_tables(spec: Spec, tables: Sequence[PublishedTable], options: Options) -> Study:
+    """Solve a spec for all numbers of some tables."""
     selection = select_paths([number.path for table in tables for number in table.numbers], spec)
     return solve(spec, replace(options, requested_reports=selection.reports, entries=selection.entries))
 
 
 def _compare_table(table: PublishedTable, study: Study) -> TableComparison:
+    """Compare the numbers of a table."""
     values = [_parse_number(table, number, study.spec) for number in table.numbers]
     largest = max(abs(value.value) for value in values)
     numbers = tuple(
@@ -130,6 +132,7 @@ def _compare_table(table: PublishedTable, study: Study) -> TableComparison:
 
 
 def _parse_number(table: PublishedTable, number: PublishedNumber, spec: Spec) -> PrintedNumber:
+    """Parse a published number: printed digits, or an exact expression."""
     if table.kind != "exact":
         return parse_decimal(number.text)
     names = dict(spec.parameters)
@@ -140,6 +143,7 @@ def _parse_number(table: PublishedTable, number: PublishedNumber, spec: Spec) ->
 def _compare_number(
     number: PublishedNumber, value: PrintedNumber, table: PublishedTable, largest: float, study: Study
 ) -> NumberComparison:
+    """Compare a number; both the printed digits and heun's stated error are allowed for."""
     computed = _compute_number(number, study)
     claimed_error = value.last_digit / 2.0 * ROUNDING_FACTOR + table.error * largest
     if math.isnan(computed):

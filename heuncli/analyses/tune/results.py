@@ -227,6 +227,7 @@ class Trials:
         return [self._known.get(key) for key in keys]
 
     def _make_key(self, place: tuple[float, ...]) -> PlaceKey:
+        """Return the values of a place, as the spec would get them."""
         return tuple(make_values(self.task.variables, place).values())
 
     def set_scales(self) -> None:

@@ -94,12 +94,14 @@ def run_cobyla(trials: Trials, start: Trial, step: float, weight: float | None) 
     n, count = len(start.place), len(trials.task.constraints)
 
     def evaluate_goal(place: Array) -> float:
+        """Return the scaled goal at a place; a bad one where it cannot be solved."""
         trial = trials.try_place(place)
         if weight is None and count:
             return 0.0
         return trials.scaled_goal(trial) if trial is not None and trial.is_solved else worst_goal
 
     def evaluate_excesses(place: Array) -> list[float]:
+        """Return by how much each limit is exceeded at a place, scaled."""
         trial = trials.try_place(place)
         return trials.scaled_excesses(trial) if trial is not None and trial.is_solved else [worst_excess] * count
 
@@ -126,6 +128,7 @@ def run_simplex(trials: Trials, start: Trial, step: float, weight: float | None,
     worst_merit = trials.worst_value(lambda trial: trials.compute_merit(trial, weight))
 
     def evaluate_merit(place: Array) -> float:
+        """Return the goal and the weighted excesses at a place as one number."""
         trial = trials.try_place(place)
         return trials.compute_merit(trial, weight) if trial is not None and trial.is_solved else worst_merit
 

@@ -117,6 +117,7 @@ class ReferenceComparison:
 
 
 def _largest(values: Array) -> float:
+    """Return the largest error; nan counts as unknown."""
     return float(replace_nan_errors(values).max(initial=0.0))
 
 

@@ -103,6 +103,7 @@ def select_exit_code(codes: Sequence[int]) -> int:
 
 
 def _run_command(argv: list[str]) -> int:
+    """Run the command of a line, under its time limit; returns its exit code. Raises HeunError."""
     if (text := terminal.find_text(argv)) is not None:
         emit(text)
         return 0
@@ -152,6 +153,7 @@ def _print_traceback() -> None:
 
 
 def _make_bug_problem(bug: Exception, argv: Sequence[str]) -> Problem:
+    """Make the problem of an unexpected exception: where it was raised, and the line that led to it."""
     location = bug.__traceback__
     while location is not None and location.tb_next is not None:
         location = location.tb_next

@@ -132,6 +132,7 @@ def run_in_order(
     retries = RetryQueue()
 
     def more() -> int | None:
+        """Return the next item: one to try again, else one that was not tried yet; None if there is none now."""
         number = retries.pop_next()
         if number is None:
             number = next(numbers, end)

@@ -78,6 +78,7 @@ def _collect(pieces: Iterable[str]) -> Iterator[str]:
 
 
 def _read_blocks(store: IO[str]) -> Iterator[str]:
+    """Yield the content of a temporary file, and close it."""
     with store:
         while block := store.read(BLOCK):
             yield block
@@ -113,6 +114,7 @@ def encode_text(text: str, encoding: str = "utf-8") -> bytes:
 
 
 def _escape(error: UnicodeError) -> tuple[str, int]:
+    """Escape what an encoding cannot write; the handler of encoding errors."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     return escape_all(error.object[error.start : error.end]), error.end
@@ -132,6 +134,7 @@ def print_stderr(text: str) -> None:
 
 
 def _write_stdout(pieces: Iterable[str]) -> None:
+    """Write pieces to standard output. Raises OutputError, ReaderGoneError."""
     if sys.stdout is None:
         raise OutputError(Problem("output-closed", "standard output is closed", hint="write to a file: -o FILE"))
     try:

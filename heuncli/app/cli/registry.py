@@ -53,6 +53,7 @@ class Command(NamedTuple):
         return int(self._import_module().main(request))
 
     def _import_module(self) -> Any:
+        """Import the module of its `main`."""
         return import_module(f"{FOLDER}.{self.module or self.name}")
 
 

@@ -119,6 +119,7 @@ def _read_status(name: str | None) -> os.stat_result | None:
 
 
 def _read_stdout_status() -> os.stat_result | None:
+    """Return the status of the file behind standard output, or None if there is none."""
     try:
         return os.fstat(sys.stdout.fileno()) if sys.stdout is not None else None
     except (OSError, ValueError):  # a stream without a file descriptor

@@ -168,6 +168,7 @@ def silence() -> None:
 
 
 def _make_limit_error(where: str) -> LimitError:
+    """Make the error of the time limit; where: what was being done."""
     return LimitError(Problem("time-limit", f"the time limit of {_Clock.limit:g} s was reached {where}", hint=HINT))
 
 
@@ -191,6 +192,7 @@ def _start_timer(seconds: float) -> Callable[[], None]:
     signal.setitimer(signal.ITIMER_REAL, seconds, ALARM_INTERVAL)
 
     def undo() -> None:
+        """Stop the timer, and restore the handlers of before."""
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, previous_handler)
         sys.unraisablehook = previous_hook
@@ -264,15 +266,18 @@ class _Watchdog:
         self.thread = threading.Thread(target=self._wait, daemon=True)
 
     def begin(self) -> None:
+        """Start to watch."""
         _Watchdog.current = self
         self.thread.start()
 
     def end(self) -> None:
+        """Stop watching, and wait until the thread has ended."""
         _Watchdog.current = None
         self.over.release()
         self.thread.join()
 
     def _wait(self) -> None:
+        """Wait for the end of the work, or end the process at the hard end."""
         seconds = min(max(_Clock.hard_end - time.monotonic(), 0.0), MAX_TIMER)
         if not self.over.acquire(timeout=min(seconds, _thread.TIMEOUT_MAX)) and _Watchdog.current is self:
             _end_process(list(_iter_frames(sys._current_frames().get(self.main))))

@@ -76,6 +76,7 @@ def _make_reader(command: Command, take: Callable[[ParsedCommand], None]) -> Cal
     """Make the function that typer calls, with the command's options as parameters."""
 
     def run(**values: Any) -> None:
+        """Take the values that typer parsed, as a request."""
         arguments: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
         take(ParsedCommand(command, make_request(request, arguments)))
 
@@ -245,6 +246,7 @@ def _complete_from_spec(
     """Make a completion from a function of the spec that stands on the command line."""
 
     def complete(ctx: typer.Context, incomplete: str) -> list[str]:
+        """Complete a word from the spec that stands on the line; nothing if it cannot be read."""
         given = _find_typed_spec()
         if given is None:
             return []
@@ -278,6 +280,7 @@ def _read_typed_words() -> list[str]:
 
 
 def _complete_files(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Complete the name of a file."""
     return complete_files(incomplete)
 
 

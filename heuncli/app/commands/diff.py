@@ -92,11 +92,13 @@ def _list_even_instants(side: Side) -> Mapping[str, Sequence[float]]:
 
 
 def _pair_runs(old: Side, new: Side) -> list[tuple[str, RunSnapshot | None, RunSnapshot | None]]:
+    """Pair the runs of both sides by their names; None where a side has none."""
     names = dict.fromkeys([*old.runs, *new.runs])
     return [(name, old.runs.get(name), new.runs.get(name)) for name in names]
 
 
 def _compare_runs(old: RunSnapshot | None, new: RunSnapshot | None) -> list[Change]:
+    """List what changed in a run; one change if only one side has it."""
     if old is None or new is None:
         return [Change("the case", "", "", None, None, reason=EXTRA if old is None else MISSING)]
     return find_changes(old, new)
@@ -147,11 +149,13 @@ def make_document(difference: Difference, form: str) -> OutputDocument:
 
 
 def _make_table(difference: Difference) -> OutputTable:
+    """Make the table of the first changes."""
     rows = [_make_row(case, change) for case, change in difference.changes[:MAX_ROWS]]
     return OutputTable("CHANGED", make_text_columns(HEADS), rows)
 
 
 def _make_row(case: str, change: Change) -> tuple[str, ...]:
+    """Make the row of a change."""
     name = f"{case}: {change.path}" if case else change.path
     change_text = WORDS.get(change.reason, change.reason) or format_difference(change)
     change_text += f"; and {change.n_similar} more values" if change.n_similar else ""
@@ -184,6 +188,7 @@ def _make_difference_block(difference: Difference) -> dict[str, Any]:
 
 
 def _make_block(case: str, change: Change) -> dict[str, Any]:
+    """Return a change as the JSON has it."""
     relative = change.relative if change.difference is not None else None
     return {
         **({"case": case} if case else {}), "of": change.path, "at": change.what, "unit": change.unit,
@@ -202,6 +207,7 @@ def render_github(difference: Difference) -> str:
 
 
 def _format_change(row: Sequence[str]) -> str:
+    """Format the values and the change of a row on two lines, for an annotation."""
     values = f"{row[2]} → {row[3]}" if row[2] or row[3] else ""
     return "\n".join(part for part in (values, row[4]) if part)
 
@@ -317,6 +323,7 @@ def solve_side(side: Side, even_at: Mapping[str, Sequence[float]], limit: float 
 
 
 def _solve_spec(path: str, even_at: Mapping[str, Sequence[float]]) -> tuple[dict[str, RunSnapshot], list[str], str]:
+    """Solve a spec and its cases; returns their snapshots by name, the warnings, and the spec's digest."""
     spec, cases = load_with_cases(path, checking=False)
     runs: dict[str, RunSnapshot] = {}
     warnings: list[str] = []

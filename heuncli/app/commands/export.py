@@ -165,6 +165,7 @@ def export_urdf(request: ExportRequest) -> int:
 
 
 def _require_one_case(case: str | None, file: str = "a deck") -> None:
+    """Raise UsageError if all load cases are requested: a file holds one."""
     if case == ALL_CASES:
         message = f"--case all: {file} holds one load case of the spec"
         raise UsageError(Problem("bad-option", message, hint="use --case NAME, with one file each"))
@@ -191,6 +192,7 @@ def choose_form(request: ExportRequest) -> str:
 
 
 def _parse_units(words: str | None) -> model.UnitSystem:
+    """Parse the units of a deck. Raises UsageError."""
     if words is None:
         return model.SI
     try:
@@ -200,6 +202,7 @@ def _parse_units(words: str | None) -> model.UnitSystem:
 
 
 def _parse_deck_names(request: ExportRequest) -> DeckNames:
+    """Parse the first node and the element set of a deck. Raises UsageError."""
     first, elements = request.first_node or FIRST_NODE, request.elements or DEFAULT_SET
     if not 1 <= first <= LAST_NODE or request.first_node == 0:
         message = f"--first-node {request.first_node}: expected a whole number from 1 to {LAST_NODE}"

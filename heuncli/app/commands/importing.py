@@ -164,6 +164,7 @@ def _require_supported(request: ImportRequest, options: ImportOptions, reader: M
 
 
 def _require_repairs(words: Collection[str], supported: Collection[str]) -> None:
+    """Raise UsageError for a repair that this format does not know."""
     for word in sorted(words):
         if word not in supported:
             hint = suggest(word, supported, "faults")

@@ -57,6 +57,7 @@ def main(request: NewRequest) -> int:
 
 
 def _format_list(titles: Mapping[str, str]) -> str:
+    """Format names with their titles, one per line."""
     width = max(map(len, titles))
     return "".join(f"{kind:<{width}}  {title}\n" for kind, title in titles.items())
 

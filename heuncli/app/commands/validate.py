@@ -68,6 +68,7 @@ def _check_sections(spec: Spec) -> list[str]:
 
 
 def _format_summary(spec: Spec, warnings: int) -> str:
+    """Format what a spec has, and its number of warnings."""
     parts = [format_count(len(spec.bodies), "body"), format_count(len(spec.joints), "joint")]
     parts += [format_count(len(spec.sections), "section")] if spec.sections else []
     parts += [format_count(warnings, "warning")] if warnings else []

@@ -33,10 +33,12 @@ class ArgumentKind(NamedTuple):
 
 
 def _is_number(value: object) -> bool:
+    """Return whether a value is a real number; True and False are none."""
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
 def _is_text_or_texts(value: object) -> bool:
+    """Return whether a value is a text, or a collection of texts that can be read twice."""
     if isinstance(value, str):
         return True
     is_series = isinstance(value, Iterable) and not isinstance(value, Mapping | bytes)
@@ -44,6 +46,7 @@ def _is_text_or_texts(value: object) -> bool:
 
 
 def _is_number_or_numbers(value: object) -> bool:
+    """Return whether a value is a number, or a collection of numbers."""
     if _is_number(value):
         return True
     if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
@@ -123,6 +126,7 @@ def resolve_source(spec: SpecSource | None, text: str | None) -> tuple[str, str 
 
 
 def _make_usage_error(message: str, hint: str) -> UsageError:
+    """Make the error of an invalid argument `spec`."""
     return UsageError(Problem("bad-option", f"spec: {message}", hint=hint))
 
 
@@ -147,6 +151,7 @@ def make_settings(overrides: Mapping[str, object], parameters: Mapping[str, obje
 
 
 def _iter_settings(values: Mapping[str, object]) -> Iterator[Setting]:
+    """Yield the values to set in a spec, each with its name as location."""
     for key, value in values.items():
         plain = _to_plain(value, (key,), {}, f"{key}=...")
         text = repr(plain)
@@ -184,4 +189,5 @@ def _to_plain(value: object, path: Path_, places: dict[Path_, Mark], file: str) 
 
 
 def _make_spec_error(code: str, message: str, path: Path_, file: str, hint: str) -> SpecError:
+    """Make the error of a value in a mapping, located by its keys."""
     return SpecError(Problem(code, message, SourceLocation(file, 0, 0, escape(format_path(path))), hint))

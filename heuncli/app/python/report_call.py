@@ -65,6 +65,7 @@ def write_called_report(call: ReportCall) -> bool:
     warnings: dict[str, None] = {}
 
     def record_warnings(study: Study, case: str) -> None:
+        """Record the warnings of one case, with its name."""
         read, solved = collect_warnings(study.spec, study.results, study.later_warnings)
         place = f"case {case}: " if case else ""
         warnings.update(dict.fromkeys([*read, *(f"{place}{warning}" for warning in solved)]))

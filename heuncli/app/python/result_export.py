@@ -173,6 +173,7 @@ class Diagram:
         Path(name).write_bytes(encode_drawing(self._picture, find_form(name, "save")))
 
     def _repr_svg_(self) -> str:
+        """Return the figure as a notebook shows it."""
         return self.svg.partition("?>\n")[2]
 
     def __repr__(self) -> str:

@@ -60,6 +60,7 @@ def list_paths(results: Results) -> list[str]:
 
 
 def _iter_leaves(node: Any, keys: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """Yield the keys that lead to each number over time below a node."""
     if isinstance(node, dict):
         for key, member in node.items():
             yield from _iter_leaves(member, (*keys, key))
@@ -97,6 +98,7 @@ class Signal(NDArrayOperatorsMixin):
 
     @property
     def _time(self) -> Array:
+        """Instants of the run [s], (n_t,)."""
         return self._run.times
 
     @property
@@ -266,5 +268,6 @@ class Signal(NDArrayOperatorsMixin):
 
 
 def _make_read_only(values: Array) -> Array:
+    """Return the array, which can no longer be written to."""
     values.flags.writeable = False
     return values

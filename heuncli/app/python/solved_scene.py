@@ -86,6 +86,7 @@ class Solved(Mapping[str, "Signal"]):
         return [path for path in list_paths(self.results) if not under or f"{path}.".startswith(f"{under}.")]
 
     def _ipython_key_completions_(self) -> list[str]:
+        """Return what a notebook proposes as key."""
         return self.paths()
 
     # -- information on the run

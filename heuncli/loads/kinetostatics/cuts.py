@@ -244,7 +244,7 @@ def _make_section_cuts(
                 f"{plane_tolerance:.3g} m"
             )
             raise SpecError(Problem("short-run", message, location, hint="check the body's largest coordinate"))
-        selected, side = _choose_run_sides(jumps)
+        selected, side = _choose_cut_sides(jumps)
         points, s, d = points[selected], s[selected], d[selected]
     reach = (
         float(heights.min(initial=np.inf)) - plane_tolerance,
@@ -319,8 +319,8 @@ def _missing_side_problem(names: list[str], location: SourceLocation) -> Problem
     )
 
 
-def _choose_run_sides(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
-    """Return for each cut of a run the index of its point and its side: two cuts where the loads jump, one at the
+def _choose_cut_sides(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
+    """Return for each cut of a series the index of its point and its side: two cuts where the loads jump, one at the
     ends.
     """
     rows: list[tuple[int, float]] = []
@@ -359,17 +359,17 @@ def _make_pieces(
         return pseudo_inertia(piece.mass, np.array(piece.center), np.array(piece.inertia))[None], None, ()
     if form is NO_MATTER:
         return form.piece_inertias(n, points @ n, side), None, ()
-    d, is_run = points @ n, section.at is None
+    d, is_cut_series = points @ n, section.at is None
     # the ends of a run may lie in end faces: there the inner limits are used
     inner_side = side.copy()
-    if is_run:
+    if is_cut_series:
         inner_side[0], inner_side[-1] = BEYOND, BEFORE
     cross_sections = form.cross_sections(n, d, inner_side)
     is_empty = cross_sections.regions == 0
     _require_body(location, section, form, n, d[is_empty], reach)
     warnings = []
     if is_empty.any():
-        meets = f"{int(is_empty.sum())} of {len(d)} cuts meet" if is_run else "the plane meets"
+        meets = f"{int(is_empty.sum())} of {len(d)} cuts meet" if is_cut_series else "the plane meets"
         where = "" if section.properties is None else ", and stresses refer to the cut's point"
         what = f"{meets} no material of the body {section.body}; the loads are those of the far side{where}"
         warnings.append(f"sections.{name}: {what}")

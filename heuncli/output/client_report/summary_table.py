@@ -24,7 +24,7 @@ from heuncli.output.tables.summary_document import Summary, group_alike, make_ta
 from heuncli.output.tables.summary_rows import MIN_TURN, SummaryRow
 from heuncli.results.results import NOWHERE, Extremes
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.cut_runs import collect_cut_series
+from heuncli.study.quantities.cut_series import collect_cut_series
 
 MORE_NOTE = "{}: chapter Loads"
 UNCERTAIN_NOTE = "{}: open or unknown in {}, where it may be larger"

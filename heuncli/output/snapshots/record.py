@@ -34,7 +34,7 @@ from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, CutPosition, DeterminateSum, Results
 from heuncli.results.results_schema import EVENTS, IMPULSES, REPORT_OF
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
-from heuncli.study.quantities.cut_runs import CutSeries, collect_cut_series
+from heuncli.study.quantities.cut_series import CutSeries, collect_cut_series
 from heuncli.study.quantities.digits import StatedErrors, largest_magnitude
 from heuncli.study.quantities.labels import Labels
 

@@ -10,7 +10,7 @@ from heuncli.output.documents.as_text import select_columns
 from heuncli.output.documents.document import Cell, OutputColumn, OutputTable, format_cell, make_number_cells
 from heuncli.results.results import Array, CutPosition, Extremes, Indices
 from heuncli.results.results_schema import STRESSES
-from heuncli.study.quantities.cut_runs import (
+from heuncli.study.quantities.cut_series import (
     CutSeries,
     choose_cuts,
     find_sample_extremes,

@@ -34,7 +34,7 @@ from heuncli.results.path_words import IMPULSE_BLOCKS, IMPULSE_UNITS, find_quant
 from heuncli.results.results import Array, Block, DeterminateSum, Extremes, Indices, Magnitudes, Results
 from heuncli.results.results_schema import SHARES, XYZ
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
-from heuncli.study.quantities.cut_runs import CutSeries, collect_cut_series
+from heuncli.study.quantities.cut_series import CutSeries, collect_cut_series
 from heuncli.study.quantities.digits import (
     OPEN,
     UNKNOWN,
@@ -249,9 +249,9 @@ def make_series_share_tables(
     """Make the tables of what each cause contributes to the impulses along a series of cuts, if that is requested."""
     if SHARES not in view.sections[series.name]:
         return []
-    from heuncli.output.tables import cause_tables
+    from heuncli.output.tables import series_cause_tables
 
-    return cause_tables.make_series_instants_tables(series, view, horizon, stated_errors)
+    return series_cause_tables.make_series_instants_tables(series, view, horizon, stated_errors)
 
 
 def make_impact_results(results: Results, impulse: Block) -> Results:

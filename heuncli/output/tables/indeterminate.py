@@ -18,7 +18,7 @@ from heuncli.results.results import Array, DeterminateSum, Results
 from heuncli.results.results_schema import AXIAL_FORCES, RESULTANTS, SECTION_FORCES, XYZ
 from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.channels import Channel
-from heuncli.study.quantities.cut_runs import CutSeries
+from heuncli.study.quantities.cut_series import CutSeries
 from heuncli.study.quantities.digits import StatedErrors, format_unclaimed, largest_magnitude, write_numbers
 from heuncli.study.quantities.labels import Labels
 

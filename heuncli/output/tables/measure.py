@@ -86,8 +86,9 @@ def parse_measures(texts: Sequence[str]) -> list[MeasureRequest]:
 def require_known_paths(requests: Sequence[MeasureRequest], spec: Spec, option: str = "--measure") -> None:
     """Check the paths of measures, as far as that is possible before the run. Raises SpecError [unknown-path]."""
     names = collect_scene_names(spec)
-    runs = {name: section.from_ is not None for name, section in spec.sections.items()}
-    problems = [found for request in requests if (found := find_path_error(request.path, names, runs)) is not None]
+    cut_series = {name: section.from_ is not None for name, section in spec.sections.items()}
+    path_errors = (find_path_error(request.path, names, cut_series) for request in requests)
+    problems = [found for found in path_errors if found is not None]
     problems += [found for request in requests if (found := find_place_problem(request.path, spec)) is not None]
     problems += [found for request in requests if (found := find_absent_quantity(request.path, spec)) is not None]
     if problems:

@@ -36,7 +36,7 @@ from heuncli.results.results_schema import REPORT_OF, REPORTS, RESULTANTS, SHARE
 from heuncli.study.compose.warnings import has_smoothed_friction, make_partial_note
 from heuncli.study.model.selection import EntryKeys, Selection
 from heuncli.study.quantities.channels import Channel, ChannelSelection, iter_channels, make_section_channels
-from heuncli.study.quantities.cut_runs import CutSeries, choose_cuts, collect_cut_series, split_into_cuts
+from heuncli.study.quantities.cut_series import CutSeries, choose_cuts, collect_cut_series, split_into_cuts
 from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.queries.study import Study, find_partial_friction
@@ -139,12 +139,12 @@ class Page(NamedTuple):
         self, series: CutSeries, search_result: Extremes, shares: ShareSource
     ) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes along a series of cuts."""
-        from heuncli.output.tables import cause_tables
+        from heuncli.output.tables import series_cause_tables
 
         found = search_result.find([load.path for load in series.loads])
         instants = np.unique(np.concatenate([found.low_at, found.high_at]))
         results = shares.compute_shares_along(series.name, instants, [place for both in found.places for place in both])
-        return cause_tables.make_series_extremes_tables(series, results, found, self.stated_errors)
+        return series_cause_tables.make_series_extremes_tables(series, results, found, self.stated_errors)
 
     def make_tables_at_instants(
         self,
@@ -183,7 +183,7 @@ class Page(NamedTuple):
         self, results: Results, stated_errors: StatedErrors, search_result: Extremes | None, shares: ShareSource
     ) -> list[OutputTable]:
         """Make the tables of what each cause contributes at the given instants."""
-        from heuncli.output.tables import cause_tables  # few runs ask for them
+        from heuncli.output.tables import cause_tables, series_cause_tables  # few runs ask for them
 
         horizon = self.results.horizon
         numbers, tables = self._collect_shares(results), list[OutputTable]()
@@ -193,7 +193,7 @@ class Page(NamedTuple):
             if search_result is not None:
                 tables += self._make_series_share_tables(series, search_result, shares)
             else:
-                tables += cause_tables.make_series_instants_tables(series, results, horizon, stated_errors)
+                tables += series_cause_tables.make_series_instants_tables(series, results, horizon, stated_errors)
         return tables
 
     def _find_last_values(self) -> dict[str, float]:

@@ -68,7 +68,7 @@ def _make_member_schema(member: Node | Quantity, is_timed: bool) -> dict[str, An
     if member.is_words:
         return {**schema, "type": ["string", "array", "object", "null"]}
     over_time = member.is_timed and is_timed
-    depths = {len(member.instant_axes(run)) + over_time for run in (False, True)}
+    depths = {len(member.instant_axes(in_series)) + over_time for in_series in (False, True)}
     return {**schema, "anyOf": [_make_nested_schema(n) for n in sorted(depths)]}
 
 

@@ -20,7 +20,7 @@ from heuncli.output.tables.run_description import make_heading
 from heuncli.output.tables.summary_rows import DIRECTION_DECIMALS, KINDS, SummaryRow, make_run_summary
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.cut_runs import collect_cut_series
+from heuncli.study.quantities.cut_series import collect_cut_series
 from heuncli.study.quantities.digits import ReaderStyle, choose_reader_style
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.queries.study import Study

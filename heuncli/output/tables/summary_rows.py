@@ -25,7 +25,7 @@ from heuncli.results.results_schema import IMPULSES, SECTION_FORCES, SECTION_MOM
 from heuncli.scene.file_format.names import GROUND
 from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
-from heuncli.study.quantities.cut_runs import collect_cut_series
+from heuncli.study.quantities.cut_series import collect_cut_series
 from heuncli.study.queries.study import Study
 from heuncli.study.search.extremes import sort_distinct
 

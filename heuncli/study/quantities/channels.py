@@ -287,23 +287,25 @@ class _Walk(NamedTuple):
     labels: Labels
     is_impulse: bool = False
 
-    def iter_block(self, keys: tuple[str, ...], node: Node, block: Block, is_run: bool = False) -> Iterator[Channel]:
-        """Yield the quantities of a block and of its sub-blocks; is_run: whether it belongs to a series of cuts."""
-        is_run = is_run or (self.kind == "sections" and len(keys) == 1 and "s" in block)
+    def iter_block(self, keys: tuple[str, ...], node: Node, block: Block, in_series: bool = False) -> Iterator[Channel]:
+        """Yield the quantities of a block and of its sub-blocks; in_series: whether it belongs to a series of cuts."""
+        in_series = in_series or (self.kind == "sections" and len(keys) == 1 and "s" in block)
         for key, value in block.items():
             if isinstance(value, dict):
-                yield from self.iter_block((*keys, key), _find_node(node, key), value, is_run)
+                yield from self.iter_block((*keys, key), _find_node(node, key), value, in_series)
                 continue
             row = find_child(node, key)
             assert isinstance(row, Quantity), f"{self.kind}.{'.'.join((*keys, key))} has no row in the schema"
             if row.is_timed:
-                yield self.make_timed_channel(keys, key, row, value, is_run)
+                yield self.make_timed_channel(keys, key, row, value, in_series)
             elif row.shape == (CUT,) and np.ndim(value) == 1:  # in a search nodes may move with a load
                 yield self.make_cut_channel(keys, key, row.select_unit(), np.asarray(value, dtype=np.float64))
             elif key == "side" and any(value):
                 yield self.make_cut_channel(keys, key, "1", np.array([CSV_SIDES[side] for side in value]))
 
-    def make_timed_channel(self, keys: tuple[str, ...], key: str, row: Quantity, value: Any, is_run: bool) -> Channel:
+    def make_timed_channel(
+        self, keys: tuple[str, ...], key: str, row: Quantity, value: Any, in_series: bool
+    ) -> Channel:
         """Make the channel of a quantity that changes over the instants."""
         values: Any = value if isinstance(value, StoredArray) else np.asarray(value, dtype=np.float64)
         if self.is_impulse:
@@ -311,7 +313,7 @@ class _Walk(NamedTuple):
         cause = keys[-1] if is_share(row) else ""
         name = ".".join(keys[:-2] if cause else keys)
         unit = row.select_unit(len(row.units) > 1 and self.labels.is_rotational(self.kind, name))
-        axes = row.instant_axes(is_run)
+        axes = row.instant_axes(in_series)
         components, columns = make_component_names(axes, values.shape[1:]), values.reshape(len(values), -1)
         return Channel(self.kind, name, key, unit, components, columns, axes, cause=cause)
 

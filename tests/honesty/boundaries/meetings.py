@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 from heuncli.analyses.find.meetings import is_flattening
 from heuncli.analyses.find.narrowing import is_jump_size, is_steep
+from heuncli.analyses.find.poles import is_far_from_value, is_rising_exponentially
 from heuncli.analyses.find.search import is_near_jump
-from heuncli.analyses.find.touches import find_touch_range, is_far_from_value, is_rising_exponentially
+from heuncli.analyses.find.touches import find_touch_range
 from heuncli.analyses.sweep_rows import SweptSample, is_swept_jump
 from heuncli.analyses.variants.course import MeasureCourse
 from heuncli.analyses.variants.samples import Sample

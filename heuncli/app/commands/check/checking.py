@@ -13,10 +13,10 @@ from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError, format_problems, run_contained
 from heuncli.app.cli.solving import format_warnings
 from heuncli.app.cli.target import require_other_file
-from heuncli.app.commands.check import spec_files
+from heuncli.app.commands.check.golden import NO_FILE, GoldenError, compare_golden, make_golden_error, require_inside
 from heuncli.app.commands.check.request import CheckRequest
 from heuncli.app.commands.check.results import CheckResult
-from heuncli.app.commands.check.spec_files import NO_FILE, FoundSpec, compare_golden
+from heuncli.app.commands.check.spec_files import FoundSpec
 from heuncli.base.errors import Finding, HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.process import result_memory
@@ -78,7 +78,7 @@ def check_spec(task: CheckTask, request: CheckRequest, jobs: int) -> CheckResult
     except HeunError as error:
         has_locations = all(problem.location for problem in error.problems)
         lines = format_problems(error.problems, label="" if has_locations else f"{path}: ")
-        outcomes = () if isinstance(error, spec_files.GoldenError) else tuple(starmap(_make_skipped_outcome, items))
+        outcomes = () if isinstance(error, GoldenError) else tuple(starmap(_make_skipped_outcome, items))
         checked = CheckResult(path, outcomes, error.problems, error.exit_code, messages=tuple(lines))
     return checked._replace(seconds=time.perf_counter() - start)
 
@@ -149,20 +149,20 @@ def _select_results(spec: Spec, has_golden: bool) -> Selection:
 def _read_golden(task: CheckTask, request: CheckRequest) -> GoldenFile | None:
     """Read the golden file of a spec, or return None if there is none. Raises GoldenError."""
     assert task.file is not None and request.golden is not None
-    spec_files.require_inside(task.file, request.golden)
+    require_inside(task.file, request.golden)
     if not Path(task.file).exists():
         return None
     try:
         golden_file = read_golden_file(read_bytes(task.file, MAX_BYTES).decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise spec_files.make_golden_error(
+        raise make_golden_error(
             task.file, Finding("not-golden", f"this is not UTF-8: {error.reason}", REWRITE_HINT)
         ) from None
     except Finding as finding:
-        raise spec_files.make_golden_error(task.file, finding) from None
+        raise make_golden_error(task.file, finding) from None
     if golden_file.spec.path != task.name:
         message = f"golden file of another spec: {golden_file.spec.path}, not {task.name}"
-        raise spec_files.make_golden_error(
+        raise make_golden_error(
             task.file, Finding("not-golden", message, "move it back, or remove it and use --update")
         )
     return golden_file
@@ -183,4 +183,5 @@ def _find_even_instants(old: GoldenFile | None, case: str) -> Sequence[float]:
 
 
 def _compute_digest(content: bytes) -> str:
+    """Compute the SHA-256 of a file."""
     return hashlib.sha256(content).hexdigest()

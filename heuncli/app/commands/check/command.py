@@ -13,8 +13,13 @@ from heuncli.app.cli.entry import BUG, UsageError, format_problems, print_explai
 from heuncli.app.cli.output import emit, encode_text, print_stderr
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.target import choose_format, is_same_file, require_other_file, require_writable
-from heuncli.app.commands.check import spec_files
 from heuncli.app.commands.check.checking import CheckTask, check_spec
+from heuncli.app.commands.check.golden import (
+    find_orphans,
+    make_spec_name,
+    map_golden_files,
+    require_consistent_golden_options,
+)
 from heuncli.app.commands.check.request import FORMATS, CheckRequest
 from heuncli.app.commands.check.results import FAILED, CheckResult, CheckSummary, make_document, render_github
 from heuncli.app.commands.check.spec_files import FoundSpec, SkippedFolder, find_specs, select_specs
@@ -40,7 +45,7 @@ def main(request: CheckRequest) -> int:
         message = f"no *.yaml in {', '.join(request.paths)}" if request.paths else "no PATH is given"
         raise UsageError(Problem("nothing-to-check", message, hint=NAMED))
     form = choose_format(request.format, request.output, FORMATS)
-    golden_files = spec_files.map_golden_files(specs, request.golden) if request.golden is not None else {}
+    golden_files = map_golden_files(specs, request.golden) if request.golden is not None else {}
     orphans = _report_orphans(request, specs, golden_files)
     selected = select_specs(specs, request.select) if request.select is not None else specs
     paths = [one.path for one in selected]
@@ -76,7 +81,7 @@ def _check_references(request: CheckRequest) -> int:
 
 def _require_consistent_options(request: CheckRequest) -> None:
     """Raise UsageError if options contradict each other, or a number is invalid."""
-    spec_files.require_consistent_options(request)
+    require_consistent_golden_options(request)
     for word, number in (("--jobs", request.jobs), ("--durations", request.durations)):
         if number is not None and number < 1:
             raise UsageError(
@@ -89,6 +94,7 @@ def _require_consistent_options(request: CheckRequest) -> None:
 
 
 def _require_other_files(request: CheckRequest, paths: Sequence[str]) -> None:
+    """Require that no report overwrites a spec. Raises UsageError, OutputError."""
     require_other_file(request.output, paths)
     if request.junit is not None:
         require_other_file(request.junit, paths, "--junit")
@@ -100,7 +106,7 @@ def _report_orphans(request: CheckRequest, specs: Sequence[FoundSpec], golden_fi
     """
     if request.golden is None or any(one.folder is None for one in specs):
         return []
-    orphans = spec_files.find_orphans(request.golden, golden_files.values())
+    orphans = find_orphans(request.golden, golden_files.values())
     for path in orphans if not request.quiet or request.strict else ():
         print_stderr(f"{'heun' if request.strict else 'warning'}: {escape(path)}: a golden file without a spec")
     return orphans
@@ -112,11 +118,14 @@ def _check_all(specs: Sequence[FoundSpec], golden_files: dict[str, str], request
     job_count = jobs.choose_job_count(request.jobs, len(tasks))
     checked: list[CheckResult] = []
     work = partial(check_spec, request=request, jobs=job_count)
-    is_last = _has_failed if request.first else _never
+    separate_process = request.time_limit_each is not None
+
+    def is_last(result: CheckResult) -> bool:
+        """Return whether a result ends the check: with -x the first failure."""
+        return request.first and bool(result.exit_code)
+
     with show_progress(request.quiet) as report:
-        for one in jobs.run_in_order(
-            work, tasks, job_count, _make_death_result, is_last, separate_process=request.time_limit_each is not None
-        ):
+        for one in jobs.run_in_order(work, tasks, job_count, _make_death_result, is_last, separate_process):
             if one.is_usage_error:
                 raise UsageError(*one.problems)
             checked.append(one)
@@ -127,17 +136,10 @@ def _check_all(specs: Sequence[FoundSpec], golden_files: dict[str, str], request
 
 
 def _make_task(one: FoundSpec, file: str | None, request: CheckRequest) -> CheckTask:
+    """Make the task of a spec, with its golden file if it is compared with one."""
     if file is None or request.golden is None or one.problem is not None:
         return CheckTask(one)
-    return CheckTask(one, file, spec_files.make_spec_name(file, one.path, request.golden))
-
-
-def _has_failed(one: CheckResult) -> bool:
-    return bool(one.exit_code)
-
-
-def _never(one: CheckResult) -> bool:
-    return False
+    return CheckTask(one, file, make_spec_name(file, one.path, request.golden))
 
 
 def _make_death_result(task: CheckTask, death: jobs.ProcessDeath) -> CheckResult:

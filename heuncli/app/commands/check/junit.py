@@ -31,6 +31,7 @@ def render_junit(results: Sequence[CheckResult], orphans: Sequence[str], strict:
 
 
 def _make_suite(one: CheckResult) -> ET.Element:
+    """Make the suite of a spec: that it was solved, and each of its outcomes."""
     name = PurePath(one.path).with_suffix("").as_posix()
     cases = [_make_solve_case(one, name), *(_make_case(one, name, outcome) for outcome in one.outcomes)]
     return _make_counted_suite(
@@ -60,6 +61,7 @@ def _make_solve_case(one: CheckResult, name: str) -> ET.Element:
 
 
 def _make_case(one: CheckResult, name: str, outcome: Outcome) -> ET.Element:
+    """Make the test case of an outcome."""
     case = _make_element(name, outcome.name, one.path, outcome.line, 0.0)
     if outcome.is_skipped:
         ET.SubElement(case, "skipped", {"message": escape_forbidden(outcome.failure or "")})
@@ -72,6 +74,7 @@ def _make_case(one: CheckResult, name: str, outcome: Outcome) -> ET.Element:
 
 
 def _make_orphan_suite(orphans: Sequence[str], strict: bool) -> ET.Element:
+    """Make the suite of the golden files without a spec: failures with --strict, else skipped."""
     cases = []
     for path in orphans:
         case = _make_element("golden", path, path, 1, 0.0)
@@ -85,6 +88,7 @@ def _make_orphan_suite(orphans: Sequence[str], strict: bool) -> ET.Element:
 
 
 def _make_element(classname: str, name: str, file: str, line: int, seconds: float) -> ET.Element:
+    """Make a test case, still without result."""
     attributes = {
         "classname": escape_forbidden(classname),
         "name": escape_forbidden(name),

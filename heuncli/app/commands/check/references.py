@@ -174,6 +174,7 @@ def _make_case_tables(results: Sequence[ReferenceResult]) -> Iterator[OutputTabl
 
 
 def _iter_number_rows(one: ReferenceResult) -> Iterator[tuple[Cell, ...] | str]:
+    """Yield a line for each table of a case, and a row for each of its numbers."""
     for part in one.tables:
         yield _describe_table(part)
         yield from map(_make_number_row, part.numbers)
@@ -190,6 +191,7 @@ def _describe_table(part: TableComparison) -> str:
 
 
 def _make_number_row(one: NumberComparison) -> tuple[Cell, ...]:
+    """Make the row of a number."""
     last = f"{one.in_last_digits:.2g}" if one.published.last_digit else ""
     return (
         one.number.path,
@@ -204,6 +206,7 @@ def _make_number_row(one: NumberComparison) -> tuple[Cell, ...]:
 
 
 def _format_instant(one: NumberComparison) -> str:
+    """Format the instant of a number; empty if it has none."""
     return "" if one.number.time is None else f"{one.number.time:.6g} s"
 
 
@@ -216,6 +219,7 @@ def _format_number(one: NumberComparison) -> str:
 
 
 def _make_block(one: ReferenceResult) -> dict[str, Any]:
+    """Return a case as the JSON has it: its tables, or why it was not solved."""
     case = {"case": one.case.name, "about": one.case.description, "source": one.case.source}
     if one.result.error:
         message = "\n".join(map(str, one.result.problems))
@@ -224,6 +228,7 @@ def _make_block(one: ReferenceResult) -> dict[str, Any]:
 
 
 def _make_table_block(part: TableComparison) -> dict[str, Any]:
+    """Return a table as the JSON has it."""
     table_ = part.table
     block = {
         "where": table_.where,
@@ -237,6 +242,7 @@ def _make_table_block(part: TableComparison) -> dict[str, Any]:
 
 
 def _make_number_block(one: NumberComparison) -> dict[str, Any]:
+    """Return a comparison as the JSON has it, in SI."""
     return {
         "of": one.number.path,
         "at": one.number.time,
@@ -293,19 +299,18 @@ def _select_names(request: CheckRequest) -> Sequence[str]:
 
 
 def _check_all(names_chosen: Sequence[str], request: CheckRequest) -> list[ReferenceResult]:
+    """Check the cases; returns the results in their order, and prints their messages as they come."""
     job_count = jobs.choose_job_count(request.jobs, len(names_chosen))
-    is_last = _has_failed if request.first else _never
     checked: list[ReferenceResult] = []
+    work = partial(check_case, request=request)
+    separate_process = request.time_limit_each is not None
+
+    def is_last(result: ReferenceResult) -> bool:
+        """Return whether a result ends the check: with -x the first failure."""
+        return request.first and bool(result.exit_code)
+
     with show_progress(request.quiet) as report:
-        separate_process = request.time_limit_each is not None
-        for one in jobs.run_in_order(
-            partial(check_case, request=request),
-            names_chosen,
-            job_count,
-            _make_death_result,
-            is_last,
-            separate_process=separate_process,
-        ):
+        for one in jobs.run_in_order(work, names_chosen, job_count, _make_death_result, is_last, separate_process):
             checked.append(one)
             for line in one.result.messages:
                 print_stderr(line)
@@ -319,6 +324,7 @@ def check_case(name: str, request: CheckRequest) -> ReferenceResult:
     place = PLACE.format(name)
 
     def work() -> ReferenceResult:
+        """Solve the case within the time limit, and compare it."""
         options = Options(time_limit=timeout.remaining_time(), reduce=not request.no_reduce)
         tables = compare_case(case, options)
         timeout.disarm()
@@ -332,14 +338,6 @@ def check_case(name: str, request: CheckRequest) -> ReferenceResult:
         messages = tuple(format_problems(error.problems, label=f"{name}: "))
         result = ReferenceResult(case, (), CheckResult(place, (), error.problems, error.exit_code, messages=messages))
     return result._replace(result=result.result._replace(seconds=time.perf_counter() - start))
-
-
-def _has_failed(one: ReferenceResult) -> bool:
-    return bool(one.exit_code)
-
-
-def _never(one: ReferenceResult) -> bool:
-    return False
 
 
 def _make_death_result(name: str, death: jobs.ProcessDeath) -> ReferenceResult:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from heuncli.app.commands.check.spec_files import GoldenUpdate, SkippedFolder
+from heuncli.app.commands.check.golden import GoldenUpdate
+from heuncli.app.commands.check.spec_files import SkippedFolder
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
@@ -74,6 +75,7 @@ def make_document(check_summary: CheckSummary, form: str) -> OutputDocument:
 
 
 def _make_tables(check_summary: CheckSummary) -> list[OutputTable]:
+    """Make the tables of failures and of golden files written; those that have rows."""
     failed = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if not outcome.has_passed]
     written_rows = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if _is_written(outcome)]
     tables = (("FAILED", HEADS, failed), ("CHANGED", CHANGED, written_rows))
@@ -81,16 +83,19 @@ def _make_tables(check_summary: CheckSummary) -> list[OutputTable]:
 
 
 def _is_written(outcome: Outcome) -> bool:
+    """Return whether --update writes a golden file because of an outcome."""
     return outcome.kind == GOLDEN and outcome.is_warning and bool(outcome.block.get("written"))
 
 
 def _iter_outcomes(check_summary: CheckSummary) -> Iterator[tuple[CheckResult, Outcome]]:
+    """Yield every outcome with the result of its file."""
     for one in check_summary.results:
         for outcome in one.outcomes:
             yield one, outcome
 
 
 def _make_row(one: CheckResult, outcome: Outcome) -> tuple[str, ...]:
+    """Make the row of an outcome."""
     place = f"{one.path}:{outcome.line}"
     name = f"{outcome.case}: {outcome.subject}" if outcome.case else outcome.subject
     return (place, name, outcome.when, outcome.expected_text, outcome.found_text, outcome.failure or "")
@@ -142,6 +147,7 @@ def render_github(check_summary: CheckSummary) -> str:
 
 
 def _iter_annotations(check_summary: CheckSummary) -> Iterator[Annotation]:
+    """Yield the lines of a GitHub workflow: a problem, a note, a failure or an orphan each."""
     for one in check_summary.results:
         for problem in one.problems:
             where = problem.location

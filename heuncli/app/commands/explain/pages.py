@@ -107,6 +107,7 @@ def _group_by_main(sections: Sequence[ManualSection]) -> Iterator[Sequence[Manua
 
 
 def _list_group(group: Sequence[ManualSection]) -> Iterator[str]:
+    """Yield the pieces of a line that lists the sections of a group."""
     main, *inner = (section.heading for section in group)
     yield main
     if inner:
@@ -227,6 +228,7 @@ def _iter_keys(words: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterator[tuple[str, str]]:
+    """Yield label and text of each fact about a result."""
     meaning = _describe_meaning(row).replace("`", "").replace("\\|", "|")
     yield path, ""
     yield "meaning", meaning

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Annotated
 
-from heuncli.analyses.find.results import IntervalFindings
+from heuncli.analyses.find.results import FindResults, IntervalFindings
 from heuncli.analyses.find.study import find_meetings
 from heuncli.analyses.variants.evaluation import CachedEvaluator, Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import Comparison, parse_condition, resolve_condition
@@ -120,8 +120,8 @@ def main(request: FindRequest) -> int:
         )
     require_known_measure(findings)
     page_units = units_shown if request.units else use_condition_unit(units_shown, condition)
-    page = FindPage(evaluator.spec.title, condition, interval, findings, scan, max_variants, page_units)
-    emit_document(make_document(page), form, request.output)
+    results = FindResults(evaluator.spec.title, condition, interval, findings, scan)
+    emit_document(make_document(FindPage(results, page_units)), form, request.output)
     note_si_format(request.units, form, request.quiet)
     print_variant_warnings(evaluator.spec, cached, request.quiet)
     return int(request.strict and (not is_met(findings, condition) or bool(findings.unsolved_stretches)))
@@ -146,6 +146,7 @@ def make_sampler(
     """Make the function that samples the measure at a value of the unknown."""
 
     def sample_at(x: float) -> Sample:
+        """Solve the variant of one value, and return the measure there."""
         result = evaluator.evaluate({variable.name: variable.make_value(x)})
         found = result.find_noisy_value(0, magnitude=abs(condition.value))
         return make_sample(x, found, condition.value, singular=result.singular)

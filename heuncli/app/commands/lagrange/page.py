@@ -192,6 +192,7 @@ def make_force_table(results: LagrangeResults, units: Units) -> OutputTable:
     display_units = [units.find(get_units(name).force) for name in results.names]
 
     def row(cause: str, k: Array) -> tuple[Cell, ...]:
+        """Make the row of a cause from its generalised forces."""
         cells = zip(k, results.scale, display_units, strict=True)
         return cause, *(make_cell(x * factor, size * factor) for x, size, (_, factor) in cells)
 

@@ -155,4 +155,5 @@ def _exists(word: str) -> bool:
 
 
 def _make_error(message: str, hint: str) -> UsageError:
+    """Make the error of a wrong word."""
     return UsageError(Problem("bad-option", f"plot: {message}", hint=hint))

@@ -58,6 +58,7 @@ def _read_points(target: PlotTarget, request: PlotRequest, spec: Spec) -> list[M
 
 
 def _read_file(words: str, x_unit: str, y_units: Sequence[str]) -> MeasuredPoints:
+    """Read measured points from the columns of a CSV file that `--with` names."""
     from heuncli.output.figures.measurements import parse_points_query, read_points  # rarely used
 
     return read_points(parse_points_query(words), x_unit, y_units)
@@ -71,7 +72,7 @@ def draw_sections(target: PlotTarget, request: PlotRequest) -> Figure:
     names = [path.partition(".")[2] for path in target.paths]
     specs = load_specs(target.files, request)
     for _, spec in specs:
-        _require_runs(names, spec)
+        _require_cut_series(names, spec)
     _require_one_kind([spec for _, spec in specs])
     path_lists = [[*_list_paths(names, spec), *list_extreme_paths(request.at, spec)] for _, spec in specs]
     sources = [solve_source(name, spec, paths, request) for (name, spec), paths in zip(specs, path_lists, strict=True)]
@@ -80,7 +81,7 @@ def draw_sections(target: PlotTarget, request: PlotRequest) -> Figure:
     )
 
 
-def _require_runs(names: Sequence[str], spec: Spec) -> None:
+def _require_cut_series(names: Sequence[str], spec: Spec) -> None:
     """Raise SpecError for a name that is no section, UsageError for one that is a single cut."""
     known = [name for name, section in spec.sections.items() if section.from_ is not None]
     for name in names:
@@ -156,12 +157,10 @@ def _append_force(path: str) -> str:
 
 def _require_vectors(paths: list[str], spec: Spec) -> None:
     """Raise UsageError for paths that are known to lead to no vector."""
-    names, runs = (
-        collect_scene_names(spec),
-        {name: section.from_ is not None for name, section in spec.sections.items()},
-    )
+    names = collect_scene_names(spec)
+    cut_series = {name: section.from_ is not None for name, section in spec.sections.items()}
     for path in paths:
-        number_kind = resolve_path(split_path(path), names, runs)
+        number_kind = resolve_path(split_path(path), names, cut_series)
         if (
             isinstance(number_kind, NumberKind)
             and number_kind.is_known

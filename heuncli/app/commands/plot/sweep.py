@@ -195,6 +195,7 @@ def _find_columns(path: str, heads: Sequence[str]) -> CsvColumns:
 
 
 def _make_error(path: str, why: str) -> UsageError:
+    """Make the error of a file that is no CSV of a sweep."""
     return UsageError(Problem("bad-option", f"{path}: not a CSV file of a sweep: {why}", hint=WRITES_ONE))
 
 

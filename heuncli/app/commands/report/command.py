@@ -81,6 +81,7 @@ def solve_report_cases(request: ReportRequest) -> ReportData:
     spec, cases = apply_captions(spec, request.captions), apply_captions_to_cases(cases, request.captions)
 
     def report_warnings(study: Study, case: str) -> None:
+        """Print the warnings of one case."""
         place = f"heun: case {case}" if case else "heun"
         print_warnings(study.spec, study.results, request.quiet, place, study.later_warnings)
 

@@ -128,6 +128,7 @@ def _format_governing(extreme: Bound) -> str:
 
 
 def _make_row(row: NumberEnvelope, units: Units) -> tuple[Cell, ...]:
+    """Make the row of the envelope of a number."""
     unit, size = units.find(row.unit)
     ends: list[Cell] = []
     for extreme in (row.least, row.greatest):

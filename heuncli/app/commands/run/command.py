@@ -25,14 +25,7 @@ from heuncli.app.cli.solving import (
 )
 from heuncli.app.cli.target import TABLES, choose_format, note_si_format, parse_units, require_other_file
 from heuncli.app.commands.run.request import FORMATS, RunRequest
-from heuncli.app.commands.run.scene import (
-    RunTask,
-    finish,
-    note_measure_units,
-    require_alone,
-    run_overview,
-    solve_and_render,
-)
+from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, solve_and_render
 from heuncli.base.errors import Finding, HeunError, Problem
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace
@@ -69,6 +62,8 @@ def main(request: RunRequest) -> int:
     units_shown = parse_units(request.units)
     is_overview = request.summary or request.hardpoints
     if is_overview:
+        from heuncli.app.commands.run.overview import require_alone  # of few runs
+
         require_alone(request)
     options = replace(make_solver_options(request.solver), axes=_choose_axes(request))
     start = time.perf_counter()
@@ -84,6 +79,8 @@ def main(request: RunRequest) -> int:
     options = replace(options, requested_reports=selection.reports, entries=selection.entries, in_parts=is_export)
     task = RunTask(request, form, options, selection, measures, units_shown, collectives)
     if is_overview:
+        from heuncli.app.commands.run.overview import run_overview
+
         return run_overview(task, spec, cases)
     if request.case == ALL_CASES:
         from heuncli.app.commands.run.cases import run_all  # of few runs
@@ -207,6 +204,7 @@ def read_state(spec: str) -> State:
 
 
 def _read_stamp(path: Path) -> tuple[str, int, int, int] | None:
+    """Return what changes when a file is saved; None if it is missing."""
     try:
         status = path.stat()
     except OSError:

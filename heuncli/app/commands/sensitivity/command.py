@@ -128,10 +128,12 @@ def solve_ahead(
     """
 
     def solve_for(number: SpecNumber, own: CachedEvaluator) -> None:
+        """Solve all variants that the derivatives by one number need."""
         for k, head in enumerate(heads):
             compute_slope(make_evaluation(own, k, head, {number.name: number}), number)
 
     def solve_in_worker(number: SpecNumber) -> KnownResults:
+        """Do the same in a process of its own; returns the results."""
         own = CachedEvaluator(
             lambda values: solve_contained(evaluator, values, "sensitivity", timeout.remaining_time())
         )
@@ -140,6 +142,7 @@ def solve_ahead(
         return own.known
 
     def refuse(number: SpecNumber, death: jobs.ProcessDeath) -> KnownResults:
+        """Raise SolveError: the process of a number died."""
         raise SolveError(death.make_problem(f"solved the variants of {number.name}", "try --jobs 1"))
 
     if job_count == 1:
@@ -215,6 +218,7 @@ def make_evaluation(
     """
 
     def evaluate_at(distances: Mapping[str, float]) -> NoisyValue:
+        """Evaluate the measure where the numbers have these distances from their values."""
         values = {name: numbers[name].make_value(numbers[name].value + x) for name, x in distances.items()}
         found = evaluator.evaluate(values).find_noisy_value(index)
         return found if label.unit or found.value is None else NoisyValue(None, why=NO_ERROR)

@@ -84,6 +84,7 @@ def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[SpecN
     """Sort the numbers by their influence on the measure, the largest first, unknown ones last."""
 
     def weight(number: SpecNumber) -> tuple[bool, float]:
+        """Return a sort key: unknown last, then by descending influence."""
         elasticity = compute_elasticity(number, findings)
         return elasticity is None, -abs(elasticity[0]) if elasticity else 0.0
 
@@ -108,6 +109,7 @@ def make_document(page: SensitivityPage) -> OutputDocument:
 
 
 def _make_derivative_table(page: SensitivityPage, text: str, unit: str, findings: MeasureFindings) -> OutputTable:
+    """Make the table of the derivatives of one measure."""
     display_unit, size = page.units.find(unit)
     base = findings.base
     value = (
@@ -146,6 +148,7 @@ def _make_pair(value: float, error: float) -> tuple[NumberCell, NumberCell]:
 
 
 def _make_remark(slope: NoisyDerivative) -> str:
+    """Say what is special about a derivative; empty for a plain one."""
     if slope.kind == "nothing":
         return "no effect"
     if slope.kind == "one-sided":
@@ -154,12 +157,14 @@ def _make_remark(slope: NoisyDerivative) -> str:
 
 
 def _format_denominator(unit: str) -> str:
+    """Format a unit below a fraction bar: in brackets if it is a product or has an exponent."""
     return f"({unit})" if set("*/· ") & set(unit) else unit or "1"
 
 
 def _make_spread_table(
     page: SensitivityPage, text: str, unit: str, findings: MeasureFindings, total: SpreadSum
 ) -> OutputTable:
+    """Make the table of the tolerances, and of their combined effect on one measure."""
     display_unit, size = page.units.find(unit)
     largest = sorted(total.contributions, key=lambda one: -(one.size or 0.0))
     rows = [_make_contribution_row(one, size) for one in largest]
@@ -168,6 +173,7 @@ def _make_spread_table(
 
 
 def _make_contribution_row(one: Contribution, size: float) -> tuple[Cell, ...]:
+    """Make the row of the effect of one tolerance."""
     ends = tuple(
         None if end is None else NumberCell(end * size, write="{:+.6g}".format) for end in (one.below, one.above)
     )
@@ -237,6 +243,7 @@ def to_block(page: SensitivityPage) -> dict[str, Any]:
 
 
 def _make_block(number: SpecNumber, findings: MeasureFindings) -> dict[str, Any]:
+    """Return a derivative as the JSON has it, in the number's unit and in SI."""
     slope, share = findings.slopes[number.name], compute_elasticity(number, findings)
     known = slope.value is not None
     block: dict[str, Any] = {
@@ -255,6 +262,7 @@ def _make_block(number: SpecNumber, findings: MeasureFindings) -> dict[str, Any]
 
 
 def _make_spread_block(total: SpreadSum) -> dict[str, Any]:
+    """Return the effect of the tolerances as the JSON has it."""
     low, high = total.corners
     return {
         "worst": total.worst[0] if total.worst else None, "worst_error": total.worst[1] if total.worst else None,

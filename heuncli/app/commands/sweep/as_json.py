@@ -51,6 +51,7 @@ def iter_json(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:
 
 
 def _to_json(value: Any) -> str:
+    """Format a value as JSON that a terminal shows safely."""
     return escape(json.dumps(value, ensure_ascii=False, allow_nan=False))
 
 
@@ -73,14 +74,17 @@ def _make_header(head: SweepHead, columns: SweepColumns) -> dict[str, Any]:
 
 
 def _make_parameter_block(one: ParameterColumn) -> dict[str, Any]:
+    """Return a parameter as the JSON has it."""
     return {"parameter": one.name, "unit": one.unit or None}
 
 
 def _make_law_block(law: Any) -> dict[str, Any]:
+    """Return the distribution of a random parameter as the JSON has it; empty if it is not random."""
     return {} if law is None else {"law": law.law, "of": [law.a, law.b]}
 
 
 def _make_row_block(row: SweptRow, columns: SweepColumns) -> dict[str, Any]:
+    """Return a variant as the JSON has it: its values, its measures, and why some are missing."""
     block: dict[str, Any] = {
         "number": row.number,
         "set": {name: to_cell(value) for name, value in row.values.items()},
@@ -128,4 +132,5 @@ def _make_statistics_block(statistics: MeasureStatistics, head: SweepHead) -> di
 
 
 def _make_index_block(one: SobolIndices) -> dict[str, dict[str, Any]]:
+    """Return the Sobol indices of a parameter as the JSON has them."""
     return {"first": one.first._asdict(), "total": one.total._asdict()}

@@ -25,16 +25,10 @@ from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, is_same_file, parse_units, require_other_file, require_writable
 from heuncli.app.cli.variant_workers import require_job_count
-from heuncli.app.commands.sweep.axes import (
-    AxisArgument,
-    find_problems,
-    find_warnings,
-    parse_axis,
-    parse_shard,
-    read_axes,
-)
+from heuncli.app.commands.sweep.axes import AxisArgument, find_problems, find_warnings, parse_axis, parse_shard
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep, show_stored
+from heuncli.app.commands.sweep.variants_table import read_axes
 from heuncli.app.commands.sweep.writer import SweepOutput, require_writable_form
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.process import result_memory
@@ -116,19 +110,19 @@ def parse_axes(request: SweepRequest, words: Sequence[str]) -> list[AxisArgument
     return [*columns, *axes]
 
 
-def make_plan(axis_arguments: Sequence[AxisArgument], request: SweepRequest) -> Plan:
+def make_plan(axes: Sequence[AxisArgument], request: SweepRequest) -> Plan:
     """Make the plan of the variants, still without the load cases of `case=all`, which only the spec knows. Raises
     AxisError.
     """
-    draws = draw_samples([one.axis for one in axis_arguments if isinstance(one.axis, RandomVariable)], request)
-    return combine_axes([one for one in axis_arguments if not one.is_all_cases], request, draws)
+    draws = draw_samples([axis.parameter for axis in axes if isinstance(axis.parameter, RandomVariable)], request)
+    return combine_axes([axis for axis in axes if not axis.is_all_cases], request, draws)
 
 
-def combine_axes(axis_arguments: Sequence[AxisArgument], request: SweepRequest, draws: Draws | None) -> Plan:
+def combine_axes(axes: Sequence[AxisArgument], request: SweepRequest, draws: Draws | None) -> Plan:
     """Make the plan of axes, columns and random draws. Raises AxisError."""
-    columns = [one.axis for one in axis_arguments if one.column is not None and isinstance(one.axis, ParameterAxis)]
-    axes = [one.axis for one in axis_arguments if one.column is None and not isinstance(one.axis, RandomVariable)]
-    return make_axes_plan(axes, together=request.zip, draws=draws, columns=columns)
+    words = [axis.parameter for axis in axes if axis.column is None and not isinstance(axis.parameter, RandomVariable)]
+    columns = [axis.parameter for axis in axes if axis.column is not None and isinstance(axis.parameter, ParameterAxis)]
+    return make_axes_plan(words, together=request.zip, draws=draws, columns=columns)
 
 
 def make_evaluator(recipe: Recipe, plan: Plan) -> VariantEvaluator:
@@ -151,16 +145,12 @@ def _require_known(axes: Sequence[AxisArgument], evaluator: VariantEvaluator, re
         raise SpecError(*problems)
 
 
-def expand_cases(
-    plan: Plan, axis_arguments: Sequence[AxisArgument], request: SweepRequest, evaluator: VariantEvaluator
-) -> Plan:
+def expand_cases(plan: Plan, axes: Sequence[AxisArgument], request: SweepRequest, evaluator: VariantEvaluator) -> Plan:
     """Return the plan with `case=all` replaced by every load case. Raises AxisError."""
-    if not any(one.is_all_cases for one in axis_arguments):
+    if not any(axis.is_all_cases for axis in axes):
         return plan
-    case_axis = ParameterAxis(CASE, tuple(evaluator.spec.cases)) if varies_cases(evaluator.spec) else None
-    expanded = [
-        one._replace(axis=case_axis) if case_axis is not None and one.is_all_cases else one for one in axis_arguments
-    ]
+    cases = ParameterAxis(CASE, tuple(evaluator.spec.cases)) if varies_cases(evaluator.spec) else None
+    expanded = [axis._replace(parameter=cases) if cases is not None and axis.is_all_cases else axis for axis in axes]
     return combine_axes(expanded, request, plan.draws)
 
 

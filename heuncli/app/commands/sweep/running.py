@@ -112,6 +112,7 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
     plan, store = sweep.head.plan, sweep.store
 
     def missing() -> Iterator[int]:
+        """Yield the variants without a stored result, and link the others to theirs."""
         for variant in plan.iter_numbers(sweep.shard):
             values = plan.find_values(variant)
             variant_values = PendingVariant(sweep.keys.make_key(values), values)
@@ -155,6 +156,7 @@ def _solve_variants(
     from heuncli.app.commands.sweep.cluster import scheduler  # imports an optional, large package
 
     def report_line(line: str) -> None:
+        """Print a line about the cluster."""
         if not request.quiet:
             print_stderr(f"heun: {line}")
 

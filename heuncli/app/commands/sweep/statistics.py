@@ -71,6 +71,7 @@ class ColumnBuffer:
 
 
 def _to_array(numbers: array[float]) -> Array:
+    """Return the numbers as an array that shares their memory."""
     return np.frombuffer(numbers) if numbers else np.empty(0)
 
 

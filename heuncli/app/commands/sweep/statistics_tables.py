@@ -56,6 +56,7 @@ def format_label(head: SweepHead, one: MeasureStatistics, unit: str = "") -> str
 def _make_statistics_table(
     head: SweepHead, statistics: Sequence[MeasureStatistics], units: Units, omitted: int
 ) -> OutputTable:
+    """Make the table of mean, deviation and percentiles, with their confidence intervals."""
     columns = (OutputColumn("", "text"), OutputColumn("value"), OutputColumn("from"), OutputColumn("to"))
     rows: list[tuple[Cell, ...] | str] = []
     notes = _make_notes(head)
@@ -111,6 +112,7 @@ def _make_row(label: str, one: BoundedEstimate, size: float) -> tuple[Cell, ...]
 def _make_index_table(
     head: SweepHead, statistics: Sequence[MeasureStatistics], laws: Sequence[RandomVariable]
 ) -> OutputTable:
+    """Make the table of the Sobol indices, and say why some are missing."""
     names = ("", "first order", "from", "to", "total", "from", "to")
     columns = tuple(OutputColumn(name, "text" if not name else "number") for name in names)
     rows: list[tuple[Cell, ...] | str] = []

@@ -76,6 +76,7 @@ def iter_pieces(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) 
 
 
 def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput) -> Iterator[str]:
+    """Yield the tables as text."""
     on_terminal = output.output is None and terminal.is_terminal()
     tables = make_tables(head, rows, output.units, output.all, sys.stdout.encoding if on_terminal else None)
     yield from render_document(OutputDocument(parts=tables), "table", output.output)
@@ -183,6 +184,7 @@ def _list_types(pa: Any, columns: SweepColumns) -> list[Any]:
 
 
 def _make_metadata(head: SweepHead) -> dict[str, str]:
+    """Make the metadata of a Parquet file."""
     return {"version": head.version, "title": head.title, "spec": head.path, "sha256": head.sha256}
 
 
@@ -251,4 +253,5 @@ def print_warnings_summary(summary: SweepWarnings, quiet: bool) -> None:
 
 
 def _format_share(count: int, rows: int) -> str:
+    """Format for how many of the variants a warning holds."""
     return "all variants" if count == rows else f"{count} of {rows} variants"

@@ -144,6 +144,7 @@ def parse_words(words: Sequence[str]) -> tuple[str, list[DesignVariable]]:
 
 
 def _parse_constraint(text: str) -> WrittenCondition:
+    """Parse a limit of --subject-to. Raises AxisError."""
     condition = parse_condition(text, FORM, HINT)
     if condition.relation == "=":
         raise AxisError(text, "a limit has < or >: = cannot be met exactly", HINT)

@@ -293,6 +293,7 @@ def make_moves_table(results: TuneResults, units: Units) -> OutputTable:
 
 
 def _format_moves(freedom: ToleranceRange) -> Iterator[str]:
+    """Yield how far each variable may move, in words."""
     return (_format_move(one) for one in (*freedom.of_floor, *freedom.of_hundredth))
 
 

@@ -83,13 +83,13 @@ def check_event_motion(draft: DraftDocument) -> Iterator[Violation]:
 @rule("event-path")
 def check_event_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to one number per instant: of a vector the magnitude, of a series of cuts the whole run."""
-    runs: dict[str, bool] | None = None
+    cut_series: dict[str, bool] | None = None
     for path, condition, target in iter_result_conditions(draft):
-        from heuncli.scene.file_format.rules.outcome import NumberKind, find_cut_runs, find_path_error
+        from heuncli.scene.file_format.rules.outcome import NumberKind, find_cut_series, find_path_error
 
         of_path = (*path, "of")
-        runs = runs if runs is not None else find_cut_runs(draft)
-        if (wrong := find_path_error(condition.of, draft.names, runs)) is not None:
+        cut_series = cut_series if cut_series is not None else find_cut_series(draft)
+        if (wrong := find_path_error(condition.of, draft.names, cut_series)) is not None:
             yield Violation(of_path, *wrong)
         elif (
             not isinstance(target, NumberKind)

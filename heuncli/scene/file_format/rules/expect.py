@@ -47,11 +47,11 @@ def iter_expected_quantities(draft: DraftDocument) -> Iterator[tuple[Path_, f.Ex
 def check_expected_path(draft: DraftDocument) -> Iterator[Violation]:
     """`of` leads to a result."""
     if draft.document.expect:
-        from heuncli.scene.file_format.rules.outcome import find_cut_runs, find_path_error  # as in outcomes
+        from heuncli.scene.file_format.rules.outcome import find_cut_series, find_path_error  # as in outcomes
 
-        runs = find_cut_runs(draft)
+        cut_series = find_cut_series(draft)
         for i, item in draft.document.expect.items():
-            if (wrong := find_path_error(item.of, draft.names, runs)) is not None:
+            if (wrong := find_path_error(item.of, draft.names, cut_series)) is not None:
                 yield Violation(("expect", i, "of"), *wrong)
 
 

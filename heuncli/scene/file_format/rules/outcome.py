@@ -25,7 +25,7 @@ from heuncli.results.results_schema import CUT, IMPULSES, INSTANT, Quantity, Sha
 from heuncli.scene.file_format.names import GROUND, SceneNames
 from heuncli.scene.file_format.profiles import STRESS_POINTS
 from heuncli.scene.file_format.rules.registry import DraftDocument
-from heuncli.scene.file_format.rules.sections import is_run
+from heuncli.scene.file_format.rules.sections import is_cut_series
 from heuncli.scene.file_format.semantics import limitable_coordinates
 
 NUMBER = "NUMBER"
@@ -75,38 +75,38 @@ class ResolvedPath(NamedTuple):
     selectors: list[str]
 
 
-def find_cut_runs(draft: DraftDocument) -> dict[str, bool]:
+def find_cut_series(draft: DraftDocument) -> dict[str, bool]:
     """Return, for each section that could be read, whether it is a series of cuts."""
-    return {name: is_run(section) for name, section in draft.document.sections.items()}
+    return {name: is_cut_series(section) for name, section in draft.document.sections.items()}
 
 
 def find_path_target(draft: DraftDocument, path: str) -> PathTarget:
     """Return what a path leads to in a document; cached."""
     if path not in draft.path_targets:
-        draft.path_targets[path] = resolve_path(split_path(path), draft.names, find_cut_runs(draft))
+        draft.path_targets[path] = resolve_path(split_path(path), draft.names, find_cut_series(draft))
     target: PathTarget = draft.path_targets[path]
     return target
 
 
-def resolve_path(path: list[str], names: SceneNames, runs: Mapping[str, bool]) -> PathTarget:
+def resolve_path(path: list[str], names: SceneNames, cut_series: Mapping[str, bool]) -> PathTarget:
     """Return what the words of a path lead to.
 
-    runs: of each section, whether it is a series of cuts
+    cut_series: of each section, whether it is a series of cuts
     """
     resolved = follow_path(path, names)
     if not isinstance(resolved, ResolvedPath):
         return resolved
     if not resolved.quantity.units:
         return TextResult() if resolved.quantity.is_words else UNKNOWN_NUMBER
-    is_run_of_cuts, is_at_impact = False, resolved.keys[0] == IMPULSES
+    has_cut_axis, is_at_impact = False, resolved.keys[0] == IMPULSES
     keys = resolved.keys[2:] if is_at_impact else resolved.keys
     if keys[0] == "sections":
-        if keys[1] not in runs:
+        if keys[1] not in cut_series:
             return None
-        is_run_of_cuts = runs[keys[1]]
+        has_cut_axis = cut_series[keys[1]]
     dimensions = tuple(u.parse_unit(unit)[1] for unit in resolved.quantity.units)
     is_timed = resolved.quantity.is_timed and not is_at_impact
-    whole = NumberKind(dimensions, resolved.quantity.instant_axes(is_run_of_cuts), is_timed)
+    whole = NumberKind(dimensions, resolved.quantity.instant_axes(has_cut_axis), is_timed)
     try:
         return select_component(*select_cut(whole, resolved.selectors))
     except Finding as finding:
@@ -197,11 +197,11 @@ def find_stop_loads(stop: Any) -> set[str]:
     return loads or set(STOP_LOADS)
 
 
-def find_path_error(path: str, names: SceneNames, runs: Mapping[str, bool]) -> tuple[str, str] | None:
+def find_path_error(path: str, names: SceneNames, cut_series: Mapping[str, bool]) -> tuple[str, str] | None:
     """Return what is wrong with a path into the results, and a hint; None if nothing is wrong or only the run can
     tell.
     """
-    target = resolve_path(split_path(path), names, runs)
+    target = resolve_path(split_path(path), names, cut_series)
     if isinstance(target, Finding):
         return f"'{path}': {target.message}", target.hint
     if isinstance(target, TextResult):
@@ -217,7 +217,7 @@ def find_path_error(path: str, names: SceneNames, runs: Mapping[str, bool]) -> t
     from heuncli.results.path_hints import find_similar_path  # only needed for an error
 
     suggestion = find_similar_path(
-        path, lambda words: isinstance(found := resolve_path(words, names, runs), NumberKind) and found.is_known
+        path, lambda words: isinstance(found := resolve_path(words, names, cut_series), NumberKind) and found.is_known
     )
     message = f"'{path}': '{target.word}' is not a result" if target.word else f"'{path}' is not a number"
     if suggestion is not None:

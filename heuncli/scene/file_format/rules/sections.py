@@ -16,33 +16,32 @@ MAX_PLAUSIBLE_STRENGTH = 1e4  # [MPa] a few times the strength of the hardest st
 GENERAL_KEYS = ("area", "I1", "I2", "J", "c1", "c2")
 SECTION_SHAPES = ("circle", "tube", "rectangle", "I", "C", "L", "T", "box", "profile")
 REDUCED_TO = ("at", "centroid", "line")
-MAX_CUTS = 50_000  # in a run: finer than any figure shows, and validate still takes only a second
+MAX_CUTS = 50_000  # in a series: finer than any figure shows, and validate still takes only a second
 ADD_DEFLECTION = "add deflection: true"
 SHEAR_FACTOR_HINT = "1 is a uniform stress; a rectangle has 1.5, a circle 4/3"
 
 
-def is_run(section: f.SectionEntry) -> bool:
-    """Whether a section is a series of cuts."""
+def is_cut_series(section: f.SectionEntry) -> bool:
+    """Return whether a section is a series of cuts."""
     return section.from_ is not None or section.to is not None or section.count is not None
 
 
 @rule("section-form")
 def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
-    """A cut has at and normal; a run has from, to and count, and its normal points from one to the other."""
+    """A cut has at and normal; a series of cuts has from, to and count, and its normal points from one to the other."""
     for name, section in draft.document.sections.items():
         path = ("sections", name)
         single_keys = [key for key in ("at", "normal") if getattr(section, key) is not None]
-        run_keys = [
+        series_keys = [
             key
             for key, value in (("from", section.from_), ("to", section.to), ("count", section.count))
             if value is not None
         ]
-        if single_keys and run_keys:
-            message = (
-                f"{' and '.join(single_keys)} (one cut) given together with {' and '.join(run_keys)} (a series of cuts)"
-            )
+        if single_keys and series_keys:
+            single, series = " and ".join(single_keys), " and ".join(series_keys)
+            message = f"{single} (one cut) given together with {series} (a series of cuts)"
             yield Violation(path, message, "the normal of a series of cuts points from `from` to `to`", key=True)
-        elif not run_keys and len(single_keys) < 2:
+        elif not series_keys and len(single_keys) < 2:
             missing = [key for key in ("at", "normal") if key not in single_keys]
             yield Violation(
                 path,
@@ -50,14 +49,14 @@ def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
                 "a series of cuts has from, to and count instead",
                 key=True,
             )
-        elif run_keys and len(run_keys) < 3:
-            missing = [key for key in ("from", "to", "count") if key not in run_keys]
+        elif series_keys and len(series_keys) < 3:
+            missing = [key for key in ("from", "to", "count") if key not in series_keys]
             hint = "a series of cuts has from, to and count: 21"
             yield Violation(
                 path, f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing", hint, key=True
             )
-        elif run_keys:
-            yield from check_run_of_cuts(draft, name, section)
+        elif series_keys:
+            yield from check_cut_series(draft, name, section)
         if section.reduce_to not in REDUCED_TO and isinstance(section.reduce_to, str) and "." not in section.reduce_to:
             message = f"'{section.reduce_to}' is not a reference point"
             yield Violation(
@@ -65,8 +64,8 @@ def check_section_form(draft: DraftDocument) -> Iterator[Violation]:
             )
 
 
-def check_run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) -> Iterator[Violation]:
-    """A run has two ends, two cuts at least, and takes both sides by itself."""
+def check_cut_series(draft: DraftDocument, name: str, section: f.SectionEntry) -> Iterator[Violation]:
+    """A series of cuts has two ends, two cuts at least, and takes both sides by itself."""
     path = ("sections", name)
     if section.count is not None and not 2 <= section.count <= MAX_CUTS:
         hint = (
@@ -104,10 +103,10 @@ def check_section_matter(draft: DraftDocument) -> Iterator[Violation]:
         body = draft.document.bodies.get(section.body)
         if body is None or body.shapes is not None or section.piece is not None or body.mass == 0.0:
             continue
-        if body.piece is None or is_run(section):
+        if body.piece is None or is_cut_series(section):
             message = f"{section.body} has no shapes: the mass beyond the cut is not known"
             hint = "give the body shapes, for example [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]" + (
-                "" if is_run(section) else ", or give the section a piece: {mass, center, inertia}"
+                "" if is_cut_series(section) else ", or give the section a piece: {mass, center, inertia}"
             )
             yield Violation(("sections", name, "body"), message, hint)
 
@@ -207,7 +206,7 @@ def check_deflection_form(draft: DraftDocument) -> Iterator[Violation]:
                 if getattr(section, key) is not None:
                     yield Violation((*path, key), f"{key} is given without a deflection", ADD_DEFLECTION, key=True)
             continue
-        if not is_run(section):
+        if not is_cut_series(section):
             hint = "give from, to and count instead of at and normal"
             yield Violation((*path, "deflection"), "a single cut has no deflection", hint, key=True)
         for key, hint in (("properties", "add properties: auto"), ("modulus", "add modulus: 210 GPa, for steel")):

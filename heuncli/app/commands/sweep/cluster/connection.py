@@ -96,6 +96,7 @@ def _require_listener(address: str, host: str, port: int) -> None:
 
 
 def _make_no_cluster_error(address: str, why: str, hint: str) -> UsageError:
+    """Make the error of a scheduler that cannot be used."""
     return UsageError(Problem("no-cluster", f"--dask {address}: {why}", hint=hint))
 
 

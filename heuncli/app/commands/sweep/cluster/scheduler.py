@@ -202,6 +202,7 @@ class _Scheduler:
         self._require_workers(now)
 
     def _require_connection(self) -> None:
+        """Raise ClusterGone if the connection to the scheduler is lost."""
         if self.client.status != "running":
             raise ClusterGone(self.address, "the scheduler was lost")
 
@@ -311,6 +312,7 @@ class _Scheduler:
 
 
 def _get_number(variant: Variant) -> int:
+    """Return the number of a variant."""
     return variant[0]
 
 

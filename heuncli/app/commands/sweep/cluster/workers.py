@@ -258,6 +258,7 @@ class WorkerPool:
         return key
 
     def _submit(self, worker: ClusterWorker, key: str, function: Any, *arguments: Any) -> Any:
+        """Send a call to one worker; returns its future."""
         return self.client.submit(
             function, *arguments, key=key, workers=[worker.address], allow_other_workers=False, pure=False
         )
