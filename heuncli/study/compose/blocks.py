@@ -2,11 +2,25 @@
 
 Each block is what `Results` holds under its name: arrays over the instants, SI units.
 
-The types that a joint's reaction passes through: the kernel's solutions (`Evaluation`) are summed to `JointLoads`
-(loads/kinetostatics/reactions.py), split where redundancy requires it (loads/redundancy/resolve.py), and become a
-`JointBlock` here, with shares by cause, turned into the requested axes, and marked where they are indeterminate. JSON
-is written of that block (output/tables/export.py). For all else it becomes a `Channel` (study/quantities/channels.py),
-whose numbers are channels as well, and their texts the cells of an `OutputTable` (output/documents/document.py).
+What a joint and its reaction pass through, from the file to a cell. Up to the number:
+
+    AnyJoint                  scene/file_format/format_joints.py     the entry of the file: its keys, checked
+    Joint of a Spec           scene/file_format/models.py            in SI units, bodies by name
+    Joint of a Mechanism      multibody/mechanism/model.py           bodies by index, axes as arrays
+    TreeLink, or closure rows multibody/tree/                        its place in the tree, or how it closes a loop
+    tables of a Layout        multibody/tree/layout.py               the arrays that the kernel reads
+    Evaluation                motion/integration/evaluator.py        the kernel's forces of tree joints and multipliers
+    JointLoads                loads/kinetostatics/reactions.py       force and moment ON `to`; split where redundant
+    JointBlock of the Results results/results.py, made here          with components, shares, axes, indeterminate marks
+
+JSON is written of that block (output/tables/export.py). After it:
+
+    Channel                   study/quantities/channels.py           path, unit, kind of error; its numbers are channels
+    Extremes                  results/results.py                     least and greatest value, each with its instant
+    NumberCell                output/documents/document.py           in display units, with the digits of its error
+
+Tables group channels (RowGroup, TableBlock in output/tables/table_blocks.py) and place cells in an OutputTable, which
+holds no other form of the number.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ def main(request: CheckRequest) -> int:
         return _check_references(request)
     _require_consistent_options(request)
     skipped: list[SkippedFolder] = []
-    specs = [one for argument in request.paths for one in find_specs(argument, skipped)]
+    specs = [spec for argument in request.paths for spec in find_specs(argument, skipped)]
     for folder in skipped if not request.quiet else ():
         if folder.reason:
             print_stderr(f"heun: {escape(folder.path)} skipped: {escape(folder.reason)}")
@@ -48,12 +48,12 @@ def main(request: CheckRequest) -> int:
     golden_files = map_golden_files(specs, request.golden) if request.golden is not None else {}
     orphans = _report_orphans(request, specs, golden_files)
     selected = select_specs(specs, request.select) if request.select is not None else specs
-    paths = [one.path for one in selected]
+    paths = [spec.path for spec in selected]
     _require_other_files(request, paths)
     checked = _check_all(selected, golden_files, request)
     _require_other_files(request, paths)  # also the tables of invalid specs
     summary = CheckSummary(checked, skipped, orphans, request.strict)
-    if form in JOB_FORMATS or any(not one.error for one in checked):  # without any solved spec there is no result
+    if form in JOB_FORMATS or any(not result.error for result in checked):  # without any solved spec there is no result
         if form == "github":
             emit(render_github(summary), request.output)
         else:
@@ -62,9 +62,9 @@ def main(request: CheckRequest) -> int:
         from heuncli.app.commands.check.junit import render_junit
 
         files.write(encode_text(render_junit(checked, orphans, request.strict)), request.junit)
-    print_explain_hint([problem for one in checked for problem in one.problems])
+    print_explain_hint([problem for result in checked for problem in result.problems])
     _print_slowest(checked, request.durations)
-    codes = [one.exit_code for one in checked] + [FAILED] * (request.strict and bool(orphans))
+    codes = [result.exit_code for result in checked] + [FAILED] * (request.strict and bool(orphans))
     return select_exit_code([*codes, *_write_goldens(checked, request)])
 
 
@@ -125,21 +125,21 @@ def _check_all(specs: Sequence[FoundSpec], golden_files: dict[str, str], request
         return request.first and bool(result.exit_code)
 
     with show_progress(request.quiet) as report:
-        for one in jobs.run_in_order(work, tasks, job_count, _make_death_result, is_last, separate_process):
-            if one.is_usage_error:
-                raise UsageError(*one.problems)
-            checked.append(one)
-            for line in one.messages:
+        for checked_spec in jobs.run_in_order(work, tasks, job_count, _make_death_result, is_last, separate_process):
+            if checked_spec.is_usage_error:
+                raise UsageError(*checked_spec.problems)
+            checked.append(checked_spec)
+            for line in checked_spec.messages:
                 print_stderr(line)
-            report(len(checked), len(tasks), one.path)
+            report(len(checked), len(tasks), checked_spec.path)
     return checked
 
 
-def _make_task(one: FoundSpec, file: str | None, request: CheckRequest) -> CheckTask:
+def _make_task(spec: FoundSpec, file: str | None, request: CheckRequest) -> CheckTask:
     """Make the task of a spec, with its golden file if it is compared with one."""
-    if file is None or request.golden is None or one.problem is not None:
-        return CheckTask(one)
-    return CheckTask(one, file, make_spec_name(file, one.path, request.golden))
+    if file is None or request.golden is None or spec.problem is not None:
+        return CheckTask(spec)
+    return CheckTask(spec, file, make_spec_name(file, spec.path, request.golden))
 
 
 def _make_death_result(task: CheckTask, death: jobs.ProcessDeath) -> CheckResult:
@@ -156,8 +156,8 @@ def _print_slowest(results: Sequence[CheckResult], limit: int | None) -> None:
     if limit is None:
         return
     print_stderr(f"slowest {min(limit, len(results))} of {len(results)}:")
-    for one in sorted(results, key=lambda one: -one.seconds)[:limit]:
-        print_stderr(f"{one.seconds:9.3f} s  {escape(one.path)}")
+    for result in sorted(results, key=lambda result: -result.seconds)[:limit]:
+        print_stderr(f"{result.seconds:9.3f} s  {escape(result.path)}")
 
 
 def _write_goldens(results: Sequence[CheckResult], request: CheckRequest) -> list[int]:

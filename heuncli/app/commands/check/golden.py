@@ -79,25 +79,25 @@ def map_golden_files(specs: Sequence[FoundSpec], folder: str) -> dict[str, str]:
     """
     files: dict[str, str] = {}
     owners: dict[str, str] = {}
-    for one in specs:
-        if one.path == STANDARD_INPUT:
+    for spec in specs:
+        if spec.path == STANDARD_INPUT:
             raise UsageError(Problem("bad-option", "--golden with standard input: it has no path", hint="name a file"))
-        file = find_golden_file(one, folder)
-        other = owners.setdefault(file, one.path)
-        if os.path.realpath(other) != os.path.realpath(one.path):
+        file = find_golden_file(spec, folder)
+        other = owners.setdefault(file, spec.path)
+        if os.path.realpath(other) != os.path.realpath(spec.path):
             hint = "give their common parent folder, or check them separately with separate golden folders"
             raise UsageError(
-                Problem("bad-option", f"--golden: {other} and {one.path} would both use {file}", hint=hint)
+                Problem("bad-option", f"--golden: {other} and {spec.path} would both use {file}", hint=hint)
             )
-        files[one.path] = file
+        files[spec.path] = file
     return files
 
 
-def find_golden_file(one: FoundSpec, folder: str) -> str:
+def find_golden_file(spec: FoundSpec, folder: str) -> str:
     """Return the path of a spec's golden file."""
-    if one.folder is not None:
-        return str(Path(folder, os.path.relpath(one.path, one.folder)).with_suffix(SUFFIX))
-    parts = [part for part in PurePath(one.path).parts if part not in (os.curdir, os.pardir, os.sep)]
+    if spec.folder is not None:
+        return str(Path(folder, os.path.relpath(spec.path, spec.folder)).with_suffix(SUFFIX))
+    parts = [part for part in PurePath(spec.path).parts if part not in (os.curdir, os.pardir, os.sep)]
     tails = [str(Path(folder, *parts[start:]).with_suffix(SUFFIX)) for start in range(len(parts))]
     return next((tail for tail in tails if Path(tail).is_file()), tails[-1])
 

@@ -18,24 +18,24 @@ FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def render_junit(results: Sequence[CheckResult], orphans: Sequence[str], strict: bool) -> str:
     """Render the report as XML."""
     suites = ET.Element("testsuites", {"name": "heun check"})
-    for one in results:
-        suites.append(_make_suite(one))
+    for result in results:
+        suites.append(_make_suite(result))
     if orphans:
         suites.append(_make_orphan_suite(orphans, strict))
     totals = {key: sum(int(suite.get(key, "0")) for suite in suites) for key in ("tests", "failures", "errors")}
     for key, total in totals.items():
         suites.set(key, str(total))
-    suites.set("time", f"{sum(one.seconds for one in results):.3f}")
+    suites.set("time", f"{sum(result.seconds for result in results):.3f}")
     ET.indent(suites, " ")
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suites, encoding="unicode") + "\n"
 
 
-def _make_suite(one: CheckResult) -> ET.Element:
+def _make_suite(result: CheckResult) -> ET.Element:
     """Make the suite of a spec: that it was solved, and each of its outcomes."""
-    name = PurePath(one.path).with_suffix("").as_posix()
-    cases = [_make_solve_case(one, name), *(_make_case(one, name, outcome) for outcome in one.outcomes)]
+    name = PurePath(result.path).with_suffix("").as_posix()
+    cases = [_make_solve_case(result, name), *(_make_case(result, name, outcome) for outcome in result.outcomes)]
     return _make_counted_suite(
-        {"name": _format_path(one.path), "file": _format_path(one.path), "time": f"{one.seconds:.3f}"}, cases
+        {"name": _format_path(result.path), "file": _format_path(result.path), "time": f"{result.seconds:.3f}"}, cases
     )
 
 
@@ -48,21 +48,21 @@ def _make_counted_suite(attributes: dict[str, str], cases: Sequence[ET.Element])
     return suite
 
 
-def _make_solve_case(one: CheckResult, name: str) -> ET.Element:
+def _make_solve_case(result: CheckResult, name: str) -> ET.Element:
     """Make the case that says whether the spec could be solved."""
-    line = next((problem.location.line for problem in one.problems if problem.location is not None), 1)
-    case = _make_element(name, "solves", one.path, line, one.seconds)
-    if one.error:
-        text = "\n".join(map(str, one.problems))
-        message = one.problems[0].message if one.problems else "not solved"
-        ET.SubElement(case, "error", {"type": one.problems[0].code if one.problems else "error",
+    line = next((problem.location.line for problem in result.problems if problem.location is not None), 1)
+    case = _make_element(name, "solves", result.path, line, result.seconds)
+    if result.error:
+        text = "\n".join(map(str, result.problems))
+        message = result.problems[0].message if result.problems else "not solved"
+        ET.SubElement(case, "error", {"type": result.problems[0].code if result.problems else "error",
                                       "message": escape_forbidden(message)}).text = escape_forbidden(text)  # fmt: skip
     return case
 
 
-def _make_case(one: CheckResult, name: str, outcome: Outcome) -> ET.Element:
+def _make_case(result: CheckResult, name: str, outcome: Outcome) -> ET.Element:
     """Make the test case of an outcome."""
-    case = _make_element(name, outcome.name, one.path, outcome.line, 0.0)
+    case = _make_element(name, outcome.name, result.path, outcome.line, 0.0)
     if outcome.is_skipped:
         ET.SubElement(case, "skipped", {"message": escape_forbidden(outcome.failure or "")})
     elif outcome.failure is not None and not outcome.is_warning:

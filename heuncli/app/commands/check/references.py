@@ -56,12 +56,12 @@ class ReferenceResult(NamedTuple):
 
     case: PublishedCase
     tables: tuple[TableComparison, ...]
-    result: CheckResult
+    check: CheckResult
 
     @property
     def exit_code(self) -> int:
         """The exit code that this case alone would give."""
-        return self.result.exit_code
+        return self.check.exit_code
 
     @property
     def numbers(self) -> list[NumberComparison]:
@@ -72,19 +72,20 @@ class ReferenceResult(NamedTuple):
 def iter_outcomes(tables: Sequence[TableComparison]) -> Iterator[Outcome]:
     """Convert the comparisons to outcomes of a spec, for the reports of pipelines."""
     for table in tables:
-        for one in table.numbers:
-            failure = None if one.verdict == AGREES else f"{one.verdict}: off by {one.difference:.3g}"
+        for comparison in table.numbers:
+            verdict = comparison.verdict
+            failure = None if verdict == AGREES else f"{verdict}: off by {comparison.difference:.3g}"
             yield Outcome(
                 REFERENCE,
-                one.number.path,
+                comparison.number.path,
                 failure,
-                one.number.line,
+                comparison.number.line,
                 case=table.table.case,
-                when=_format_instant(one),
-                expected_text=one.published.text,
-                found_text=_format_number(one),
-                tolerance_text=f"{one.tolerance:.3g}",
-                block=_make_number_block(one),
+                when=_format_instant(comparison),
+                expected_text=comparison.published.text,
+                found_text=_format_number(comparison),
+                tolerance_text=f"{comparison.tolerance:.3g}",
+                block=_make_number_block(comparison),
             )
 
 
@@ -93,12 +94,12 @@ def make_document(results: Sequence[ReferenceResult], form: str, *, show_numbers
     parts: list[Part] = []
     if not show_numbers:
         parts += _make_case_tables(results)
-    for one in results if show_numbers else ():
+    for result in results if show_numbers else ():
         if form != "markdown":
-            what = [("case", one.case.name), ("what", one.case.description), ("source", one.case.source)]
-            parts.append(Facts([*what, ("spec", f"heun new {one.case.name}")]))
-        heading = f"{one.case.description}  {one.case.source}" if form == "markdown" else ""
-        parts.append(OutputTable(heading, NUMBER_COLUMNS, list(_iter_number_rows(one))))
+            what = [("case", result.case.name), ("what", result.case.description), ("source", result.case.source)]
+            parts.append(Facts([*what, ("spec", f"heun new {result.case.name}")]))
+        heading = f"{result.case.description}  {result.case.source}" if form == "markdown" else ""
+        parts.append(OutputTable(heading, NUMBER_COLUMNS, list(_iter_number_rows(result))))
     return OutputDocument(
         parts=[*parts, Sentence(format_summary(results))], make_block=lambda: _make_results_block(results)
     )
@@ -106,31 +107,32 @@ def make_document(results: Sequence[ReferenceResult], form: str, *, show_numbers
 
 def _make_results_block(results: Sequence[ReferenceResult]) -> dict[str, Any]:
     """Return every number of every case as the JSON has it."""
-    numbers = [number for one in results for number in one.numbers]
+    numbers = [number for result in results for number in result.numbers]
     passed = sum(number.verdict == AGREES for number in numbers)
-    broken = sum(bool(one.result.error) for one in results)
-    blocks = [_make_block(one) for one in results]
+    broken = sum(bool(result.check.error) for result in results)
+    blocks = [_make_block(result) for result in results]
     return {"passed": passed, "failed": len(numbers) - passed + broken, "cases": blocks}
 
 
 def format_summary(results: Sequence[ReferenceResult]) -> str:
     """Format how many cases and numbers there are, and how many agree."""
-    numbers = [number for one in results for number in one.numbers]
+    numbers = [number for result in results for number in result.numbers]
     agree = sum(number.verdict == AGREES for number in numbers)
     parts = [format_count(len(results), "case"), format_count(len(numbers), "number"), f"{agree} agree"]
     parts += [f"{len(numbers) - agree} do not"] if agree < len(numbers) else []
-    broken = sum(bool(one.result.error) for one in results)
+    broken = sum(bool(result.check.error) for result in results)
     return ", ".join([*parts, *([f"{format_count(broken, 'case')} not solved"] if broken else [])])
 
 
-def make_case_row(one: ReferenceResult) -> tuple[Cell, ...]:
+def make_case_row(result: ReferenceResult) -> tuple[Cell, ...]:
     """Make the row of a case."""
-    if one.result.error:
-        return one.case.name, one.case.description, *[""] * 5, "not solved"
-    wrong = sum(number.verdict != AGREES for number in one.numbers)
+    if result.check.error:
+        return result.case.name, result.case.description, *[""] * 5, "not solved"
+    wrong = sum(number.verdict != AGREES for number in result.numbers)
+    lead = (result.case.name, result.case.description, len(result.numbers), list_kinds(result.case))
     return (
-        one.case.name, one.case.description, len(one.numbers), list_kinds(one.case), format_digits(one.numbers),
-        *format_largest_difference(one.tables), f"{wrong} differ{'s' * (wrong == 1)}" if wrong else AGREES,
+        *lead, format_digits(result.numbers),
+        *format_largest_difference(result.tables), f"{wrong} differ{'s' * (wrong == 1)}" if wrong else AGREES,
     )  # fmt: skip
 
 
@@ -167,15 +169,15 @@ def _make_case_tables(results: Sequence[ReferenceResult]) -> Iterator[OutputTabl
     """Yield a table with one row per case, and for each case the numbers that do not agree."""
     columns = tuple(OutputColumn(head, "number" if head == "numbers" else "text") for head in CASES)
     yield OutputTable("", columns, tuple(map(make_case_row, results)))
-    for one in results:
-        wrong = [number for number in one.numbers if number.verdict != AGREES]
+    for result in results:
+        wrong = [number for number in result.numbers if number.verdict != AGREES]
         if wrong:
-            yield OutputTable(f"DIFFERS  {one.case.name}", NUMBER_COLUMNS, tuple(map(_make_number_row, wrong)))
+            yield OutputTable(f"DIFFERS  {result.case.name}", NUMBER_COLUMNS, tuple(map(_make_number_row, wrong)))
 
 
-def _iter_number_rows(one: ReferenceResult) -> Iterator[tuple[Cell, ...] | str]:
+def _iter_number_rows(result: ReferenceResult) -> Iterator[tuple[Cell, ...] | str]:
     """Yield a line for each table of a case, and a row for each of its numbers."""
-    for part in one.tables:
+    for part in result.tables:
         yield _describe_table(part)
         yield from map(_make_number_row, part.numbers)
 
@@ -190,41 +192,41 @@ def _describe_table(part: TableComparison) -> str:
     return f"{table_.where} ({KINDS[table_.kind]}){case}{axes}{let}{error}"
 
 
-def _make_number_row(one: NumberComparison) -> tuple[Cell, ...]:
+def _make_number_row(comparison: NumberComparison) -> tuple[Cell, ...]:
     """Make the row of a number."""
-    last = f"{one.in_last_digits:.2g}" if one.published.last_digit else ""
+    last = f"{comparison.in_last_digits:.2g}" if comparison.published.last_digit else ""
     return (
-        one.number.path,
-        _format_instant(one),
-        one.published.text,
-        _format_number(one),
-        NumberCell(one.difference, write="{:.1e}".format),
+        comparison.number.path,
+        _format_instant(comparison),
+        comparison.published.text,
+        _format_number(comparison),
+        NumberCell(comparison.difference, write="{:.1e}".format),
         last,
-        NumberCell(one.stated_error, write="{:.0e}".format),
-        one.verdict,
+        NumberCell(comparison.stated_error, write="{:.0e}".format),
+        comparison.verdict,
     )
 
 
-def _format_instant(one: NumberComparison) -> str:
+def _format_instant(comparison: NumberComparison) -> str:
     """Format the instant of a number; empty if it has none."""
-    return "" if one.number.time is None else f"{one.number.time:.6g} s"
+    return "" if comparison.number.time is None else f"{comparison.number.time:.6g} s"
 
 
-def _format_number(one: NumberComparison) -> str:
+def _format_number(comparison: NumberComparison) -> str:
     """Format heun's number with two digits more than were printed."""
-    if math.isnan(one.computed):
+    if math.isnan(comparison.computed):
         return "open"
-    digits = one.published.digit_count + 2 if one.published.digit_count else 17
-    return f"{one.computed:.{min(digits, 17)}g}"
+    digits = comparison.published.digit_count + 2 if comparison.published.digit_count else 17
+    return f"{comparison.computed:.{min(digits, 17)}g}"
 
 
-def _make_block(one: ReferenceResult) -> dict[str, Any]:
+def _make_block(result: ReferenceResult) -> dict[str, Any]:
     """Return a case as the JSON has it: its tables, or why it was not solved."""
-    case = {"case": one.case.name, "about": one.case.description, "source": one.case.source}
-    if one.result.error:
-        message = "\n".join(map(str, one.result.problems))
-        return case | {"exit": one.result.error, "message": message, "tables": []}
-    return case | {"tables": [_make_table_block(part) for part in one.tables]}
+    case = {"case": result.case.name, "about": result.case.description, "source": result.case.source}
+    if result.check.error:
+        message = "\n".join(map(str, result.check.problems))
+        return case | {"exit": result.check.error, "message": message, "tables": []}
+    return case | {"tables": [_make_table_block(part) for part in result.tables]}
 
 
 def _make_table_block(part: TableComparison) -> dict[str, Any]:
@@ -238,22 +240,22 @@ def _make_table_block(part: TableComparison) -> dict[str, Any]:
         "error": table_.error,
         "because": table_.because,
     }
-    return block | {"numbers": [_make_number_block(one) for one in part.numbers]}
+    return block | {"numbers": [_make_number_block(comparison) for comparison in part.numbers]}
 
 
-def _make_number_block(one: NumberComparison) -> dict[str, Any]:
+def _make_number_block(comparison: NumberComparison) -> dict[str, Any]:
     """Return a comparison as the JSON has it, in SI."""
     return {
-        "of": one.number.path,
-        "at": one.number.time,
-        "published": one.published.text,
-        "value": one.published.value,
-        "found": one.computed,
-        "difference": one.difference,
-        "last_digits": one.in_last_digits,
-        "stated": one.stated_error,
-        "allowed": one.tolerance,
-        "verdict": one.verdict,
+        "of": comparison.number.path,
+        "at": comparison.number.time,
+        "published": comparison.published.text,
+        "value": comparison.published.value,
+        "found": comparison.computed,
+        "difference": comparison.difference,
+        "last_digits": comparison.in_last_digits,
+        "stated": comparison.stated_error,
+        "allowed": comparison.tolerance,
+        "verdict": comparison.verdict,
     }
 
 
@@ -274,7 +276,7 @@ def main(request: CheckRequest) -> tuple[int, list[CheckResult]]:
     names_chosen = _select_names(request)
     form = choose_format(request.format, request.output, FORMATS)
     checked = _check_all(names_chosen, request)
-    spec_results = [one.result for one in checked]
+    spec_results = [result.check for result in checked]
     if form == "github":
         emit(render_github(CheckSummary(spec_results)), request.output)
     else:
@@ -284,8 +286,8 @@ def main(request: CheckRequest) -> tuple[int, list[CheckResult]]:
         from heuncli.app.commands.check.junit import render_junit
 
         files.write(encode_text(render_junit(spec_results, (), strict=False)), request.junit)
-    print_explain_hint([problem for one in spec_results for problem in one.problems])
-    return select_exit_code([one.exit_code for one in checked]), spec_results
+    print_explain_hint([problem for result in spec_results for problem in result.problems])
+    return select_exit_code([result.exit_code for result in checked]), spec_results
 
 
 def _select_names(request: CheckRequest) -> Sequence[str]:
@@ -310,11 +312,13 @@ def _check_all(names_chosen: Sequence[str], request: CheckRequest) -> list[Refer
         return request.first and bool(result.exit_code)
 
     with show_progress(request.quiet) as report:
-        for one in jobs.run_in_order(work, names_chosen, job_count, _make_death_result, is_last, separate_process):
-            checked.append(one)
-            for line in one.result.messages:
+        for checked_case in jobs.run_in_order(
+            work, names_chosen, job_count, _make_death_result, is_last, separate_process
+        ):
+            checked.append(checked_case)
+            for line in checked_case.check.messages:
                 print_stderr(line)
-            report(len(checked), len(names_chosen), one.case.name)
+            report(len(checked), len(names_chosen), checked_case.case.name)
     return checked
 
 
@@ -337,7 +341,7 @@ def check_case(name: str, request: CheckRequest) -> ReferenceResult:
     except HeunError as error:
         messages = tuple(format_problems(error.problems, label=f"{name}: "))
         result = ReferenceResult(case, (), CheckResult(place, (), error.problems, error.exit_code, messages=messages))
-    return result._replace(result=result.result._replace(seconds=time.perf_counter() - start))
+    return result._replace(check=result.check._replace(seconds=time.perf_counter() - start))
 
 
 def _make_death_result(name: str, death: jobs.ProcessDeath) -> ReferenceResult:

@@ -65,19 +65,23 @@ def make_document(check_summary: CheckSummary, form: str) -> OutputDocument:
     tables, summary = _make_tables(check_summary), Sentence(format_summary(check_summary))
     if form != "markdown":
         return OutputDocument(parts=[*tables, summary], make_block=lambda: _make_summary_block(check_summary))
-    failed = any(one.exit_code for one in check_summary.results) or (
+    failed = any(result.exit_code for result in check_summary.results) or (
         check_summary.strict and bool(check_summary.orphans)
     )
-    notes = [Sentence(f"{one.path}: {outcome.note}") for one, outcome in _iter_outcomes(check_summary) if outcome.note]
-    errors = [Verbatim(str(problem)) for one in check_summary.results for problem in one.problems]
+    notes = [
+        Sentence(f"{result.path}: {outcome.note}") for result, outcome in _iter_outcomes(check_summary) if outcome.note
+    ]
+    errors = [Verbatim(str(problem)) for result in check_summary.results for problem in result.problems]
     title = f"heun check: {'failed' if failed else 'passed'}"
     return OutputDocument(title, parts=[summary, *notes, *tables, *errors], level=3)
 
 
 def _make_tables(check_summary: CheckSummary) -> list[OutputTable]:
     """Make the tables of failures and of golden files written; those that have rows."""
-    failed = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if not outcome.has_passed]
-    written_rows = [_make_row(one, outcome) for one, outcome in _iter_outcomes(check_summary) if _is_written(outcome)]
+    failed = [_make_row(result, outcome) for result, outcome in _iter_outcomes(check_summary) if not outcome.has_passed]
+    written_rows = [
+        _make_row(result, outcome) for result, outcome in _iter_outcomes(check_summary) if _is_written(outcome)
+    ]
     tables = (("FAILED", HEADS, failed), ("CHANGED", CHANGED, written_rows))
     return [OutputTable(name, make_text_columns(heads), rows) for name, heads, rows in tables if rows]
 
@@ -89,14 +93,14 @@ def _is_written(outcome: Outcome) -> bool:
 
 def _iter_outcomes(check_summary: CheckSummary) -> Iterator[tuple[CheckResult, Outcome]]:
     """Yield every outcome with the result of its file."""
-    for one in check_summary.results:
-        for outcome in one.outcomes:
-            yield one, outcome
+    for result in check_summary.results:
+        for outcome in result.outcomes:
+            yield result, outcome
 
 
-def _make_row(one: CheckResult, outcome: Outcome) -> tuple[str, ...]:
+def _make_row(result: CheckResult, outcome: Outcome) -> tuple[str, ...]:
     """Make the row of an outcome."""
-    place = f"{one.path}:{outcome.line}"
+    place = f"{result.path}:{outcome.line}"
     name = f"{outcome.case}: {outcome.subject}" if outcome.case else outcome.subject
     return (place, name, outcome.when, outcome.expected_text, outcome.found_text, outcome.failure or "")
 
@@ -106,8 +110,8 @@ def format_summary(check_summary: CheckSummary) -> str:
     outcomes = [outcome for _, outcome in _iter_outcomes(check_summary) if not outcome.is_skipped]
     met = [outcome for outcome in outcomes if outcome.failure is None]
     failed = [outcome for outcome in outcomes if not outcome.has_passed]
-    errors = sum(bool(one.error) for one in check_summary.results)
-    unchecked = sum(not one.outcomes and not one.error for one in check_summary.results)
+    errors = sum(bool(result.error) for result in check_summary.results)
+    unchecked = sum(not result.outcomes and not result.error for result in check_summary.results)
     parts = [
         format_count(len(check_summary.results), "spec"),
         f"{format_count(len(met), 'check')} passed",
@@ -126,13 +130,13 @@ def format_summary(check_summary: CheckSummary) -> str:
 def _make_summary_block(check_summary: CheckSummary) -> dict[str, Any]:
     """Return every outcome as the JSON has it, and the error of each spec that was not solved."""
     cases: list[dict[str, Any]] = []
-    for one in check_summary.results:
-        if one.error:
-            message = "\n".join(map(str, one.problems))
-            cases.append({"file": one.path, "passed": False, "exit": one.error, "message": message})
-        elif not one.outcomes:
-            cases.append({"file": one.path, "passed": True, "message": "no acceptance checks are defined"})
-        cases += [{"file": one.path} | dict(outcome.block) for outcome in one.outcomes if not outcome.is_skipped]
+    for result in check_summary.results:
+        if result.error:
+            message = "\n".join(map(str, result.problems))
+            cases.append({"file": result.path, "passed": False, "exit": result.error, "message": message})
+        elif not result.outcomes:
+            cases.append({"file": result.path, "passed": True, "message": "no acceptance checks are defined"})
+        cases += [{"file": result.path} | dict(outcome.block) for outcome in result.outcomes if not outcome.is_skipped]
     cases += [
         {"golden": path, "passed": not check_summary.strict, "message": "a golden file without a spec"}
         for path in check_summary.orphans
@@ -148,20 +152,20 @@ def render_github(check_summary: CheckSummary) -> str:
 
 def _iter_annotations(check_summary: CheckSummary) -> Iterator[Annotation]:
     """Yield the lines of a GitHub workflow: a problem, a note, a failure or an orphan each."""
-    for one in check_summary.results:
-        for problem in one.problems:
+    for result in check_summary.results:
+        for problem in result.problems:
             where = problem.location
-            place = (where.file, where.line, where.column) if where is not None else (one.path, 1, 1)
+            place = (where.file, where.line, where.column) if where is not None else (result.path, 1, 1)
             hint = f"\nhint: {problem.hint}" if problem.hint else ""
             yield Annotation("error", f"heun: {problem.code}", f"{problem.message}{hint}", *place)
-        for outcome in one.outcomes:
+        for outcome in result.outcomes:
             if outcome.note:
-                yield Annotation("notice", "heun: golden", outcome.note, one.path)
+                yield Annotation("notice", "heun: golden", outcome.note, result.path)
             if outcome.failure is None or outcome.is_skipped:
                 continue
             kind = "warning" if outcome.is_warning else "error"
             yield Annotation(
-                kind, f"heun: {outcome.name}", format_failure(outcome), one.path, outcome.line, outcome.column
+                kind, f"heun: {outcome.name}", format_failure(outcome), result.path, outcome.line, outcome.column
             )
     for path in check_summary.orphans:
         yield Annotation(

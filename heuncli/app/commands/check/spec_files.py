@@ -100,22 +100,22 @@ def make_unreadable_problem(path: str, error: OSError) -> Problem:
 def select_specs(specs: Sequence[FoundSpec], text: str) -> list[FoundSpec]:
     """Return the specs with the text in path or title. Raises UsageError if there is none."""
     needle = text.casefold()
-    chosen = [one for one in specs if needle in one.path.casefold() or needle in read_title(one).casefold()]
+    chosen = [spec for spec in specs if needle in spec.path.casefold() or needle in read_title(spec).casefold()]
     if not chosen:
         hint = "it is looked for in paths and titles, in capitals or not"
         raise UsageError(Problem("nothing-to-check", f"-k {text}: none of {len(specs)} specs", hint=hint))
     return chosen
 
 
-def read_title(one: FoundSpec) -> str:
+def read_title(spec: FoundSpec) -> str:
     """Return the title of a spec; empty if it has none or cannot be read, which the check reports later."""
-    if one.problem is not None or one.path == STANDARD_INPUT:
+    if spec.problem is not None or spec.path == STANDARD_INPUT:
         return ""
     try:
-        text = read_bytes(one.path, MAX_SIZE).decode("utf-8", "replace")
+        text = read_bytes(spec.path, MAX_SIZE).decode("utf-8", "replace")
         if (plain := PLAIN_TITLE.search(text)) is not None:
             return plain[1]
-        data = read_source(one.path, None).data if "title" in text else {}
+        data = read_source(spec.path, None).data if "title" in text else {}
     except (Finding, HeunError):
         return ""
     title = data.get("title") if isinstance(data, dict) else None

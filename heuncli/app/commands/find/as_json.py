@@ -83,15 +83,15 @@ def _iter_extremes(findings: IntervalFindings) -> Iterator[tuple[str, Sample]]:
     yield from ((word, each) for word, each in (("least", findings.least), ("greatest", findings.greatest)) if each)
 
 
-def _make_crossing_block(results: FindResults, each: Crossing) -> dict[str, Any]:
+def _make_crossing_block(results: FindResults, crossing: Crossing) -> dict[str, Any]:
     """Return a crossing as the JSON has it."""
-    direction = DIRECTIONS[each.direction] if each.direction else None
-    line = f"{results.interval.name}={results.interval.format_value(each.sample.x)}"
+    direction = DIRECTIONS[crossing.direction] if crossing.direction else None
+    line = f"{results.interval.name}={results.interval.format_value(crossing.sample.x)}"
     return {
-        **_make_place_block(results, each.sample),
-        "error": each.error,
+        **_make_place_block(results, crossing.sample),
+        "error": crossing.error,
         "way": direction,
-        "flat": each.flat,
+        "flat": crossing.flat,
         "set": line,
     }
 

@@ -82,17 +82,17 @@ def _make_crossings_table(page: FindPage) -> OutputTable:
     return OutputTable("CROSSINGS  where the measure passes the value, as the parameter increases", columns, rows)
 
 
-def _make_crossing_row(page: FindPage, each: Crossing) -> tuple[Cell, ...]:
+def _make_crossing_row(page: FindPage, crossing: Crossing) -> tuple[Cell, ...]:
     """Make the row of a crossing, with the option that sets it."""
     size = page.units.find(page.results.condition.unit)[1]
-    value = ((each.sample.gap or 0.0) + page.results.condition.value) * size
-    error = each.sample.error * size
-    word = DIRECTIONS[each.direction] + (", too flat to be located more closely" if each.flat else "")
+    value = ((crossing.sample.gap or 0.0) + page.results.condition.value) * size
+    error = crossing.sample.error * size
+    word = DIRECTIONS[crossing.direction] + (", too flat to be located more closely" if crossing.flat else "")
     cells = (
-        NumberCell(each.sample.x, each.error), NumberCell(each.error, write=format_error),
+        NumberCell(crossing.sample.x, crossing.error), NumberCell(crossing.error, write=format_error),
         NumberCell(value, error), NumberCell(error, write=format_error),
     )  # fmt: skip
-    return (*cells, word, format_set_option(page, each.sample.x))
+    return (*cells, word, format_set_option(page, crossing.sample.x))
 
 
 def format_set_option(page: FindPage, x: float) -> str:
@@ -156,44 +156,43 @@ def _format_extremes(page: FindPage) -> str:
     return f": minimum {next(ends)}, maximum {next(ends)}"
 
 
-def _describe_touch(page: FindPage, each: Touch) -> str:
+def _describe_touch(page: FindPage, touch: Touch) -> str:
     """Describe where the measure touches the value."""
-    ends = f"{page.format_place(each.low)} and {format_with_error(each.high, 0.0)}"
-    if not each.side:
+    ends = f"{page.format_place(touch.low)} and {format_with_error(touch.high, 0.0)}"
+    if not touch.side:
         ends = (
-            f"from {page.format_place(each.low)} to {format_with_error(each.high, 0.0)}"
-            if each.low < each.high
+            f"from {page.format_place(touch.low)} to {format_with_error(touch.high, 0.0)}"
+            if touch.low < touch.high
             else "there"
         )
         return f"equal to the value within its error wherever known: {ends}"
-    side = "above" if each.side > 0 else "below"
-    place = f"touches the value at {page.format_place(each.sample.x)}, {side} it nearby"
+    side = "above" if touch.side > 0 else "below"
+    place = f"touches the value at {page.format_place(touch.sample.x)}, {side} it nearby"
     return f"{place}: equal to it within its error between {ends}"
 
 
-def _describe_jump(page: FindPage, each: MeasureJump) -> str:
+def _describe_jump(page: FindPage, jump: MeasureJump) -> str:
     """Describe where the measure jumps across the value."""
-    value_before, value_after = (page.format_measure(one.gap or 0.0, one.error) for one in each)
-    width = format_error(each.right.x - each.left.x)
+    value_before, value_after = (page.format_measure(sample.gap or 0.0, sample.error) for sample in jump)
+    width = format_error(jump.right.x - jump.left.x)
     return (
-        f"jumps from {value_before} to {value_after} at {page.format_place(each.left.x)} (within "
+        f"jumps from {value_before} to {value_after} at {page.format_place(jump.left.x)} (within "
         f"{width}): the value is not met there"
     )
 
 
-def _describe_bracket(page: FindPage, each: UnresolvedBracket) -> str:
+def _describe_bracket(page: FindPage, bracket: UnresolvedBracket) -> str:
     """Describe where the measure passes the value in a way that the search did not resolve."""
-    value_before, value_after = (page.format_measure(one.gap or 0.0, one.error) for one in each)
-    ends = f"{page.format_place(each.left.x)}, and {value_after} at {page.format_place(each.right.x)}"
+    value_before, value_after = (page.format_measure(sample.gap or 0.0, sample.error) for sample in bracket)
+    ends = f"{page.format_place(bracket.left.x)}, and {value_after} at {page.format_place(bracket.right.x)}"
     return f"passes the value between {value_before} at {ends}: a crossing or a jump that the search did not resolve"
 
 
-def _describe_not_excluded(page: FindPage, each: PossibleMeeting) -> str:
+def _describe_not_excluded(page: FindPage, meeting: PossibleMeeting) -> str:
     """Describe where the value may be met, as far as samples and errors tell."""
-    value_before, value_after = (page.format_measure(one.gap or 0.0, one.error) for one in each)
-    ends = (
-        f"{page.format_place(each.left.x)} ({value_before}) and {format_with_error(each.right.x, 0.0)} ({value_after})"
-    )
+    value_before, value_after = (page.format_measure(sample.gap or 0.0, sample.error) for sample in meeting)
+    right = format_with_error(meeting.right.x, 0.0)
+    ends = f"{page.format_place(meeting.left.x)} ({value_before}) and {right} ({value_after})"
     return f"not excluded between {ends}: the variants and their errors do not decide whether the value is met there"
 
 

@@ -172,34 +172,43 @@ def _make_spread_table(
     return OutputTable(heading, SPREAD_COLUMNS, rows, list(_describe_sums(total, findings.base, display_unit, size)))
 
 
-def _make_contribution_row(one: Contribution, size: float) -> tuple[Cell, ...]:
+def _make_contribution_row(contribution: Contribution, size: float) -> tuple[Cell, ...]:
     """Make the row of the effect of one tolerance."""
     ends = tuple(
-        None if end is None else NumberCell(end * size, write="{:+.6g}".format) for end in (one.below, one.above)
+        None if end is None else NumberCell(end * size, write="{:+.6g}".format)
+        for end in (contribution.below, contribution.above)
     )
-    lead = (one.name, one.spread, one.unit)
-    if one.size is None:
+    lead = (contribution.name, contribution.spread, contribution.unit)
+    if contribution.size is None:
         return (*lead, "", "", *ends, "not known")
-    return (*lead, *_make_pair(one.size * size, one.error * size), *ends, "searched" if one.bent else "")
+    return (
+        *lead,
+        *_make_pair(contribution.size * size, contribution.error * size),
+        *ends,
+        "searched" if contribution.bent else "",
+    )
 
 
 def _describe_nonlinear(total: SpreadSum, size: float) -> Iterator[str]:
     """Describe the extremes found within tolerances that are not linear, and which part of them cannot be solved."""
-    for one in total.contributions:
-        if one.bent and one.least is not None and one.greatest is not None:
+    for contribution in total.contributions:
+        if contribution.bent and contribution.least is not None and contribution.greatest is not None:
             linear = (
-                "there is no derivative" if one.linear is None else f"the derivative gives ± {one.linear * size:.4g}"
+                "there is no derivative"
+                if contribution.linear is None
+                else f"the derivative gives ± {contribution.linear * size:.4g}"
             )
             ends = " to ".join(
-                f"{change * size:+.4g} (at {x:+.4g} {one.unit}".rstrip() + ")"
-                for x, change in (one.least, one.greatest)
+                f"{change * size:+.4g} (at {x:+.4g} {contribution.unit}".rstrip() + ")"
+                for x, change in (contribution.least, contribution.greatest)
             )
             yield (
-                f"{one.name} is not linear over its spread: {ends}, by "
-                f"{format_count(one.variants, 'variant')}; {linear}"
+                f"{contribution.name} is not linear over its spread: {ends}, by "
+                f"{format_count(contribution.variants, 'variant')}; {linear}"
             )
-        if one.why[0]:
-            yield f"{one.name}: a part of its spread cannot be solved: {one.why[1]} [{one.why[0]}]"
+        if contribution.why[0]:
+            code, reason = contribution.why
+            yield f"{contribution.name}: a part of its spread cannot be solved: {reason} [{code}]"
 
 
 def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -> Iterator[str]:
@@ -272,10 +281,11 @@ def _make_spread_block(total: SpreadSum) -> dict[str, Any]:
         "largest": total.largest[0] if total.largest else None,
         "contributions": [
             {
-                **{key: value for key, value in one._asdict().items() if key not in ("bent", "why")},
-                "by_variants": one.bent, "code": one.why[0] or None, "reason": one.why[1] or None,
+                **{key: value for key, value in contribution._asdict().items() if key not in ("bent", "why")},
+                "by_variants": contribution.bent,
+                "code": contribution.why[0] or None, "reason": contribution.why[1] or None,
             }
-            for one in total.contributions
+            for contribution in total.contributions
         ],
     }  # fmt: skip
 

@@ -73,9 +73,9 @@ def _make_header(head: SweepHead, columns: SweepColumns) -> dict[str, Any]:
     }
 
 
-def _make_parameter_block(one: ParameterColumn) -> dict[str, Any]:
+def _make_parameter_block(parameter: ParameterColumn) -> dict[str, Any]:
     """Return a parameter as the JSON has it."""
-    return {"parameter": one.name, "unit": one.unit or None}
+    return {"parameter": parameter.name, "unit": parameter.unit or None}
 
 
 def _make_law_block(law: Any) -> dict[str, Any]:
@@ -131,6 +131,6 @@ def _make_statistics_block(statistics: MeasureStatistics, head: SweepHead) -> di
     return block
 
 
-def _make_index_block(one: SobolIndices) -> dict[str, dict[str, Any]]:
+def _make_index_block(indices: SobolIndices) -> dict[str, dict[str, Any]]:
     """Return the Sobol indices of a parameter as the JSON has them."""
-    return {"first": one.first._asdict(), "total": one.total._asdict()}
+    return {"first": indices.first._asdict(), "total": indices.total._asdict()}

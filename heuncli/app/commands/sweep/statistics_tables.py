@@ -42,14 +42,14 @@ def make_statistics_tables(
     return tables
 
 
-def format_label(head: SweepHead, one: MeasureStatistics, unit: str = "") -> str:
+def format_label(head: SweepHead, statistics: MeasureStatistics, unit: str = "") -> str:
     """Return a measure with the combination of the axes: `max joints.main.force [N], n = 1000 rpm`."""
     known = {parameter.name: parameter for parameter in make_parameter_columns(head.plan)}
-    values = [(known[name], format_parameter(value)) for name, value in one.combination.items()]
+    values = [(known[name], format_parameter(value)) for name, value in statistics.combination.items()]
     axis_texts = [
         f"{parameter.name} = {text}{f' {parameter.unit}' if parameter.unit else ''}" for parameter, text in values
     ]
-    text = head.measures[one.measure].text
+    text = head.measures[statistics.measure].text
     return ", ".join([f"{text} [{unit}]" if unit else text, *axis_texts])
 
 
@@ -92,19 +92,19 @@ def _make_notes(head: SweepHead) -> list[str]:
     return notes + [EVEN.format(CALLED[law]) for law in CALLED if law in laws]
 
 
-def has_large_errors(one: MeasureStatistics) -> bool:
+def has_large_errors(statistics: MeasureStatistics) -> bool:
     """Return whether the errors of the runs matter relative to the interval of the mean."""
-    mean = one.sample.mean if one.sample is not None else None
-    return mean is not None and mean.low is not None and one.error > ERROR_SHARE * (mean.value - mean.low)
+    mean = statistics.sample.mean if statistics.sample is not None else None
+    return mean is not None and mean.low is not None and statistics.error > ERROR_SHARE * (mean.value - mean.low)
 
 
-def _make_row(label: str, one: BoundedEstimate, size: float) -> tuple[Cell, ...]:
+def _make_row(label: str, estimate: BoundedEstimate, size: float) -> tuple[Cell, ...]:
     """Make the row of a statistic with the digits that its interval supports."""
-    ends = [one.value if end is None else end for end in (one.low, one.high)]
+    ends = [estimate.value if end is None else end for end in (estimate.low, estimate.high)]
     half_width = 0.5 * size * (ends[1] - ends[0])
-    scale = size * max(abs(one.value), *map(abs, ends))
+    scale = size * max(abs(estimate.value), *map(abs, ends))
     error = 0.01 * half_width
-    numbers = [None if end is None else size * end for end in one]
+    numbers = [None if end is None else size * end for end in estimate]
     cells = ("-" if x is None else NumberCell(x, error, choose_number_style(x, error, scale).write) for x in numbers)
     return (label, *cells)
 

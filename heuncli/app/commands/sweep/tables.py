@@ -60,9 +60,9 @@ def format_variant_count(number: int) -> str:
     return f"{number:,} variants" if number >= 1000 else format_count(number, "variant")
 
 
-def make_parameter_column(one: ParameterColumn) -> OutputColumn:
+def make_parameter_column(parameter: ParameterColumn) -> OutputColumn:
     """Make the column of a parameter."""
-    return OutputColumn(one.label, "text" if one.unit is None else "number", one.unit or "")
+    return OutputColumn(parameter.label, "text" if parameter.unit is None else "number", parameter.unit or "")
 
 
 def format_parameter(value: ParameterValue) -> str:

@@ -103,10 +103,12 @@ def make_variable_block(results: TuneResults, index: int) -> dict[str, Any]:
     return block
 
 
-def make_move_block(one: ToleranceMove | None) -> dict[str, Any] | None:
+def make_move_block(move: ToleranceMove | None) -> dict[str, Any] | None:
     """Return a move as the JSON has it: how far, what ends it, and the measure that jumps there."""
     return (
-        None if one is None else {"by": one.distance, "until": one.limit} | ({"jumps": one.jumps} if one.jumps else {})
+        None
+        if move is None
+        else {"by": move.distance, "until": move.limit} | ({"jumps": move.jumps} if move.jumps else {})
     )
 
 
@@ -297,13 +299,13 @@ def _format_moves(freedom: ToleranceRange) -> Iterator[str]:
     return (_format_move(one) for one in (*freedom.of_floor, *freedom.of_hundredth))
 
 
-def _format_move(one: ToleranceMove | None) -> str:
+def _format_move(move: ToleranceMove | None) -> str:
     """Format a move to two digits, with what ends it."""
-    if one is None:
+    if move is None:
         return "-"
-    distance = f"{one.distance:.2g}".replace("e-0", "e-")
-    ends = f" ({one.limit}{' jumps' if one.jumps else ''})"
-    return f"{BOUND_OF.get(one.limit, '')}{distance}{UNTIL.get(one.limit, ends)}"
+    distance = f"{move.distance:.2g}".replace("e-0", "e-")
+    ends = f" ({move.limit}{' jumps' if move.jumps else ''})"
+    return f"{BOUND_OF.get(move.limit, '')}{distance}{UNTIL.get(move.limit, ends)}"
 
 
 def make_measures_table(results: TuneResults, units: Units) -> OutputTable:
@@ -343,9 +345,9 @@ def _make_measure_row(
     return format_head(text, unit), _make_value(base, size), _make_value(best, size), error, best.time, *limit_cells
 
 
-def _make_value(one: MeasureValue, size: float) -> Cell:
+def _make_value(measure: MeasureValue, size: float) -> Cell:
     """Make the cell of a number with its certain digits, or of the word that replaces an unknown one."""
-    if one.value is None:
-        return one.word
-    error = size * (one.error or 0.0)
-    return NumberCell(size * one.value, error, choose_style(size * abs(one.value), error).write)
+    if measure.value is None:
+        return measure.word
+    error = size * (measure.error or 0.0)
+    return NumberCell(size * measure.value, error, choose_style(size * abs(measure.value), error).write)
