@@ -132,20 +132,20 @@ class Differences:
         """Return the largest error at these distances."""
         return max(self.evaluate(distance).error for distance in distances)
 
-    def central_difference(self, h: float) -> float:
+    def compute_central_difference(self, h: float) -> float:
         """Return D at a step."""
         return (self.get_value(h) - self.get_value(-h)) / (2.0 * h)
 
-    def curvature(self, h: float) -> float:
+    def compute_curvature(self, h: float) -> float:
         """Return K at a step, with its sign."""
         return (self.get_value(h) - 2.0 * self.get_value(0.0) + self.get_value(-h)) / h
 
     def compute_pair(self, h: float) -> StepPair:
         """Return the central differences at a step and its half."""
-        full_step, half_step = self.central_difference(h), self.central_difference(0.5 * h)
+        full_step, half_step = self.compute_central_difference(h), self.compute_central_difference(0.5 * h)
         value = (4.0 * half_step - full_step) / 3.0
         error = self.get_largest_error(0.0, h, -h, 0.5 * h, -0.5 * h) + 0.25 * abs(value) * self.rounding
-        excess = abs(self.curvature(0.5 * h) - 0.5 * self.curvature(h))
+        excess = abs(self.compute_curvature(0.5 * h) - 0.5 * self.compute_curvature(h))
         return StepPair(h, value, abs(half_step - full_step), NOISE_FACTOR * error / h, excess)
 
     def is_quadratic(self, pair: StepPair) -> bool:
@@ -153,8 +153,8 @@ class Differences:
         third_step = THIRD_STEP * pair.step
         if not self.has_values(third_step, -third_step):
             return False
-        expected = pair.value + THIRD_STEP**2 * (self.central_difference(pair.step) - pair.value)
-        deviation = abs(self.central_difference(third_step) - expected)
+        expected = pair.value + THIRD_STEP**2 * (self.compute_central_difference(pair.step) - pair.value)
+        deviation = abs(self.compute_central_difference(third_step) - expected)
         return deviation <= MAX_DEVIATION * pair.difference + pair.excess + pair.noise
 
     def compute_side_pair(self, h: float, sign: int, start: float = 0.0) -> StepPair:
@@ -173,7 +173,7 @@ class Differences:
 
     def measure_kink(self, h: float) -> tuple[float, float]:
         """Return |K| at a step, and its noise."""
-        return abs(self.curvature(h)), 4.0 * self.get_largest_error(0.0, h, -h) / h
+        return abs(self.compute_curvature(h)), 4.0 * self.get_largest_error(0.0, h, -h) / h
 
 
 def compute_derivative(evaluate: Callable[[float], NoisyValue], number: float, size: float) -> NoisyDerivative:

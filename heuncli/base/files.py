@@ -139,7 +139,7 @@ def replace(pieces: Iterable[bytes], target: FileTarget) -> None:
     folder = os.path.dirname(target.path)  # noqa: PTH120
     _remove_leftovers(folder)
     temporary = os.path.join(folder, f".heun-{os.urandom(8).hex()}")  # noqa: PTH118 - pathlib takes 3 ms
-    remove = partial(_path(temporary).unlink, missing_ok=True)
+    remove = partial(_make_path(temporary).unlink, missing_ok=True)
     with CleanupOnSignal(remove):
         try:
             descriptor, is_named = _open_new(folder, temporary, 0o600 if target.state is not None else 0o666)
@@ -212,7 +212,8 @@ def _remove_leftovers(folder: str) -> None:
                         os.close(descriptor)
 
 
-def _path(name: str) -> Path:
+def _make_path(name: str) -> Path:
+    """Make the path of a name."""
     from pathlib import Path  # 3 ms that only files need
 
     return Path(name)
@@ -233,8 +234,9 @@ def _resolve_target(name: str) -> FileTarget:
         return FileTarget(name, os.fstat(descriptor), descriptor)
     path = os.path.realpath(name)  # which takes gone/../scene.yaml for scene.yaml; the system does not, nor the guard
     state = _file_state(name)
-    if state is None and _path(path).exists():
-        state = _path(name).stat()  # it was made a moment ago; or it is not where the system looks, which is an error
+    if state is None and _make_path(path).exists():
+        # it was made a moment ago; or it is not where the system looks, which is an error
+        state = _make_path(name).stat()
     if state is not None and not stat.S_ISREG(state.st_mode):
         return FileTarget(name, state)
     return FileTarget(path, state)
@@ -243,7 +245,7 @@ def _resolve_target(name: str) -> FileTarget:
 def _file_state(name: str) -> os.stat_result | None:
     """Return the status of the file at a name, or None if there is none."""
     try:
-        return _path(name).stat()
+        return _make_path(name).stat()
     except FileNotFoundError:
         return None
 
@@ -253,7 +255,7 @@ def _find_descriptor(name: str) -> int | None:
     it is none.
     """
     descriptor_folders = {os.path.realpath(folder) for folder in ("/dev/fd", "/proc/self/fd")}
-    path = _path(name)
+    path = _make_path(name)
     for _ in range(MAX_LINKS):
         if path.name.isascii() and path.name.isdecimal() and os.path.realpath(path.parent) in descriptor_folders:
             return int(path.name)
@@ -265,8 +267,8 @@ def _find_descriptor(name: str) -> int | None:
 
 def _require_replaceable(name: str, target: FileTarget) -> None:
     """Raise OutputError if the target cannot be replaced as a whole."""
-    path = _path(target.path)
-    folder = (path if _path(name).is_symlink() else _path(name)).parent
+    path = _make_path(target.path)
+    folder = (path if _make_path(name).is_symlink() else _make_path(name)).parent
     if not path.parent.is_dir():
         hint = "create it first, or choose another location"
         raise OutputError(Problem("output-failed", f"{name}: there is no folder {folder}", hint=hint))

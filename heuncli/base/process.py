@@ -21,7 +21,8 @@ def result_memory(output_format: str) -> tuple[float, float]:
     """Return how many bytes the results may take, and how many bytes each of their numbers takes in an output
     format.
     """
-    return SHARE * min(_left(), default=DEFAULT_AVAILABLE), EXPORT if output_format in EXPORT_FORMATS else IN_TABLES
+    available = min(_iter_remaining_memory(), default=DEFAULT_AVAILABLE)
+    return SHARE * available, EXPORT if output_format in EXPORT_FORMATS else IN_TABLES
 
 
 def remaining_address_space() -> float | None:
@@ -35,7 +36,7 @@ def remaining_address_space() -> float | None:
     return None
 
 
-def _left() -> Iterator[float]:
+def _iter_remaining_memory() -> Iterator[float]:
     """Yield what the machine, its container and the limit on addresses (ulimit -v) leave [bytes]."""
     with suppress(OSError, ValueError, StopIteration):
         lines = _read_text("/proc/meminfo").splitlines()

@@ -175,7 +175,7 @@ def row(found: ChartResults, local: float) -> ChartRun:
 def test_a_row_that_would_take_too_long_is_not_run() -> None:
     motion = make_motion(load("pendulum.yaml", PENDULUM), None)
     charting = ChartRunner(motion, find_reference(motion), lambda done, of, what: None)
-    found = charting.one(ChartRow("DOP853", "quaternion", True, 1e-9))
+    found = charting.run_row(ChartRow("DOP853", "quaternion", True, 1e-9))
     assert isinstance(found, ChartRun) and found.status == "not run" and found.code == "too-long"
     assert found.reason.startswith("about 4e9 steps") and found.seconds is not None and found.seconds > 1.0
 
@@ -188,7 +188,7 @@ def charting_of(text: str) -> ChartRunner:
 def test_what_a_coarser_tolerance_did_not_finish_is_not_run_at_a_finer_one() -> None:
     charting = charting_of(PENDULUM)
     charting.limit = -1.0
-    first, second = (charting.one(ChartRow("DOP853", "quaternion", False, local)) for local in (1e-4, 1e-6))
+    first, second = (charting.run_row(ChartRow("DOP853", "quaternion", False, local)) for local in (1e-4, 1e-6))
     assert isinstance(first, ChartRun) and first.code == "unfinished"
     assert isinstance(second, ChartRun) and second.code == "too-long" and "0.0001 did not finish" in second.reason
 
@@ -206,7 +206,7 @@ def test_a_run_may_take_its_time_where_the_machine_does_other_work(monkeypatch: 
 
     monkeypatch.setattr(ChartRunner, "run", interrupted)
     charting.limit = 0.04
-    found = charting.one(ChartRow("DOP853", "quaternion", False, 1e-6))
+    found = charting.run_row(ChartRow("DOP853", "quaternion", False, 1e-6))
     assert slept and not isinstance(found, ChartRun) and found.chart_run.status == "completed"
 
 
@@ -216,7 +216,7 @@ def test_no_import_is_in_the_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(chart_runs, "import_module", lambda name: done.append(name))
     run = ChartRunner.run
     monkeypatch.setattr(ChartRunner, "run", lambda self, row, runs: done.append("run") or run(self, row, runs))
-    charting_of(PENDULUM).one(ChartRow("SciPy-BDF", "quaternion", False, 1e-3))
+    charting_of(PENDULUM).run_row(ChartRow("SciPy-BDF", "quaternion", False, 1e-3))
     assert done[:2] == ["scipy.integrate", "run"]
 
 

@@ -194,7 +194,7 @@ def refine_products(constant: Array, candidates: Sequence[Candidate], U: Array) 
         return U
     active_candidates = [candidates[k] for k in active]
 
-    def gradient(x: Array) -> tuple[Array, Array]:
+    def compute_gradient(x: Array) -> tuple[Array, Array]:
         """Return the gradient of half the squared residual, and the Jacobian."""
         own = x.reshape(-1, 2)
         J = np.concatenate([one.slope(each) for one, each in zip(active_candidates, own, strict=True)], axis=1)
@@ -202,8 +202,8 @@ def refine_products(constant: Array, candidates: Sequence[Candidate], U: Array) 
 
     x = U[active].ravel()
     for _ in range(MAX_STEPS):
-        g, J = gradient(x)
-        step = find_descent_step(hessian(lambda at: gradient(at)[0], x), J.T @ J, g)
+        g, J = compute_gradient(x)
+        step = find_descent_step(compute_hessian(lambda at: compute_gradient(at)[0], x), J.T @ J, g)
         current = np.sum(compute_residual(constant, active_candidates, x.reshape(-1, 2)) ** 2)
         for _ in range(MAX_HALVINGS):
             if np.sum(compute_residual(constant, active_candidates, (x + step).reshape(-1, 2)) ** 2) < current:
@@ -219,7 +219,7 @@ def refine_products(constant: Array, candidates: Sequence[Candidate], U: Array) 
     return refined
 
 
-def hessian(gradient: Callable[[Array], Array], x: Array) -> Array:
+def compute_hessian(gradient: Callable[[Array], Array], x: Array) -> Array:
     """Compute second derivatives by central differences of the first."""
     h = RELATIVE_DIFFERENCE * float(np.abs(x).max())
     rows = [(gradient(x + h * e) - gradient(x - h * e)) / (2.0 * h) for e in np.eye(len(x))]

@@ -23,8 +23,7 @@ from heuncli.base.joint_kinds import JOINTS, is_length
 from heuncli.base.records import record
 from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.motion.linearisation.linearise import LinearisedEquations, point_twist
-from heuncli.motion.linearisation.linearise import make_coordinate_rows as rows_of_scene
+from heuncli.motion.linearisation.linearise import LinearisedEquations, make_coordinate_rows, point_twist
 from heuncli.motion.linearisation.reduced_equations import find_massless_spins, find_orthogonal_complement
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Joint, Mechanism
@@ -44,9 +43,9 @@ def make_rodrigues_rows(layout: Layout, linear_equations: LinearisedEquations) -
     Raises SolveError [half-turn] close to half a turn.
     """
     rows_by_name: dict[str, Array] = {}
-    for place, hang in enumerate(layout.spanning.links):
+    for place, link in enumerate(layout.spanning.links):
         if layout.bodies["ball"][place] and not layout.mechanism.planar:
-            name = layout.mechanism.bodies[hang.body].name
+            name = layout.mechanism.bodies[link.body].name
             W_inverse = compute_rodrigues_inverse(compute_rodrigues_vector(linear_equations.attitudes[place], name))
             rows_by_name |= {
                 f"{name}.{axis}": row
@@ -171,7 +170,7 @@ def compute_admitted_motions(
         T = T - np.outer(
             linear_equations.tangent @ spin.tangent, spin.axis @ linear_equations.twists[spin.body, :3] @ T
         )
-    order = [hang.body for hang in scene.layout.spanning.links]
+    order = [link.body for link in scene.layout.spanning.links]
     names = dict.fromkeys(scene.mechanism.bodies[order[spin.body]].name for spin in massless_spins)
     return T, tuple(names)
 
@@ -180,7 +179,7 @@ def make_candidate_rows(layout: Layout, linear_equations: LinearisedEquations) -
     """Return the rows of all coordinates on the rates of the tree, (n,) each; for released rods also that of their
     length.
     """
-    rows = rows_of_scene(layout, linear_equations)
+    rows = make_coordinate_rows(layout, linear_equations)
     for joint in layout.mechanism.joints:
         if JOINTS[joint.kind].keeps_distance and joint.tension_only:
             rows[f"{joint.name}.length"] = make_length_row(layout, linear_equations, joint)

@@ -56,7 +56,7 @@ class Partials:
         """Return the partials (3, f) of a body's angular velocity; 0 for the ground."""
         return np.zeros(self.turn.shape[1:]) if body == GROUND else self.turn[body]
 
-    def generalised_force(self, action: Action) -> Array:
+    def compute_generalised_force(self, action: Action) -> Array:
         """Return the generalised force (f,) of an action at its first instant."""
         k = np.zeros(self.turn.shape[2])
         for end, force, moment in action.iter_ends():
@@ -118,7 +118,7 @@ class VelocityTerms:
         C = self.compute_terms(np.vstack([rates, rates + unit, unit]))
         return np.asarray(0.5 * (C[1 : f + 1] - C[0] - C[f + 1 :]).T / unit[0, 0])
 
-    def christoffel(self) -> Array:
+    def compute_christoffel_symbols(self) -> Array:
         """Return gamma[i, l, k], the Christoffel symbols of the first kind."""
         f = len(self.epsilon)
         pairs = [(l, k) for l in range(f) for k in range(l, f)]
@@ -149,7 +149,7 @@ def compute_forces_by_cause(layout: Layout, partials: Partials, actions: Sequenc
     weight = np.array([body.mass for body in mechanism.bodies])[:, None] * mechanism.gravity
     k = {GRAVITY: np.einsum("ni,nif->f", weight, partials.shift)} if mechanism.gravity.any() else {}
     for action in actions:
-        k[action.name] = k.get(action.name, 0.0) + partials.generalised_force(action)
+        k[action.name] = k.get(action.name, 0.0) + partials.compute_generalised_force(action)
     return k
 
 

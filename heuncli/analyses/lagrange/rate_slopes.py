@@ -31,7 +31,7 @@ class RateSlopes:
     spins: Array
     speeds: Array
 
-    def point_slope(self, body: int, place: Array, shift: Array | None = None) -> Array:
+    def compute_point_slope(self, body: int, place: Array, shift: Array | None = None) -> Array:
         """Return the change (3, f) of the velocity of a body's point at a world position.
 
         shift (3, f): how the position moves; by default with the body
@@ -45,23 +45,27 @@ class RateSlopes:
         spin = self.linear_equations.omega[k][:, None]
         return np.asarray(self.speeds[k] + np.cross(self.spins[k], arm, axis=0) + np.cross(spin, turned, axis=0))
 
-    def joint_slope(self, joint: Joint, quantity: str) -> Array:
+    def compute_joint_slope(self, joint: Joint, quantity: str) -> Array:
         """Return the change (f,) of the rate of an angle, or of the speed of a travel."""
-        turn_a, spin_a, omega_a, attitude = self._carrier(joint.a)
-        _, spin_b, omega_b, _ = self._carrier(joint.b)
+        turn_a, spin_a, omega_a, attitude = self._get_carrier(joint.a)
+        _, spin_b, omega_b, _ = self._get_carrier(joint.b)
         n = attitude @ joint.axis
         if quantity == "angle":
             return np.asarray(np.cross(turn_a, n[:, None], axis=0).T @ (omega_b - omega_a) + n @ (spin_b - spin_a))
-        place = self._position(joint.b, joint.q)
-        shift = self._point_shift(joint.b, place)
-        change = self.point_slope(joint.b, place) - self.point_slope(joint.a, place, shift)
-        speed = self._velocity(joint.b, place) - self._velocity(joint.a, place)
+        place = self._locate_point(joint.b, joint.q)
+        shift = self._compute_point_shift(joint.b, place)
+        change = self.compute_point_slope(joint.b, place) - self.compute_point_slope(joint.a, place, shift)
+        speed = self._compute_velocity(joint.b, place) - self._compute_velocity(joint.a, place)
         relative_change = change - np.cross(turn_a, speed[:, None], axis=0)  # relative to the rotating carrier
         if joint.path is None:
             return np.asarray(n @ relative_change)
-        return self._path_slope(joint, attitude, speed, relative_change, shift - self._point_shift(joint.a, place))
+        return self._compute_path_slope(
+            joint, attitude, speed, relative_change, shift - self._compute_point_shift(joint.a, place)
+        )
 
-    def _path_slope(self, joint: Joint, attitude: Array, speed: Array, relative_change: Array, shift: Array) -> Array:
+    def _compute_path_slope(
+        self, joint: Joint, attitude: Array, speed: Array, relative_change: Array, shift: Array
+    ) -> Array:
         """Return the change for the parameter s of a path r(s), with v = r' s': r' . dv / r'^2 - s' (r' . r'') ds /
         r'^2.
 
@@ -81,7 +85,7 @@ class RateSlopes:
             / square
         )
 
-    def _carrier(self, body: int) -> tuple[Array, Array, Array, Array]:
+    def _get_carrier(self, body: int) -> tuple[Array, Array, Array, Array]:
         """Return small rotations, changes of the angular velocity, angular velocity and attitude of a body or of the
         ground.
         """
@@ -91,14 +95,14 @@ class RateSlopes:
         k = self.layout.place[body]
         return self.turns[k], self.spins[k], self.linear_equations.omega[k], self.linear_equations.attitudes[k]
 
-    def _position(self, body: int, point: Array) -> Array:
+    def _locate_point(self, body: int, point: Array) -> Array:
         """Return where a point of a body is, (3,) in the world."""
         if body == GROUND:
             return point
         k, own = self.layout.place[body], self.layout.mechanism.bodies[body]
         return np.asarray(self.linear_equations.centres[k] + self.linear_equations.attitudes[k] @ (point - own.center))
 
-    def _velocity(self, body: int, place: Array) -> Array:
+    def _compute_velocity(self, body: int, place: Array) -> Array:
         """Return the velocity of a body at a place, (3,) in the world."""
         if body == GROUND:
             return np.zeros(3)
@@ -108,7 +112,7 @@ class RateSlopes:
             + np.cross(self.linear_equations.omega[k], place - self.linear_equations.centres[k])
         )
 
-    def _point_shift(self, body: int, place: Array) -> Array:
+    def _compute_point_shift(self, body: int, place: Array) -> Array:
         """Return the displacement (3, f) of a body's point at a world position."""
         if body == GROUND:
             return np.zeros(self.turns.shape[1:])

@@ -348,7 +348,7 @@ def make_output(
     coordinate = f"{owner}.{base.get(quantity, quantity)}"
     if coordinate in rows:
         joint = next(joint for joint in mechanism.joints if joint.name == owner)
-        by_place = zero if coordinate in choice.names else slopes.joint_slope(joint, base[quantity])
+        by_place = zero if coordinate in choice.names else slopes.compute_joint_slope(joint, base[quantity])
         return OutputRow(by_place, rows[coordinate] @ choice.S, zero, get_units(coordinate).rate)
     if quantity == "acceleration":
         place = next((f"{owner}.{q}" for q in ("angle", "travel") if f"{owner}.{q}" in rows), None)
@@ -364,6 +364,6 @@ def make_output(
             X = make_partials(slopes.layout, slopes.linear_equations, choice.S).point_partials(i, position)[axis]
             if not quantity[:-1]:
                 return OutputRow(X, zero, zero, "m")
-            return OutputRow(slopes.point_slope(i, position)[axis], X, zero, "m/s")
+            return OutputRow(slopes.compute_point_slope(i, position)[axis], X, zero, "m/s")
     hint = suggest(name, list(rows), "outputs") or "coordinates, their rates, BODY.POINT.x or .vx"
     raise SolveError(Problem(PROBLEM_CODE, f"--outputs {name}: no coordinate and no point has this name", hint=hint))

@@ -220,7 +220,7 @@ def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> Lagran
     remainder = epsilon @ q2 + C - total
     Q = drives.project_on_drives(remainder)
     linear = compute_state_space(instant, choice, Q, options.inputs, options.outputs) if options.state_space else None
-    gamma = terms.christoffel() if options.christoffel and not any(choice.is_quasi_velocity) else None
+    gamma = terms.compute_christoffel_symbols() if options.christoffel and not any(choice.is_quasi_velocity) else None
     return LagrangeResults(
         energy=float(0.5 * q1 @ epsilon @ q1),
         title=spec.title,

@@ -26,7 +26,7 @@ ONE_INSTANT_REASON = "one instant, no motion; for the stability of a rest positi
 FOLLOWED_REASON = "motion fully prescribed, nothing integrated"
 
 
-def growing(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
+def find_integrated_growth(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
     """Return the growth of disturbances of the integrated motion, or the reason why it is missing."""
     checked_run, runner = motion.checked, motion.study.setup.runner
     if checked_run is None:
@@ -35,7 +35,7 @@ def growing(motion: MotionSearch) -> tuple[GrowthResults | None, str]:
         return None, FOLLOWED_REASON
     if runner.integrated_scene.layout.contacts:
         return None, CONTACTS_REASON
-    if any(blow.when is not None for blow in runner.integrated_scene.layout.mechanism.impulses):
+    if any(impulse.when is not None for impulse in runner.integrated_scene.layout.mechanism.impulses):
         return None, TRIGGERS_REASON
     disturbed_runs = DisturbedRuns(runner, checked_run.run, choose_method(checked_run.run))
     Q = disturbed_runs.find_directions()
@@ -68,7 +68,7 @@ def find_out_of_plane_growth(motion: MotionSearch) -> tuple[GrowthResults | None
         return None, FOLLOWED_REASON
     if layout.contacts:
         return None, CONTACTS_REASON
-    if any(blow.when is not None for blow in layout.mechanism.impulses):
+    if any(impulse.when is not None for impulse in layout.mechanism.impulses):
         return None, TRIGGERS_REASON
     disturbed_runs = DisturbedRuns(study.setup.runner, checked_run.run, choose_method(checked_run.run), whole=True)
     Q = find_out_of_plane_directions(disturbed_runs)

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.analyses.motion_diagnostics.growth import find_out_of_plane_growth, growing
+from heuncli.analyses.motion_diagnostics.growth import find_integrated_growth, find_out_of_plane_growth
 from heuncli.analyses.motion_diagnostics.motion_events import (
     MotionSearch,
     distinct_events,
@@ -219,7 +219,7 @@ def make_probe(spec: Spec, options: Options) -> Probe:
     centres, skipped_loops = find_dead_centres(motion)
     mass, closure, no_condition = find_largest_conditions(motion)
     stiffness, no_stiffness = find_stiffness(motion)
-    growth, no_growth = growing(motion)
+    growth, no_growth = find_integrated_growth(motion)
     out_of_plane, no_out_of_plane = find_out_of_plane_growth(motion)
     listed, further_events = limit_events(
         distinct_events([*attitude_events, *centres, *find_singular_events(motion)], motion.span)

@@ -87,7 +87,7 @@ def compute_twists(layout: Layout, recovered: Evaluation) -> Twists:
             )
             along = fixed if axis_body < 0 else (R[:, axis_body] @ fixed[..., None])[..., 0]
             (shift if kind == kernel.SHIFT else turn)[:, k, answer] += along
-    order = [hang.body for hang in layout.spanning.links]
+    order = [link.body for link in layout.spanning.links]
     bodies = [layout.mechanism.bodies[i] for i in order]
     arms = np.array([b.center for b in bodies]).reshape(-1, 3) - layout.reference
     arms = np.einsum("tkij,kj->tki", R, arms)
@@ -97,7 +97,7 @@ def compute_twists(layout: Layout, recovered: Evaluation) -> Twists:
 
 def mass_matrix(body_twists: Twists) -> Array:
     """Return M of all freedoms of the tree, (n_t, n, n)."""
-    bodies = [body_twists.layout.mechanism.bodies[hang.body] for hang in body_twists.layout.spanning.links]
+    bodies = [body_twists.layout.mechanism.bodies[link.body] for link in body_twists.layout.spanning.links]
     mass, inertia = np.array([b.mass for b in bodies]), np.array([b.inertia for b in bodies]).reshape(-1, 3, 3)
     local_turns = np.einsum("tbki,tbij->tbkj", body_twists.turn, body_twists.R)
     M = flatten_bodies(mass[:, None, None] * body_twists.shift) @ flatten_bodies(body_twists.shift).transpose(0, 2, 1)
@@ -146,7 +146,7 @@ def compute_power(body_twists: Twists, ends: tuple[int, int], Q: Array, f: Array
 
 def find_bodies(layout: Layout, row: np.void) -> tuple[int, int]:
     """Return the two bodies of a closure row or a part, GROUND for the ground."""
-    order = [hang.body for hang in layout.spanning.links]
+    order = [link.body for link in layout.spanning.links]
     a, b = (order[k] if k >= 0 else GROUND for k in (int(row["a"]), int(row["b"])))
     return a, b
 

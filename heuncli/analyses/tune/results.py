@@ -253,17 +253,17 @@ class Trials:
             for constraint, value in zip(self.task.constraints, trial.constraint_values, strict=True)
         ]
 
-    def scaled_goal(self, trial: Trial) -> float:
+    def compute_scaled_goal(self, trial: Trial) -> float:
         """Return f of a solved variant."""
         return self.task.goal.sign * trial.goal / self.scale
 
-    def scaled_excesses(self, trial: Trial) -> list[float]:
+    def compute_scaled_excesses(self, trial: Trial) -> list[float]:
         """Return c of a solved variant."""
         return [excess / scale for excess, scale in zip(self.compute_excesses(trial), self.scales, strict=True)]
 
     def compute_violation(self, trial: Trial) -> float:
         """Return the sum of the constraint violations, in scales; 0 if all are satisfied."""
-        return sum(max(excess, 0.0) for excess in self.scaled_excesses(trial))
+        return sum(max(excess, 0.0) for excess in self.compute_scaled_excesses(trial))
 
     def satisfies_all(self, trial: Trial) -> bool:
         """Return whether a solved variant satisfies all constraints."""
@@ -280,25 +280,25 @@ class Trials:
         if trial is None or not trial.is_solved:
             return 4.0
         if self.satisfies_all(trial):
-            return math.atan(self.scaled_goal(trial) - median_goal) / math.pi
+            return math.atan(self.compute_scaled_goal(trial) - median_goal) / math.pi
         violation = self.compute_violation(trial)
         return 2.0 + violation / (1.0 + violation)
 
     def compute_merit(self, trial: Trial, weight: float | None) -> float:
         """Return f plus the weighted violation of a solved variant; without a weight the violation alone."""
         violation = self.compute_violation(trial)
-        return violation if weight is None else self.scaled_goal(trial) + weight * violation
+        return violation if weight is None else self.compute_scaled_goal(trial) + weight * violation
 
-    def worst_value(self, evaluate: Callable[[Trial], float]) -> float:
+    def find_worst_value(self, evaluate: Callable[[Trial], float]) -> float:
         """Return the value that represents an unsolved variant."""
         return max((evaluate(trial) for trial in self.history if trial.is_solved), default=0.0) + UNSOLVED_PENALTY
 
-    def best(self, accepts: Callable[[Trial], bool] = lambda trial: True) -> Trial | None:
+    def find_best(self, accepts: Callable[[Trial], bool] = lambda trial: True) -> Trial | None:
         """Return the best feasible trial; if there is none, the one of least violation."""
         candidates = [trial for trial in self.history if trial.is_solved and accepts(trial)]
         feasible_trials = [trial for trial in candidates if self.satisfies_all(trial)]
         if feasible_trials:
-            return min(feasible_trials, key=self.scaled_goal)
+            return min(feasible_trials, key=self.compute_scaled_goal)
         return min(candidates, key=self.compute_violation, default=None)
 
     def is_better(self, trial: Trial, other: Trial) -> bool:
@@ -306,19 +306,19 @@ class Trials:
         if not trial.is_solved:
             return False
         if self.satisfies_all(trial) and self.satisfies_all(other):
-            return self.scaled_goal(trial) < self.scaled_goal(other)
+            return self.compute_scaled_goal(trial) < self.compute_scaled_goal(other)
         return self.compute_violation(trial) < self.compute_violation(other)
 
     @property
     def has_feasible(self) -> bool:
         """Whether a feasible variant is known."""
-        best = self.best()
+        best = self.find_best()
         return best is not None and self.satisfies_all(best)
 
     @property
     def floor(self) -> float:
         """The smallest difference of f that counts: the stated error of the best, or the requested precision."""
-        best = self.best()
+        best = self.find_best()
         error = best.outcome.measures[0].error if best is not None else None
         return max((error or 0.0) / self.scale, self.task.precision)
 

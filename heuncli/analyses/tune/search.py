@@ -90,7 +90,7 @@ def run_cobyla(trials: Trials, start: Trial, step: float, weight: float | None) 
     """Run COBYLA from a variant."""
     from scipy.optimize import NonlinearConstraint, minimize
 
-    worst_goal = trials.worst_value(trials.scaled_goal)
+    worst_goal = trials.find_worst_value(trials.compute_scaled_goal)
     n, count = len(start.place), len(trials.task.constraints)
 
     def evaluate_goal(place: Array) -> float:
@@ -98,14 +98,16 @@ def run_cobyla(trials: Trials, start: Trial, step: float, weight: float | None) 
         trial = trials.try_place(place)
         if weight is None and count:
             return 0.0
-        return trials.scaled_goal(trial) if trial is not None and trial.is_solved else worst_goal
+        return trials.compute_scaled_goal(trial) if trial is not None and trial.is_solved else worst_goal
 
     def evaluate_excesses(place: Array) -> list[float]:
         """Return by how much each limit is exceeded at a place, scaled."""
         trial = trials.try_place(place)
-        return trials.scaled_excesses(trial) if trial is not None and trial.is_solved else [worst_excess] * count
+        return (
+            trials.compute_scaled_excesses(trial) if trial is not None and trial.is_solved else [worst_excess] * count
+        )
 
-    worst_excess = trials.worst_value(lambda trial: max(trials.scaled_excesses(trial), default=0.0))
+    worst_excess = trials.find_worst_value(lambda trial: max(trials.compute_scaled_excesses(trial), default=0.0))
     constraints = [NonlinearConstraint(evaluate_excesses, -np.inf, -CONSTRAINT_MARGIN)] if count else []
     max_trials = min(COBYLA_TRIALS * (n + 1), trials.remaining + n + 2)
     minimize(
@@ -125,7 +127,7 @@ def run_simplex(trials: Trials, start: Trial, step: float, weight: float | None,
     """Run Nelder-Mead from a variant; is_mirrored: the first simplex extends to the opposite sides."""
     from scipy.optimize import minimize
 
-    worst_merit = trials.worst_value(lambda trial: trials.compute_merit(trial, weight))
+    worst_merit = trials.find_worst_value(lambda trial: trials.compute_merit(trial, weight))
 
     def evaluate_merit(place: Array) -> float:
         """Return the goal and the weighted excesses at a place as one number."""
@@ -167,7 +169,7 @@ def search_globally(trials: Trials) -> None:
     first = make_first_generation(trials)
     trials.try_places(list(first))
     trials.set_scales()
-    goals = [trials.scaled_goal(trial) for trial in trials.history if trial.is_solved]
+    goals = [trials.compute_scaled_goal(trial) for trial in trials.history if trial.is_solved]
     median_goal = float(np.median(goals)) if goals else 0.0
 
     def rank_members(places: Array) -> Array:

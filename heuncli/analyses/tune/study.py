@@ -199,7 +199,7 @@ class Tuning:
     def run(self) -> None:
         """Search. Impure: tries variants."""
         search_globally(self.trials)
-        if self.trials.best() is None:
+        if self.trials.find_best() is None:
             return
         for _ in range(MAX_DESCENTS):
             self.gain = descend(self.trials)
@@ -209,7 +209,7 @@ class Tuning:
 
     def _finds_better_around(self) -> bool:
         """Return whether the last search around the best finds a better variant."""
-        best = self.trials.best()
+        best = self.trials.find_best()
         if self.gain is None or best is None or not self.trials.satisfies_all(best):
             return False
         self.tolerance_ranges = find_tolerance_ranges(self.trials, best)
@@ -218,10 +218,10 @@ class Tuning:
     def _finds_better_elsewhere(self) -> bool:
         """Return whether the descent from the best separate variant of the overview finds a better one."""
         trials = self.trials
-        best = trials.best()
+        best = trials.find_best()
         if self.gain is None or best is None or not trials.remaining:
             return False
-        separate = trials.best(
+        separate = trials.find_best(
             lambda trial: trial.phase == OVERVIEW_PHASE and compute_distance(trial, best) > MIN_SEPARATION
         )
         if separate is None or any(
@@ -235,16 +235,16 @@ class Tuning:
     def _has_improved(self, best: Trial) -> bool:
         """Return whether the current best is better by more than the floor."""
         trials = self.trials
-        current = trials.best()
+        current = trials.find_best()
         assert current is not None
         if not trials.satisfies_all(best):
             return trials.compute_violation(best) - trials.compute_violation(current) > trials.floor
-        return trials.scaled_goal(best) - trials.scaled_goal(current) > trials.floor
+        return trials.compute_scaled_goal(best) - trials.compute_scaled_goal(current) > trials.floor
 
     def to_results(self) -> TuneResults:
         """Return the results so far."""
         trials = self.trials
-        best = trials.best()
+        best = trials.find_best()
         is_feasible = best is not None and trials.satisfies_all(best)
         is_converged = self.gain is not None and is_feasible
         unfinished_ending: Ending = (

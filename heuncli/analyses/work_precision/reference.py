@@ -101,7 +101,7 @@ class ReferenceComparison:
             for part, bodies_pair in evaluate_together(self.runs, self.reference, self.times, states):
                 distances = find_point_distance(self.runs.motion_points, bodies_pair.bodies, 2, layout.size)
                 turn_angles, angle = find_angle_difference(layout, bodies_pair, 2)
-                places, angles = max(places, _largest(distances)), max(angles, _largest(turn_angles))
+                places, angles = max(places, _find_largest(distances)), max(angles, _find_largest(turn_angles))
                 largest = max(largest, float(angle.max(initial=1.0)))
                 mask = is_compared[part]
                 if mask.any():
@@ -116,7 +116,7 @@ class ReferenceComparison:
         return {"reactions": reactions, "sections": estimate.get("sections") if self.has_sections else None}
 
 
-def _largest(values: Array) -> float:
+def _find_largest(values: Array) -> float:
     """Return the largest error; nan counts as unknown."""
     return float(replace_nan_errors(values).max(initial=0.0))
 

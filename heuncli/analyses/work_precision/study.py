@@ -83,7 +83,7 @@ class ChartRunner:
         outcomes: list[ChartRun | TimedRun] = []
         for k, row in enumerate(rows):
             self.report_progress(k, 2 * len(rows), row.method)
-            outcomes.append(self.one(row))
+            outcomes.append(self.run_row(row))
         waiting = [each for each in outcomes if isinstance(each, TimedRun) and not each.is_timed]
         waiting_count = len(waiting)
         while waiting and not self.motion.late:
@@ -95,7 +95,7 @@ class ChartRunner:
             waiting = [each for each in waiting if not each.is_timed]
         return tuple(each.timed_run if isinstance(each, TimedRun) else each for each in outcomes)
 
-    def one(self, row: ChartRow) -> ChartRun | TimedRun:
+    def run_row(self, row: ChartRow) -> ChartRun | TimedRun:
         """Run one row: not run, failed, or timed once."""
         skipped = self.skip_if_too_long(row)
         if skipped is not None:

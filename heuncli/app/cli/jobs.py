@@ -131,7 +131,7 @@ def run_in_order(
     numbers = iter(range(len(items)))
     retries = RetryQueue()
 
-    def more() -> int | None:
+    def pop_next() -> int | None:
         """Return the next item: one to try again, else one that was not tried yet; None if there is none now."""
         number = retries.pop_next()
         if number is None:
@@ -140,7 +140,7 @@ def run_in_order(
 
     finished: dict[int, Answer] = {}
     next_number = 0
-    for number, outcome in run_as_completed(lambda number: work(items[number]), more, jobs):
+    for number, outcome in run_as_completed(lambda number: work(items[number]), pop_next, jobs):
         if isinstance(outcome, ProcessDeath):
             if not retries.add_lost([number], outcome):
                 continue

@@ -151,13 +151,13 @@ def find_mentions(word: str) -> list[str]:
         section.request
         for page in PAGES
         if page != "codes" and contains(read_page(page), word)
-        for section in _innermost(page)
+        for section in _find_innermost(page)
         if contains(section.text, word)
     )
     return [request for request, _ in zip(found, range(MAX_MENTIONS), strict=False)]
 
 
-def _innermost(page: str) -> Iterable[ManualSection]:
+def _find_innermost(page: str) -> Iterable[ManualSection]:
     """Yield the sections of a page that contain no other one."""
     sections = read_sections(page)
     following = [*sections[1:], sections[0]]

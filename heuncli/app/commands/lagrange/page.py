@@ -161,7 +161,7 @@ def make_mass_table(results: LagrangeResults) -> OutputTable:
     shows_matrix = len(results.names) <= MAX_COORDINATES and {one.name for one in results.apparent_inertias} == set(
         results.names
     )
-    sizes = entry_scales(results.epsilon)
+    sizes = bound_entries(results.epsilon)
     rows = []
     for one in results.apparent_inertias:
         matrix_cells: list[Cell] = []
@@ -174,7 +174,7 @@ def make_mass_table(results: LagrangeResults) -> OutputTable:
     return OutputTable(MASS, (*heads, OutputColumn("others free")), tuple(rows))
 
 
-def entry_scales(matrix: Array) -> Array:
+def bound_entries(matrix: Array) -> Array:
     """Return an upper bound of the entries of a positive definite matrix: sqrt(m_ii m_jj)."""
     root = np.sqrt(np.diag(matrix))
     return np.asarray(np.outer(root, root))
@@ -182,7 +182,7 @@ def entry_scales(matrix: Array) -> Array:
 
 def make_reciprocal_table(results: LagrangeResults) -> OutputTable:
     """Make the table of the inverse of the mass matrix."""
-    rows_of_matrix = zip(results.names, results.eta, entry_scales(results.eta), strict=True)
+    rows_of_matrix = zip(results.names, results.eta, bound_entries(results.eta), strict=True)
     rows = tuple((name, *map(make_cell, row, sizes)) for name, row, sizes in rows_of_matrix)
     return OutputTable(RECIPROCAL, (OutputColumn("", "text"), *map(OutputColumn, results.names)), rows)
 
@@ -191,13 +191,13 @@ def make_force_table(results: LagrangeResults, units: Units) -> OutputTable:
     """Make the table of the generalized forces k by cause."""
     display_units = [units.find(get_units(name).force) for name in results.names]
 
-    def row(cause: str, k: Array) -> tuple[Cell, ...]:
+    def make_row(cause: str, k: Array) -> tuple[Cell, ...]:
         """Make the row of a cause from its generalised forces."""
         cells = zip(k, results.scale, display_units, strict=True)
         return cause, *(make_cell(x * factor, size * factor) for x, size, (_, factor) in cells)
 
-    rows = [row(distinguish(cause, OWN_ROWS), k) for cause, k in results.forces.items()]
-    rows += [row(name, k) for name, k in zip(OWN_ROWS, (results.total_force, results.coriolis), strict=True)]
+    rows = [make_row(distinguish(cause, OWN_ROWS), k) for cause, k in results.forces.items()]
+    rows += [make_row(name, k) for name, k in zip(OWN_ROWS, (results.total_force, results.coriolis), strict=True)]
     heads = (
         OutputColumn(format_head(name, unit)) for name, (unit, _) in zip(results.names, display_units, strict=True)
     )
@@ -242,20 +242,20 @@ def make_impulse_table(results: LagrangeResults, units: Units) -> OutputTable:
         [units.find(unit)[1] for unit in by] for by in ([x.momentum for x in unit_sets], [x.rate for x in unit_sets])
     )
     rows = []
-    for blow in results.impulses:
-        time_text = f"t = {blow.t:.6g} s"
+    for impulse in results.impulses:
+        time_text = f"t = {impulse.t:.6g} s"
         rows += [
-            (time_text, "h", *make_cells(blow.h, impulses)),
-            (time_text, "[q']", *make_cells(blow.jumps, rates)),
+            (time_text, "h", *make_cells(impulse.h, impulses)),
+            (time_text, "[q']", *make_cells(impulse.jumps, rates)),
         ]
-        rows += [(time_text, "drives", *make_cells(blow.drives, impulses))] if blow.drives.any() else []
-        for section, passed in blow.sections.items():
+        rows += [(time_text, "drives", *make_cells(impulse.drives, impulses))] if impulse.drives.any() else []
+        for section, passed in impulse.sections.items():
             rows += [
                 (time_text, f"r' {cut}", *make_cells(r, impulses, passed.scale))
                 for cut, r in list_cuts(section, passed)
             ]
     unit, size = units.find("J")
-    notes = [f"F = h η h / 2 = {blow.reciprocal_energy * size:.6g} {unit}" for blow in results.impulses]
+    notes = [f"F = h η h / 2 = {impulse.reciprocal_energy * size:.6g} {unit}" for impulse in results.impulses]
     for kind in sorted(set(unit_sets)):
         unit_names = ", ".join(units.find(unit)[0] for unit in (kind.momentum, kind.rate))
         notes.append(f"along {'lengths' if kind is LENGTH else 'angles'}: {unit_names}")

@@ -83,12 +83,12 @@ def compute_elasticity(number: SpecNumber, findings: MeasureFindings) -> tuple[f
 def sort_numbers(page: SensitivityPage, findings: MeasureFindings) -> list[SpecNumber]:
     """Sort the numbers by their influence on the measure, the largest first, unknown ones last."""
 
-    def weight(number: SpecNumber) -> tuple[bool, float]:
+    def make_sort_key(number: SpecNumber) -> tuple[bool, float]:
         """Return a sort key: unknown last, then by descending influence."""
         elasticity = compute_elasticity(number, findings)
         return elasticity is None, -abs(elasticity[0]) if elasticity else 0.0
 
-    return sorted(page.numbers, key=weight)
+    return sorted(page.numbers, key=make_sort_key)
 
 
 def make_document(page: SensitivityPage) -> OutputDocument:

@@ -111,7 +111,7 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
     count = SweepProgress(sweep.size)
     plan, store = sweep.head.plan, sweep.store
 
-    def missing() -> Iterator[int]:
+    def iter_missing() -> Iterator[int]:
         """Yield the variants without a stored result, and link the others to theirs."""
         for variant in plan.iter_numbers(sweep.shard):
             values = plan.find_values(variant)
@@ -123,7 +123,7 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
                 pending[variant] = variant_values
                 yield variant
 
-    results = _solve_variants(sweep, missing(), request, stopping.descriptor)
+    results = _solve_variants(sweep, iter_missing(), request, stopping.descriptor)
     with show_progress(request.quiet) as report, closing(results):
         try:
             for variant, result in results:

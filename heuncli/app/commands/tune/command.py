@@ -102,7 +102,7 @@ def run_search(request: TuneRequest, options: TuningOptions, evaluator: VariantE
             trials.time_is_up = True
         if trials.time_is_up:  # the result is written even after the time limit
             timeout.disarm(late=True)
-    if trials.time_is_up and trials.best() is None:
+    if trials.time_is_up and trials.find_best() is None:
         message = "the time limit was reached before any variant was solved"
         raise LimitError(Problem("time-limit", message, hint="use a longer --time-limit"))
     return tuning

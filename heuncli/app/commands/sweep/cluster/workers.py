@@ -119,7 +119,7 @@ class ClusterWorker:
 
         isolated: whether the batch needs the worker for itself
         """
-        if any(lot.alone for lot in self.batches.values()):
+        if any(batch.alone for batch in self.batches.values()):
             return False
         return self.is_usable and len(self.batches) < (1 if isolated else DEPTH)
 
@@ -151,11 +151,11 @@ class WorkerPool:
 
     def list_usable(self) -> list[ClusterWorker]:
         """Return the workers that solve variants."""
-        return [member for member in self.known.values() if member.is_usable]
+        return [worker for worker in self.known.values() if worker.is_usable]
 
     def has_unknown(self) -> bool:
         """Return whether the version of some workers is not known yet."""
-        return any(not member.is_usable and not member.refusal for member in self.known.values())
+        return any(not worker.is_usable and not worker.refusal for worker in self.known.values())
 
     def update(self) -> Iterator[VariantBatch]:
         """Update the list of workers; yields the batches of those that went away."""
