@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import cast
 
 import pytest
 
-from heuncli.app.cli.options import Request, list_fields
+from heuncli.app.cli.options import list_fields
 from heuncli.app.commands.plot.command import COMMON_OPTIONS, KINDS
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.output.drawing import drawing_files
@@ -114,4 +113,4 @@ def test_a_spec_is_not_written_over(heun: Heun, files: Path) -> None:
 
 def test_every_option_is_heeded_by_some_kind_of_picture() -> None:
     heeded = {field for kind in KINDS.values() for field in kind.options} | set(COMMON_OPTIONS)
-    assert heeded == {field.name for field in list_fields(cast("type[Request]", PlotRequest))}
+    assert heeded == {field.name for field in list_fields(PlotRequest)}

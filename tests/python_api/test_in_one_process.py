@@ -81,7 +81,7 @@ def test_a_time_limit_holds_in_every_thread() -> None:
 
 
 def test_what_would_not_fit_into_memory_is_refused_before_it_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(process, "_left", lambda: iter([2e7]))
+    monkeypatch.setattr(process, "_iter_remaining_memory", lambda: iter([2e7]))
     with pytest.raises(heuncli.LimitError, match="is allowed") as caught:
         heuncli.solve(text=SPEC_TEXTS["swinging"], set={"analysis.samples": 100_001})
     assert caught.value.problems[0].code == "too-much-memory" and "would fit" in caught.value.problems[0].hint

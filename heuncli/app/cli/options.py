@@ -7,7 +7,7 @@ app/cli/entry.py fills a request from the words of a line. Named tuples, not dat
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar, Protocol, cast, get_type_hints
+from typing import Annotated, Any, ClassVar, Protocol, get_type_hints
 
 from heuncli.base.named_tuples import NamedTuple
 
@@ -120,14 +120,14 @@ class RequestField(NamedTuple):
         return getattr(getattr(request, self.record) if self.record else request, self.name)
 
 
-def list_fields(request: type[Request]) -> list[RequestField]:
+def list_fields(request: type[Any]) -> list[RequestField]:
     """List the options and arguments of a command in their order, those of its records too."""
     fields: list[RequestField] = []
     notes = get_type_hints(request, include_extras=True)
     for name in request._fields:
         default = request._field_defaults.get(name, REQUIRED)
         if isinstance(default, OPTION_RECORDS):
-            fields += (field._replace(record=name) for field in list_fields(cast("type[Request]", notes[name])))
+            fields += (field._replace(record=name) for field in list_fields(notes[name]))
         else:
             fields.append(RequestField(name, notes[name].__origin__, notes[name].__metadata__[0], default))
     return fields

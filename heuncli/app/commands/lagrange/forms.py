@@ -82,8 +82,8 @@ def make_full_block(results: LagrangeResults) -> dict[str, Any]:
         "coriolis_matrix": results.coriolis_matrix.tolist(),
         "residual": results.residual,
         "seen": {
-            one.name: {"unit": one.unit, "locked": one.others_locked, "free": one.others_free}
-            for one in results.apparent_inertias
+            inertia.name: {"unit": inertia.unit, "locked": inertia.others_locked, "free": inertia.others_free}
+            for inertia in results.apparent_inertias
         },
         "sections": {
             name: {"s": to_lists(section), **make_impulse_block(results, name)}
@@ -91,14 +91,14 @@ def make_full_block(results: LagrangeResults) -> dict[str, Any]:
         },
         "blows": [
             {
-                "time": blow.t,
-                "h": blow.h.tolist(),
-                "drives": blow.drives.tolist(),
-                "jumps": blow.jumps.tolist(),
-                "reciprocal_energy": blow.reciprocal_energy,
-                "sections": {name: to_lists(section) for name, section in blow.sections.items()},
+                "time": impulse.t,
+                "h": impulse.h.tolist(),
+                "drives": impulse.drives.tolist(),
+                "jumps": impulse.jumps.tolist(),
+                "reciprocal_energy": impulse.reciprocal_energy,
+                "sections": {name: to_lists(section) for name, section in impulse.sections.items()},
             }
-            for blow in results.impulses
+            for impulse in results.impulses
         ],
         "partials": dict(results.partials),
         "left_out": list(results.left_out),

@@ -158,17 +158,24 @@ def make_equation_table(results: LagrangeResults, units: Units) -> OutputTable:
 
 def make_mass_table(results: LagrangeResults) -> OutputTable:
     """Make the table of the mass matrix if it is small, and of the effective inertias."""
-    shows_matrix = len(results.names) <= MAX_COORDINATES and {one.name for one in results.apparent_inertias} == set(
-        results.names
-    )
+    has_all = {inertia.name for inertia in results.apparent_inertias} == set(results.names)
+    shows_matrix = len(results.names) <= MAX_COORDINATES and has_all
     sizes = bound_entries(results.epsilon)
     rows = []
-    for one in results.apparent_inertias:
+    for inertia in results.apparent_inertias:
         matrix_cells: list[Cell] = []
         if shows_matrix:
-            i = results.names.index(one.name)
+            i = results.names.index(inertia.name)
             matrix_cells = [make_cell(x, size) for x, size in zip(results.epsilon[i], sizes[i], strict=True)]
-        rows.append((one.name, *matrix_cells, one.unit, make_cell(one.others_locked), make_cell(one.others_free)))
+        rows.append(
+            (
+                inertia.name,
+                *matrix_cells,
+                inertia.unit,
+                make_cell(inertia.others_locked),
+                make_cell(inertia.others_free),
+            )
+        )
     columns = [OutputColumn(f"ε {name}") for name in results.names] if shows_matrix else []
     heads = (OutputColumn("at", "text"), *columns, OutputColumn("unit", "text"), OutputColumn("others fixed"))
     return OutputTable(MASS, (*heads, OutputColumn("others free")), tuple(rows))

@@ -8,10 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from importlib import import_module
 from pathlib import Path, PurePath
-from typing import cast
 
 from heuncli.app.cli.entry import UsageError
-from heuncli.app.cli.options import Request, list_fields
+from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.output import emit, save
 from heuncli.app.cli.target import parse_units, render_text, require_figure_form, require_other_file, require_width
 from heuncli.app.commands.plot.request import PlotRequest
@@ -84,7 +83,7 @@ def require_applicable_options(kind: str, request: PlotRequest) -> None:
 def _iter_problems(kind: str, request: PlotRequest) -> Iterator[Problem]:
     """Yield the problems of the given options."""
     figure_kind = KINDS[kind]
-    for field in list_fields(cast("type[Request]", PlotRequest)):
+    for field in list_fields(PlotRequest):
         name = field.name
         if name in (*COMMON_OPTIONS, *figure_kind.options) or field.read_value(request) == field.default:
             continue

@@ -77,12 +77,13 @@ def _make_table(head: SweepHead, rows: Iterable[SweptRow]) -> SweepTable:
     codes: list[str] = []
     for row in rows:
         codes.append(row.result.code)
-        for column, one in zip(cells, parameters, strict=True):
-            column.append(to_cell(row.values[one.name]))
+        for column, parameter in zip(cells, parameters, strict=True):
+            column.append(to_cell(row.values[parameter.name]))
         for k, measure in enumerate(results):
             measure.append(row.result.get_measure(k))
     variables = tuple(
-        _make_variable(one.name, one.unit or "", column) for one, column in zip(parameters, cells, strict=True)
+        _make_variable(parameter.name, parameter.unit or "", column)
+        for parameter, column in zip(parameters, cells, strict=True)
     )
     measures = tuple(
         SweepNumbers(

@@ -59,7 +59,9 @@ def _make_header(head: SweepHead, columns: SweepColumns) -> dict[str, Any]:
     """Return the keys before the rows."""
     draws = head.plan.draws
     laws = {law.name: law for law in draws.laws} if draws is not None else {}
-    parameters = [_make_parameter_block(one) | _make_law_block(laws.get(one.name)) for one in columns.parameters]
+    parameters = [
+        _make_parameter_block(column) | _make_law_block(laws.get(column.name)) for column in columns.parameters
+    ]
     sampling = {} if draws is None else {"samples": len(draws.values) // draws.each, "seed": draws.seed}
     return {
         "heun": FORMAT,
@@ -69,7 +71,7 @@ def _make_header(head: SweepHead, columns: SweepColumns) -> dict[str, Any]:
         "variants": head.plan.size,
         **sampling,
         "parameters": parameters,
-        "measures": [{"measure": one.text, "unit": one.unit or None} for one in head.measures],
+        "measures": [{"measure": column.text, "unit": column.unit or None} for column in head.measures],
     }
 
 

@@ -28,6 +28,7 @@ from heuncli.analyses.variants.measures import VariantResult
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import BUG, UsageError
+from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.progress import ReportProgress, show_progress
 from heuncli.app.cli.target import is_same_file, note_si_format
@@ -244,8 +245,8 @@ def show_stored(request: SweepRequest, output: SweepOutput) -> int:
         sweeps = list(store.iter_sweeps())
         sweep = choose_sweep(name, sweep_number, sweeps, "--show")
         if len(sweeps) > 1 and sweep_number is None and not request.quiet:
-            for one in sweeps:
-                print_stderr(f"heun: {escape(name)}:{one.number}  {format_sweep(one)}")
+            for stored_sweep in sweeps:
+                print_stderr(f"heun: {escape(name)}:{stored_sweep.number}  {format_sweep(stored_sweep)}")
         rows = store.find_rows(sweep.number, sweep.head.plan, shard)
         write_sweep(sweep.head, rows, output)
         note_si_format(request.units, output.form, request.quiet)
@@ -258,8 +259,9 @@ def show_stored(request: SweepRequest, output: SweepOutput) -> int:
 
 def _require_alone(request: SweepRequest) -> None:
     """Raise UsageError for options that would solve something."""
+    fields = {field.name: field for field in list_fields(SweepRequest)}
     for name in EXCLUDED_OPTIONS:
-        if getattr(request, name):
+        if fields[name].read_value(request):
             word = " ".join(request.words) if name == "words" else f"--{name.removesuffix('_each').replace('_', '-')}"
             hint = "leave it out; --show solves nothing. Or name the store with --store"
             raise UsageError(Problem("bad-option", f"--show and {word} cannot be combined", hint=hint))

@@ -54,29 +54,31 @@ def format_label(head: SweepHead, statistics: MeasureStatistics, unit: str = "")
 
 
 def _make_statistics_table(
-    head: SweepHead, statistics: Sequence[MeasureStatistics], units: Units, omitted: int
+    head: SweepHead, shown: Sequence[MeasureStatistics], units: Units, omitted: int
 ) -> OutputTable:
     """Make the table of mean, deviation and percentiles, with their confidence intervals."""
     columns = (OutputColumn("", "text"), OutputColumn("value"), OutputColumn("from"), OutputColumn("to"))
     rows: list[tuple[Cell, ...] | str] = []
     notes = _make_notes(head)
-    for one in statistics:
-        unit, size = units.find(head.measures[one.measure].unit)
-        label = format_label(head, one, unit)
+    for statistics in shown:
+        unit, size = units.find(head.measures[statistics.measure].unit)
+        label = format_label(head, statistics, unit)
         rows.append(
-            f"{label}: {format_variant_count(one.drawn_count)}{f', {one.left_out} left out' if one.left_out else ''}"
+            f"{label}: {format_variant_count(statistics.drawn_count)}"
+            f"{f', {statistics.left_out} left out' if statistics.left_out else ''}"
         )
-        if one.sample is None:
+        if statistics.sample is None:
             rows.append(("too few", "", "", ""))
             continue
-        rows.append(_make_row("mean", one.sample.mean, size))
-        rows.append(_make_row("deviation", one.sample.deviation, size))
-        rows += [_make_row(f"{percent:g} %", value, size) for percent, value in one.sample.percentiles]
-        if has_large_errors(one):
-            notes.append(SPOILT.format(format_label(head, one), f"{format_error(size * one.error)} {unit}".rstrip()))
+        rows.append(_make_row("mean", statistics.sample.mean, size))
+        rows.append(_make_row("deviation", statistics.sample.deviation, size))
+        rows += [_make_row(f"{percent:g} %", value, size) for percent, value in statistics.sample.percentiles]
+        if has_large_errors(statistics):
+            error = f"{format_error(size * statistics.error)} {unit}".rstrip()
+            notes.append(SPOILT.format(format_label(head, statistics), error))
     if any("-" in row for row in rows):
         notes.append("-: the sample is too small for a bound on this side")
-    if any(one.left_out for one in statistics):
+    if any(statistics.left_out for statistics in shown):
         notes.append("left out: could not be solved, or the measure is not known")
     if omitted:
         notes.append(f"{format_count(omitted, 'block')} more: --all")
@@ -110,23 +112,23 @@ def _make_row(label: str, estimate: BoundedEstimate, size: float) -> tuple[Cell,
 
 
 def _make_index_table(
-    head: SweepHead, statistics: Sequence[MeasureStatistics], laws: Sequence[RandomVariable]
+    head: SweepHead, shown: Sequence[MeasureStatistics], laws: Sequence[RandomVariable]
 ) -> OutputTable:
     """Make the table of the Sobol indices, and say why some are missing."""
     names = ("", "first order", "from", "to", "total", "from", "to")
     columns = tuple(OutputColumn(name, "text" if not name else "number") for name in names)
     rows: list[tuple[Cell, ...] | str] = []
     notes: list[str] = ["first order: of the parameter alone; total: including its interactions"]
-    for one in statistics:
-        if one.indices is None:
-            why = FLAT if one.is_constant else FEW.format(len(laws) + 2, one.samples)
-            notes.append(NO_INDICES.format(format_label(head, one)) + why)
+    for statistics in shown:
+        if statistics.indices is None:
+            why = FLAT if statistics.is_constant else FEW.format(len(laws) + 2, statistics.samples)
+            notes.append(NO_INDICES.format(format_label(head, statistics)) + why)
             continue
-        rows.append(f"{format_label(head, one)}: {format_count(one.samples, 'sample')}")
-        for law, index_pair in zip(laws, one.indices, strict=True):
+        rows.append(f"{format_label(head, statistics)}: {format_count(statistics.samples, 'sample')}")
+        for law, index_pair in zip(laws, statistics.indices, strict=True):
             ends = [end for estimated in index_pair for end in estimated]
             cells = ("-" if end is None else NumberCell(end, write="{:.3f}".format) for end in ends)
             rows.append((law.name, *cells))
-        if one.samples < MIN_INDEX_BOUNDED:
-            notes.append(UNBOUNDED.format(format_label(head, one), one.samples))
+        if statistics.samples < MIN_INDEX_BOUNDED:
+            notes.append(UNBOUNDED.format(format_label(head, statistics), statistics.samples))
     return OutputTable(INDICES, columns, tuple(rows), tuple(notes))

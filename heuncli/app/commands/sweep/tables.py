@@ -30,9 +30,11 @@ def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> Outpu
     """Make the table of the selected rows; marks stand after the least and the greatest value."""
     parameters = make_parameter_columns(head.plan)
     has_numbers = len(parameters) > 1
-    columns = [OutputColumn("variant", "text")] * has_numbers + [make_parameter_column(one) for one in parameters]
+    columns = [OutputColumn("variant", "text")] * has_numbers + [
+        make_parameter_column(parameter) for parameter in parameters
+    ]
     cells: list[list[Cell]] = [
-        [row.number] * has_numbers + [to_cell(row.values[one.name]) for one in parameters]
+        [row.number] * has_numbers + [to_cell(row.values[parameter.name]) for parameter in parameters]
         for row in selection.rows.values()
     ]
     for measure in range(len(head.measures)):
@@ -93,11 +95,11 @@ def _make_measure_columns(
     scale = size * largest_magnitude(selection.columns.values(k))
     results = [row.result.get_measure(k) for row in selection.rows.values()]
     cells: list[list[Cell]] = [[cell] for cell in _make_measure_cells(results, size, scale)]
-    instants = {one.time for one in results if one.time is not None}
+    instants = {value.time for value in results if value.time is not None}
     if len(instants) > 1:
         columns.append(OutputColumn("at", "instant", "s", vector=vector_name))
-        for line, one in zip(cells, results, strict=True):
-            line.append(None if one.time is None else NumberCell(one.time, write="{:.5g}".format))
+        for line, value in zip(cells, results, strict=True):
+            line.append(None if value.time is None else NumberCell(value.time, write="{:.5g}".format))
     best = selection.extremes[k]
     if best is not None and not best.is_constant:
         marks = pad_words(["", *(choose_mark(best, place) for place in selection.rows)])
@@ -129,10 +131,10 @@ def _make_measure_cells(results: Sequence[MeasureValue], size: float, scale: flo
     size: factor to the display unit
     scale: the largest value, in that unit
     """
-    known = [(size * one.value, size * (one.error or 0.0)) for one in results if one.value is not None]
+    known = [(size * result.value, size * (result.error or 0.0)) for result in results if result.value is not None]
     numbers = iter(trim_cells([(value, error, choose_number_style(value, error, scale)) for value, error in known]))
-    words = [MISSING_KINDS[one.word].mark if one.word else "" for one in results]
-    return [next(numbers) if one.value is not None else word for one, word in zip(results, words, strict=True)]
+    words = [MISSING_KINDS[result.word].mark if result.word else "" for result in results]
+    return [next(numbers) if result.value is not None else word for result, word in zip(results, words, strict=True)]
 
 
 def choose_number_style(value: float, error: float, scale: float) -> Style:
@@ -210,8 +212,10 @@ def format_variant(plan: Plan, parameters: tuple[ParameterColumn, ...], number: 
     """Return the name of a variant: its value if there is one parameter, else its number."""
     if len(parameters) != 1:
         return f"variant {number}"
-    (one,) = parameters
-    return f"{one.name} = {format_parameter(plan.find_values(number)[one.name])}{f' {one.unit}' if one.unit else ''}"
+    (parameter,) = parameters
+    text = format_parameter(plan.find_values(number)[parameter.name])
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    return f"{parameter.name} = {text}{unit}"
 
 
 def draw_courses(
@@ -251,9 +255,11 @@ def format_combination(plan: Plan, number: int) -> str:
     """Return the values that distinguish a sparkline from the others: `L = 0.1, case = warm`."""
     moving = {law.name for law in plan.draws.laws} if plan.draws is not None else {plan.axes[-1].name}
     values = plan.find_values(number)
-    fixed = [one for one in make_parameter_columns(plan) if one.name not in moving]
-    texts = ((one, format_parameter(values[one.name])) for one in fixed)
-    return ", ".join(f"{one.name} = {text}{f' {one.unit}' if one.unit else ''}" for one, text in texts)
+    fixed = [parameter for parameter in make_parameter_columns(plan) if parameter.name not in moving]
+    texts = ((parameter, format_parameter(values[parameter.name])) for parameter in fixed)
+    return ", ".join(
+        f"{parameter.name} = {text}{f' {parameter.unit}' if parameter.unit else ''}" for parameter, text in texts
+    )
 
 
 def list_jumps(head: SweepHead, selection: ShownRows, k: int, limit: int | None) -> list[str]:

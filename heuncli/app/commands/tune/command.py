@@ -195,6 +195,6 @@ def format_command(options: TuningOptions, recipe: Recipe, results: TuneResults)
         words += ["--tolerance", repr(recipe.options.tolerance)]
     if not recipe.options.reduce:
         words += ["--no-reduce"]
-    for text in (options.goal, *(one.measure for one in options.conditions)):
+    for text in (options.goal, *(condition.measure for condition in options.conditions)):
         words += ["--measure", text]
     return shlex.join(words)

@@ -114,7 +114,7 @@ class TuningOptions(NamedTuple):
     @property
     def measures(self) -> tuple[MeasureRequest, ...]:
         """The measures of the goal and of the constraints. Raises UsageError."""
-        return tuple(measure.parse_measures([self.goal, *(one.measure for one in self.conditions)]))
+        return tuple(measure.parse_measures([self.goal, *(condition.measure for condition in self.conditions)]))
 
 
 def parse_options(request: TuneRequest) -> TuningOptions:
@@ -159,8 +159,8 @@ def make_task(request: TuneRequest, options: TuningOptions, evaluator: VariantEv
     scene_lists = measure.check_with_others(measures, spec, scene_makers, "tune")
     scenes = [spec, *chain.from_iterable(scene_lists)]
     constraints = [
-        resolve_condition(condition, find_unit(one.path, spec), scenes, HINT)
-        for condition, one in zip(options.conditions, others, strict=True)
+        resolve_condition(condition, find_unit(measure_request.path, spec), scenes, HINT)
+        for condition, measure_request in zip(options.conditions, others, strict=True)
     ]
     return TuneTask(
         variables=tuple(add_spec_value(variable, spec) for variable in options.variables),

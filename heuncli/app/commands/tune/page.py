@@ -114,19 +114,19 @@ def make_move_block(move: ToleranceMove | None) -> dict[str, Any] | None:
 
 def make_constraint_block(results: TuneResults, index: int) -> dict[str, Any]:
     """Return one constraint as the JSON has it; `left` is the margin to its limit, negative beyond it."""
-    one = results.task.constraints[index]
+    constraint = results.task.constraints[index]
     assert results.best is not None
     best = make_measure_block(results.best.outcome, index + 1)
     value = results.best.constraint_values[index]
     return {
-        "measure": one.measure,
-        "sign": one.relation,
-        "limit": one.value,
-        "unit": one.unit,
+        "measure": constraint.measure,
+        "sign": constraint.relation,
+        "limit": constraint.value,
+        "unit": constraint.unit,
         "before": make_measure_block(results.spec_outcome, index + 1),
         "best": best,
-        "left": -one.compute_excess(value),
-        "met": one.is_met(value),
+        "left": -constraint.compute_excess(value),
+        "met": constraint.is_met(value),
         "active": results.active_constraints[index],
     }
 
@@ -135,9 +135,9 @@ def make_measure_block(outcome: VariantResult, index: int) -> dict[str, Any] | N
     """Return the value of a measure, or code and reason if the variant could not be solved."""
     if not outcome.measures:
         return {"code": outcome.code, "reason": outcome.reason}
-    one = outcome.measures[index]
-    block: dict[str, Any] = {"value": one.value, "error": one.error, "at": one.time}
-    return block | ({"word": one.word} if one.word else {})
+    measure = outcome.measures[index]
+    block: dict[str, Any] = {"value": measure.value, "error": measure.error, "at": measure.time}
+    return block | ({"word": measure.word} if measure.word else {})
 
 
 def make_trial_block(results: TuneResults, trial: Trial, best: float | None) -> dict[str, Any]:
@@ -158,7 +158,7 @@ def iter_best(results: TuneResults) -> Iterator[float | None]:
     constraints, sign = results.task.constraints, results.task.goal.sign
     for trial in results.history:
         if trial.is_solved and all(
-            one.is_met(value) for one, value in zip(constraints, trial.constraint_values, strict=True)
+            constraint.is_met(value) for constraint, value in zip(constraints, trial.constraint_values, strict=True)
         ):
             best = trial.goal if best is None else sign * min(sign * best, sign * trial.goal)
         yield best
@@ -204,7 +204,7 @@ def make_document(results: TuneResults, scene: TunedScene, units: Units) -> Outp
 def list_facts(results: TuneResults, units: Units) -> Iterator[tuple[str, str]]:
     """Yield label and text of the lines above the tables."""
     task = results.task
-    names = ", ".join(one.name for one in task.variables)
+    names = ", ".join(variable.name for variable in task.variables)
     kind = "maximise" if task.goal.is_maximised else "minimise"
     yield "tune", f"{kind} {task.goal.measure}, by {names}"
     yield "", describe_ending(results, units)
@@ -219,12 +219,13 @@ def list_facts(results: TuneResults, units: Units) -> Iterator[tuple[str, str]]:
 
 def describe_jumps(results: TuneResults) -> Iterator[str]:
     """Describe the jumps on which the best rests: a move beyond a certain distance changes a measure at once."""
-    for one, range_ in zip(results.task.variables, results.tolerance_ranges, strict=False):
+    for variable, range_ in zip(results.task.variables, results.tolerance_ranges, strict=False):
         for direction, nearer, farther in zip(("down", "up"), range_.of_floor, range_.of_hundredth, strict=True):
             jumping = next((move for move in (nearer, farther) if move is not None and move.jumps), None)
             if jumping is not None:
-                distance = f"{jumping.distance:.2g} {one.unit}".rstrip()
-                yield f"beside a jump: {jumping.jumps} jumps where {one.name} goes {direction} by more than {distance}"
+                distance = f"{jumping.distance:.2g} {variable.unit}".rstrip()
+                where = f"{variable.name} goes {direction} by more than {distance}"
+                yield f"beside a jump: {jumping.jumps} jumps where {where}"
 
 
 def format_failures(results: TuneResults) -> str:
@@ -261,10 +262,11 @@ def describe_nearest_unmet(results: TuneResults, units: Units) -> str:
     """Describe the constraint that is nearest to being met, among those that are not."""
     index = results.nearest_violated
     assert index is not None and results.best is not None
-    one = results.task.constraints[index]
-    unit, size = units.find(one.unit)
-    excess, limit = size * one.compute_excess(results.best.constraint_values[index]), size * one.value
-    return f"closest limit: {one.measure} {one.relation} {limit:.6g} {unit}, exceeded by {excess:.3g} {unit}".rstrip()
+    constraint = results.task.constraints[index]
+    unit, size = units.find(constraint.unit)
+    excess, limit = size * constraint.compute_excess(results.best.constraint_values[index]), size * constraint.value
+    condition = f"{constraint.measure} {constraint.relation} {limit:.6g} {unit}"
+    return f"closest limit: {condition}, exceeded by {excess:.3g} {unit}".rstrip()
 
 
 def make_variables_table(results: TuneResults) -> OutputTable:
@@ -275,9 +277,9 @@ def make_variables_table(results: TuneResults) -> OutputTable:
         OutputColumn("to"), OutputColumn("at", "verdict"),
     )  # fmt: skip
     rows = [
-        (format_head(one.name, one.unit), one.spec_value, one.to_number(results.best.place[index]), one.low, one.high,
-         AT_BOUND[results.find_bound(index)])
-        for index, one in enumerate(results.task.variables)
+        (format_head(variable.name, variable.unit), variable.spec_value, variable.to_number(results.best.place[index]),
+         variable.low, variable.high, AT_BOUND[results.find_bound(index)])
+        for index, variable in enumerate(results.task.variables)
     ]  # fmt: skip
     return OutputTable(VARIABLES, columns, rows)
 
@@ -288,15 +290,15 @@ def make_moves_table(results: TuneResults, units: Units) -> OutputTable:
     floor = f"{format_error(size * results.floor)} {unit}".rstrip()
     heads = ("variable", f"by {floor}: down", "up", "by 1 %: down", "up")
     rows = [
-        (format_head(one.name, one.unit), *_format_moves(range_))
-        for one, range_ in zip(results.task.variables, results.tolerance_ranges, strict=True)
+        (format_head(variable.name, variable.unit), *_format_moves(range_))
+        for variable, range_ in zip(results.task.variables, results.tolerance_ranges, strict=True)
     ]
     return OutputTable(MOVES, make_text_columns(heads), rows)
 
 
-def _format_moves(freedom: ToleranceRange) -> Iterator[str]:
+def _format_moves(tolerance_range: ToleranceRange) -> Iterator[str]:
     """Yield how far each variable may move, in words."""
-    return (_format_move(one) for one in (*freedom.of_floor, *freedom.of_hundredth))
+    return (_format_move(move) for move in (*tolerance_range.of_floor, *tolerance_range.of_hundredth))
 
 
 def _format_move(move: ToleranceMove | None) -> str:
@@ -318,16 +320,18 @@ def make_measures_table(results: TuneResults, units: Units) -> OutputTable:
     assert results.best is not None
     task = results.task
     rows = [_make_measure_row(results, 0, task.goal.measure, task.goal.unit, units, ("", "", ""))]
-    for index, one in enumerate(task.constraints):
-        size = units.find(one.unit)[1]
+    for index, constraint in enumerate(task.constraints):
+        size = units.find(constraint.unit)[1]
         value = results.best.constraint_values[index]
-        excess = one.compute_excess(value)
-        word = "not met" if not one.is_met(value) else "active" if results.active_constraints[index] else ""
+        excess = constraint.compute_excess(value)
+        word = "not met" if not constraint.is_met(value) else "active" if results.active_constraints[index] else ""
         error = results.best.outcome.measures[index + 1].error or 0.0
-        style = choose_style(size * max(abs(excess), abs(one.value)), size * error)
+        style = choose_style(size * max(abs(excess), abs(constraint.value)), size * error)
         margin = NumberCell(-size * excess + 0.0, size * error, style.write)
-        limit = f"{one.relation} {size * one.value:.6g}"
-        rows.append(_make_measure_row(results, index + 1, one.measure, one.unit, units, (limit, margin, word)))
+        limit = f"{constraint.relation} {size * constraint.value:.6g}"
+        rows.append(
+            _make_measure_row(results, index + 1, constraint.measure, constraint.unit, units, (limit, margin, word))
+        )
     spec = results.spec_outcome
     notes = [] if spec.measures else [f"spec: {spec.reason} [{spec.code}]"]
     return OutputTable(MEASURES, columns, rows, notes)

@@ -146,7 +146,7 @@ class _Scheduler:
         while True:
             yield from self._update_workers()
             self._send_batches()
-            if queue.is_empty() and not any(member.batches for member in pool.known.values()):
+            if queue.is_empty() and not any(worker.batches for worker in pool.known.values()):
                 break
             if self._wait(stop_descriptor):
                 return
