@@ -12,7 +12,7 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 
-from heuncli.analyses.variants.evaluation import SPELLING_CODES, SpecNumbers, VariantEvaluator, varies_cases
+from heuncli.analyses.variants.evaluation import SPELLING_CODES, VariantEvaluator, varies_cases
 from heuncli.analyses.variants.parameters import (
     CASE,
     ParameterAxis,
@@ -21,6 +21,7 @@ from heuncli.analyses.variants.parameters import (
     make_axis,
     parse_axis_values,
 )
+from heuncli.analyses.variants.spec_numbers import SpecNumbers
 from heuncli.app.cli.entry import UsageError
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
