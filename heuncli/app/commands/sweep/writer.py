@@ -84,11 +84,12 @@ def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput)
 def make_tables(
     head: SweepHead, rows: Iterable[SweptRow], units: Units, all_of_them: bool, encoding: str | None = None
 ) -> list[OutputTable]:
-    """Make the tables: the selected rows, the measures with their extremes, and statistics of random draws.
+    """Make the tables: the selected rows, the measures with their extremes, also by load case, and statistics of draws.
 
     all_of_them: show every row
     encoding: of the terminal; None for UTF-8
     """
+    from heuncli.app.commands.sweep.case_matrix import make_case_matrix
     from heuncli.app.commands.sweep.statistics import iter_statistics, select_rows
     from heuncli.app.commands.sweep.statistics_tables import make_statistics_tables
     from heuncli.app.commands.sweep.tables import make_row_table, make_summary_table
@@ -99,6 +100,7 @@ def make_tables(
     return [
         make_row_table(head, selection, units),
         make_summary_table(head, selection, units, choose_characters(encoding), all_of_them),
+        *make_case_matrix(head, selection, units),
         *make_statistics_tables(head, statistics, units, all_of_them),
     ]
 
