@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping, Sequence
 from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
 from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError
 from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
-from heuncli.analyses.variants.evaluation import SpecNumber, SpecNumbers
 from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.analyses.variants.parameters import AxisError, split_at_commas, split_name
 from heuncli.analyses.variants.samples import Sample, make_sample
+from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import describe, parse_unit

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from heuncli.analyses.variants.evaluation import VariantSolver
+from heuncli.analyses.variants.solver import VariantSolver
 from heuncli.base.errors import HeunError
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load

@@ -282,3 +282,22 @@ def test_all_load_cases_are_zipped_like_the_list_of_them(heun: Heun, folder: Pat
     assert first.returncode == 0 and len(first.stdout.splitlines()) == 4
     wrong = heun("sweep", "cases.yaml", "case=all", "gravity=[0, 0, -1],[0, 0, -2]", "--zip", *measure)
     assert wrong.returncode == 2 and "case 3, gravity 2 [bad-option]" in wrong.stderr
+
+
+def test_a_matrix_shows_the_extremes_in_each_load_case(heun: Heun, folder: Path) -> None:
+    """A mass that hangs on a pin loads it with its weight; the cases alone are no matrix, because the rows are it."""
+    text = (folder / "hanging.yaml").read_text() + "cases: {a: {set: {m: 2}}, b: {set: {m: 3}}}\n"
+    (folder / "cases.yaml").write_text(text)
+    tilt, measure = "gravity=[0, 0, -1],[0, 0, -2],[0, 0, -3]", ("--measure", "joints.pivot.force.z")
+    for words, a, b in (
+        (("case=all", tilt), ("2", "6"), ("3", "9")),
+        ((tilt, "case=b,a"), ("2", "6"), ("3", "9")),
+        (("case=a,b,a", tilt, "--zip"), ("2", "6"), ("6", "6")),
+    ):
+        shown = heun("sweep", "cases.yaml", *words, *measure).stdout.partition("CASES ")[2].splitlines()
+        names = shown[1].split()[1:]
+        found = [dict(zip(names, line.split()[-2:], strict=True)) for line in shown[2:4]]
+        assert [{name: float(text) for name, text in line.items()} for line in found] == [
+            {"a": float(a[k]), "b": float(b[k])} for k in (0, 1)
+        ]
+    assert "CASES" not in heun("sweep", "cases.yaml", "case=all", *measure).stdout

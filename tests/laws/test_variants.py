@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.analyses.variants.evaluation import VariantSolver
+from heuncli.analyses.variants.solver import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.loads.redundancy import count
 from heuncli.scene.file_format.load import load

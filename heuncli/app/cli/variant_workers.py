@@ -5,7 +5,8 @@ Impure: the clock.
 
 from __future__ import annotations
 
-from heuncli.analyses.variants.evaluation import CachedEvaluator, Values, VariantEvaluator
+from heuncli.analyses.variants.cached_evaluation import CachedEvaluator
+from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, WORKER_DIED, VariantResult, make_failed_result
 from heuncli.analyses.variants.parameters import format_value
 from heuncli.app.cli import jobs, timeout

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
-from heuncli.analyses.variants.evaluation import SpecNumber
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
+from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import (

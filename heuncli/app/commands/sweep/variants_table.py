@@ -1,6 +1,6 @@
 """Read the table of `--variants FILE`: a CSV file, one column per parameter and one row per variant.
 
-Impure: reads the file.
+All problems of the table are reported at once, each with the line and the column of its cell. Impure: reads the table.
 """
 
 from __future__ import annotations
@@ -8,7 +8,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from heuncli.analyses.variants.parameters import make_axis
+from heuncli.analyses.variants.parameters import (
+    make_axis,
+)
 from heuncli.app.commands.sweep.axes import AxisArgument, AxisColumn
 from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.base.named_tuples import NamedTuple
@@ -75,7 +77,6 @@ def read_axes(path: str) -> tuple[AxisArgument, ...]:
 
 
 def _read_text(path: str, file: str) -> str:
-    """Read the text of the table. Raises SpecError."""
     try:
         return read_bytes(path, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError:

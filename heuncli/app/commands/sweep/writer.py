@@ -15,7 +15,7 @@ from itertools import islice
 from typing import Any
 
 from heuncli.analyses.sweep_rows import SweepColumns, SweepHead, SweptRow, make_columns
-from heuncli.analyses.variants.evaluation import strip_numbers
+from heuncli.analyses.variants.cached_evaluation import strip_numbers
 from heuncli.app.cli import terminal
 from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError
@@ -85,11 +85,12 @@ def _iter_tables(head: SweepHead, rows: Iterable[SweptRow], output: SweepOutput)
 def make_tables(
     head: SweepHead, rows: Iterable[SweptRow], units: Units, all_of_them: bool, encoding: str | None = None
 ) -> list[OutputTable]:
-    """Make the tables: the selected rows, the measures with their extremes, and statistics of random draws.
+    """Make the tables: the selected rows, the measures with their extremes, also by load case, and statistics of draws.
 
     all_of_them: show every row
     encoding: of the terminal; None for UTF-8
     """
+    from heuncli.app.commands.sweep.case_matrix import make_case_matrix
     from heuncli.app.commands.sweep.statistics import iter_statistics, select_rows
     from heuncli.app.commands.sweep.statistics_tables import make_statistics_tables
     from heuncli.app.commands.sweep.tables import make_row_table, make_summary_table
@@ -100,6 +101,7 @@ def make_tables(
     return [
         make_row_table(head, selection, units),
         make_summary_table(head, selection, units, choose_characters(encoding), all_of_them),
+        *make_case_matrix(head, selection, units),
         *make_statistics_tables(head, statistics, units, all_of_them),
     ]
 

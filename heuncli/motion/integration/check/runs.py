@@ -16,6 +16,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
+from heuncli.base.records import replace
 from heuncli.motion.integration.check.run_comparison import MotionPoints
 from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import Method, load_method_by_name
@@ -54,6 +55,7 @@ class Runs:
         self.runner, self.times, self.jumps, self.step = runner, times, jumps, step
         self.deadline, self.method, self.watch_stiffness = deadline, method, watch_stiffness
         self.eventful = False  # whether to stop where events end most steps, or no longer do (EventfulRun)
+        self.last_check: Trajectory | None = None  # from the moved start
         self.perturbed_start, self.motion_points = perturb_start(runner.layout), MotionPoints(runner.layout)
 
     def run(
@@ -68,9 +70,11 @@ class Runs:
         """
         is_reported, times = check_times is None, self.times if check_times is None else check_times
         method = check_method or self.method
+        may_be_repeated = start is self.perturbed_start and not method.has_fixed_step and needs_moved_run(method, local)
         request = MotionTask(
-            times, local, method, self.jumps, start, self.deadline, most_steps, stores_polynomials=is_reported
-        )
+            times, local, method, self.jumps, start, self.deadline, most_steps,
+            stores_polynomials=is_reported or may_be_repeated,
+        )  # fmt: skip
         rules = StoppingRules(
             ending=is_reported, stiffness=is_reported and self.watch_stiffness, events=is_reported and self.eventful
         )
@@ -168,6 +172,7 @@ class Runs:
         for local, start in (*attempts, (a.local / most, None)):
             run = self.try_run(local, a, check_times, start, a.method.check)
             if run is not None:
+                self.last_check = run if start is self.perturbed_start else None
                 return self.add_finest(a, run, check_times, start)
         return (self.run(a.local * most, check_times, check_method=a.method.check),)
 
@@ -188,10 +193,34 @@ class Runs:
         return (b,) if finest is None else (finest, b)
 
     def run_from_moved_start(self, a: Trajectory, check_times: Array) -> Trajectory | None:
-        """Make the run M: like A from the moved start, where rounding may matter; else None."""
-        if a.method.is_determined or (not a.method.has_fixed_step and a.local >= tolerances.ROUNDING_MATTERS):
+        """Make the run M: like A from the moved start, where rounding may matter; else None.
+
+        If A is the finer run in place of one that missed the tolerance, that one's check run took the steps of M.
+        """
+        if not needs_moved_run(a.method, a.local):
             return None
+        check = self.last_check
+        if check is not None and is_same_run(check, a, check_times):
+            with contextlib.suppress(SolveError):  # a step that cannot be repeated
+                return replace(check, times=check_times, states=self.runner.resample(check, check_times))
         return self.try_run(a.local, a, check_times, self.perturbed_start)
+
+
+def needs_moved_run(method: Method, local: float) -> bool:
+    """Return whether rounding may matter in a run by this method at this local tolerance."""
+    return not method.is_determined and (method.has_fixed_step or local < tolerances.ROUNDING_MATTERS)
+
+
+def is_same_run(check: Trajectory, a: Trajectory, check_times: Array) -> bool:
+    """Return whether a check run is the one that would follow A from the moved start, at other instants."""
+    return (
+        check.polynomials is not None
+        and check.local == a.local
+        and check.method is a.method
+        and check.pushing_rope is None
+        and check.times[-1] == check_times[-1]
+        and check.steps <= MAX_STEP_GROWTH * a.steps
+    )
 
 
 def has_shared_steps(a: Array, b: Array) -> bool:
