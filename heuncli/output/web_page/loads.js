@@ -7,7 +7,7 @@ import { add, scale } from "./vectors.js";
 
 const HIGHEST = 0.28; // of the scene's radius: the largest load of the run
 /** The axis of the section along which a load is plotted, and the one along which it acts. */
-const DRAWN_ALONG = { Q2: "second", M1: "second" };
+const DRAWN_ALONG = { Q2: "second", M1: "second", w2: "second", slope2: "second" };
 const ACTS_ALONG = { N: "normal", T: "normal", Q1: "first", M1: "first", Q2: "second", M2: "second" };
 
 /** Find the largest magnitude of a load over the run and along the section; computed once. @param {object} load */
