@@ -234,26 +234,26 @@ class WholeBar:
         s, low, high = self._find_bounds(times, [extreme.s for extreme in all_extremes])
         return {
             name: BarRange(s, low[i], high[i], *both, lines[both[0].time][name], lines[both[1].time][name])
-            for i, (name, both) in enumerate(searched_extremes.items())
+            for i, (name, both) in enumerate((name, searched_extremes[name]) for name in self.quantities)
         }
 
     def _search_extremes(self, names: Sequence[str]) -> dict[str, tuple[Extreme, Extreme]]:
         """Search the lowest and highest value of quantities over the bar and the run, between places and samples."""
-        paths = {f"sections.{self.name}.{name}" for name in names}
+        name_of = {f"sections.{self.name}.{name}": name for name in names}
 
         def collect(results: Results) -> list[Channel]:
             channels = make_section_channels(self.name, results.sections[self.name])
-            return [channel for channel in channels if channel.path in paths]
+            return [channel for channel in channels if channel.path in name_of]
 
         search = ChannelSearch(collect, self.stated_errors.find_error)
         columns = StudyColumns(self.study, search, SECTIONS, self.setup)
         times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]
         found = columns.finish(extremes.search_extremes(columns.sample, times, columns.groups, errors=columns.errors))
-        rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, strict=True)
+        rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, found.paths, strict=True)
         return {
-            name: (Extreme(float(a), low.s, float(a_at)), Extreme(float(b), high.s, float(b_at)))
-            for name, (a, a_at, b, b_at, (low, high)) in zip(names, rows, strict=True)
+            name_of[path]: (Extreme(float(a), low.s, float(a_at)), Extreme(float(b), high.s, float(b_at)))
+            for a, a_at, b, b_at, (low, high), path in rows
         }
 
     def _find_bounds(self, times: Array, extra_places: Sequence[float]) -> tuple[Array, Array, Array]:
