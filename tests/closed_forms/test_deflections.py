@@ -12,7 +12,9 @@ import pytest
 
 from heuncli.base.errors import HeunError
 from heuncli.results.results import Block, Results
+from heuncli.study.queries.bars import WholeBar
 from heuncli.study.queries.expectations import compare
+from tests.shared.drawn_bars import panels_of
 from tests.shared.scenes import near, solved, study
 
 E, L = 210e9, 1.5
@@ -31,7 +33,11 @@ ON_TWO_SUPPORTS = """joints:
 
 def scene(section: str, *, joints: str = CANTILEVER, shape: str = BOX, more: str = "", gravity: float = 0.0) -> Results:
     """A bar along x from its root at the origin, solved; `section` after the section's body."""
-    return solved(f"""
+    return solved(text(section, joints=joints, shape=shape, more=more, gravity=gravity))
+
+
+def text(section: str, *, joints: str = CANTILEVER, shape: str = BOX, more: str = "", gravity: float = 0.0) -> str:
+    return f"""
 heun: 1
 gravity: [0, 0, {-gravity}]
 ground: {{points: {{O: [0, 0, 0], below: [{L}, 0, -1], aside: [{L}, 1, 0]}}}}
@@ -39,7 +45,7 @@ bodies: {{bar: {{shapes: [{shape}], points: {{root: [0, 0, 0], middle: [{L / 2},
 {joints}
 {more}
 sections: {{along: {{body: bar, {section}}}}}
-""")
+"""
 
 
 def along(keys: str = "reference: start", ends: str = "from: root, to: tip", properties: str = "auto") -> str:
@@ -263,3 +269,21 @@ def test_a_point_is_too_weak_for_beam_theory() -> None:
     with pytest.raises(HeunError) as caught:
         scene(along(), shape=shape)
     assert [p.code for p in caught.value.problems] == ["no-deflection"]
+
+
+def test_a_diagram_shows_the_curve_below_the_section_forces() -> None:
+    """Also the range over a run: the cantilever's tip force grows with time."""
+    still = study(text(along(), more=tip_force()))
+    line = WholeBar(still, "along").make_lines(0.0)["deflection.w2"]
+    near(
+        line.values, FORCE[2] * line.s**2 * (3 * L - line.s) / (6 * E * I1), abs(FORCE[2]) * L**3 / (3 * E * I1), 1e-11
+    )
+    labels = list(panels_of(still, "along"))
+    assert labels[-2:] == ["w1", "w2"] and "M1" in labels
+    assert list(panels_of(still, "along.deflection.slope1")) == ["slope1"]
+    push = "forces: {push: {type: force, on: bar.tip, vector: [0, 0, -70*t*(2 - t)]}}"
+    grown = WholeBar(study(text(along(), more=f"{push}\nanalysis: {{duration: 1.6, samples: 4}}")), "along")
+    tip = -70.0 * L**3 / (3 * E * I1)
+    found = grown.make_ranges()["deflection.w2"]
+    near(np.array([found.lowest.value, found.lowest.s, found.lowest.time]) / (tip, L, 1.0), 1.0, 1.0, 1e-6)
+    near(found.low[-1], tip, abs(tip), 1e-6)

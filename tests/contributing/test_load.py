@@ -34,7 +34,7 @@ from tests.shared.in_process import run_command
 from tests.shared.moving_pages import data_of
 from tests.shared.scenes import solved
 
-PAGE_SYMBOLS = (ROOT / "heuncli/output/web_page/symbols.js").read_text(encoding="utf-8")
+PAGE_SYMBOLS = (ROOT / "heuncli/output/web_page/load_symbols.js").read_text(encoding="utf-8")
 ROW = LoadKind(
     "magnet", "points", ("ACTUATOR",), "a pull that falls with the square of the distance of two points",
     not_negative=("strength",), symbols=("actuator",), sample={"strength": (0.1, 2)},

@@ -41,6 +41,7 @@ REFUSED = [
     (("hanging.yaml", "sweep.csv", PATH), "specs and sweeps cannot share one plot"),
     (("sectioned.yaml", "sections.along", PATH), "one kind of plot at a time"),
     (("sectioned.yaml", "sections.along.M1"), "5 numbers"),
+    (("sectioned.yaml", "sections.along.deflection.w2"), "sections.along has no deflection.w2"),
     (("hanging.yaml", "energy.kinetic", "--axes", "to"), "--axes to has no effect on energy.kinetic"),
     (("swinging.yaml", "polar", "foundation", "--axes", "to"), "--axes to has no effect on foundation.force"),
     (("hanging.yaml", "modes", "--units", "mm"), "--units has no effect on mode shapes"),

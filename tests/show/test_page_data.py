@@ -92,16 +92,16 @@ def test_the_numbers_are_those_of_the_json(file: Path) -> None:
             wanted = numbers(told(document, load_["path"])).reshape(len(study.results.time), -1)
             assert_same(found, found[frames], wanted[asked], load_["path"])
             seen += found.size
-    for block in (block for blow in data["blows"] for block in blow["blocks"]):
+    for block in (block for impulse in data["impulses"] for block in impulse["blocks"]):
         for row in (row for group in block["groups"] for row in group["rows"]):
             found = np.array([unpacked(packed, 1)[0] for _, packed, _ in row["parts"]])
-            assert_same(found, found, _of_blow(document, row["path"]), row["path"])
+            assert_same(found, found, _impulse_numbers(document, row["path"]), row["path"])
             seen += found.size
     assert seen > 0
 
 
-def _of_blow(document: Any, path: str) -> Array:
-    """The numbers of a blow in the JSON, at a path."""
+def _impulse_numbers(document: Any, path: str) -> Array:
+    """The numbers of an impulse in the JSON, at a path."""
     _, number, rest = path.split(".", 2)
     return numbers(told(document["impulses"][int(number)], rest)).reshape(-1)
 

@@ -67,10 +67,10 @@ def test_what_is_open_is_told() -> None:
 def test_a_view_is_rigid_and_up_is_up(gravity: list[float], normal: list[float] | None) -> None:
     code = """
       const view = new view_js.View(given);
-      view.fill(800, 600);
+      view.resize(800, 600);
       const found = [[view.right, view.above, view.toward]];
       for (const axis of [[1, 0, 0], [0, 1, 0], [0, 0, 1]]) {
-        view.along(axis);
+        view.lookAlong(axis);
         found.push([view.right, view.above, view.toward]);
       }
       view.turn(0.7, -0.4);
@@ -93,7 +93,7 @@ def test_all_of_a_machine_is_on_the_screen() -> None:
       const view = new view_js.View(given);
       const found = [];
       for (const [w, h] of [[800, 600], [390, 300], [300, 900]]) {
-        view.fill(w, h);
+        view.resize(w, h);
         for (const corner of given.cloud) {
           const [x, y] = view.project(corner);
           found.push([x / w, y / h]);
@@ -111,14 +111,14 @@ def test_frames_are_found_by_their_instants() -> None:
     code = """
       globalThis.matchMedia = () => ({ matches: false });
       const player = new player_js.Player(given, () => {});
-      const before = [-1, 0, 0.1, 0.25, 0.3, 9].map((t) => player.frameAt(t));
-      return [before, [0.04, 0.06, 0.19, 9].map((t) => player.nearest(t))];
+      const before = [-1, 0, 0.1, 0.25, 0.3, 9].map((t) => player.findFrame(t));
+      return [before, [0.04, 0.06, 0.19, 9].map((t) => player.findNearestFrame(t))];
     """
     assert run(code, [0.0, 0.1, 0.3, 0.4]) == [[0, 0, 1, 1, 2, 3], [0, 1, 1, 3]]
 
 
 def test_a_run_is_proposed_at_a_speed_at_which_it_is_seen() -> None:
-    found = run("return given.map((duration) => player_js.speedFor(duration));", [0.05, 0.08, 2.0, 36.0, 5000.0, 1e-9])
+    found = run("return given.map((duration) => player_js.proposeSpeed(duration));", [0.05, 0.08, 2.0, 36.0, 5000.0, 1e-9])
     assert found == [0.01, 0.01, 1, 1, 100, 0.0001]
 
 
@@ -126,7 +126,7 @@ def test_a_pose_between_two_frames_is_one_of_a_rigid_body() -> None:
     half = math.sin(0.1), math.cos(0.1)
     code = """
       const scene = { bodies: given.map((attitudes) => ({ places: [0, 0, 0, 1, 2, 3], attitudes })) };
-      return [0, 0.5, 1].map((share) => poses_js.posesAt(scene, 0, share));
+      return [0, 0.5, 1].map((share) => poses_js.computePoses(scene, 0, share));
     """
     near = [1.0, 0.0, 0.0, 0.0, half[1], 0.0, 0.0, half[0]]
     far = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
@@ -142,10 +142,10 @@ def test_the_envelope_holds_every_curve_and_reaches_no_farther() -> None:
     code = """
       const runs = given.map(([x, values, size], run) => ({
         axes: [{ label: "angle", values: x }],
-        courses: [{ path: "p", make: () => ({ path: "p", size, low: values, high: values }) }],
+        histories: [{ path: "p", make: () => ({ path: "p", size, low: values, high: values }) }],
       }));
-      const own = courses_js.madeOf(runs[0].courses[0]);
-      const { values, low, high, greatest, least } = envelope_js.envelopeOf(runs, own, { label: "angle" });
+      const own = histories_js.computeHistory(runs[0].histories[0]);
+      const { values, low, high, greatest, least } = envelope_js.computeEnvelope(runs, own, { label: "angle" });
       return [[...values], [...low], [...high], [greatest.run, greatest.value, least.run, least.value]];
     """
     random = np.random.default_rng(11)

@@ -1,8 +1,9 @@
 """Place the words of a panel where there is room: labels, the words of marked places and of vertical marks.
 
-Words stand over no other words, and over as few lines as possible; those far from their place have a line to it. A
-field is a grid of small cells, each with the cost of writing there: zero if it is empty, CURVE_COST if a curve passes.
-It serves pixels and the cells of a terminal.
+Words stand over no other words, and over as few lines as possible. A label avoids places that are nearer to what
+another label names; where it finds no other, or is far from its own place, a line leads to it. A field is a grid of
+small cells, each with the cost of writing there: zero if it is empty, CURVE_COST if a curve passes. It serves pixels
+and the cells of a terminal.
 """
 
 from __future__ import annotations
@@ -32,8 +33,7 @@ MAX_LINES = 5  # maximum distance of words, in lines of text
 ROUNDING = 1e-6  # of a coordinate
 COST_PER_LINE = 7.0  # cost of a line of distance
 CURVE_COST = 3.0  # cost of a cell of a curve
-
-
+ARROW_COST = 9.0  # cost of a cell of an arrow, which words would cut in two
 N_SAMPLES = 25  # places along a line that may strike words
 Place = tuple[float, float]
 CELL_SIZE = 3.0  # pixels of a cell of the word field
@@ -43,6 +43,8 @@ MAX_UNLINKED_DISTANCE = 17.0  # pixels from a place to its words up to which no 
 N_DIRECTIONS = 16  # in which places are tried
 DISTANCES = (9.0, 14.0, 20.0, 28.0, 38.0)  # pixels from the place to the words
 DISTANCE_COST = 0.12  # cost of a pixel of distance, in cells of a curve
+AMBIGUITY_COST = 25.0  # cost of a place nearer to another label's place than to its own: eight cells of a curve
+MIN_DIFFERENCE = 1.5  # pixels by which it must be nearer
 CIRCLE_SIZE, CIRCLE_GAP = 9.5, 3.0  # pixels: half the size of the circle around a number, between two of them
 
 
@@ -60,6 +62,10 @@ class WordBox(NamedTuple):
             self.left < other.right - ROUNDING and other.left < self.right - ROUNDING
             and self.top < other.bottom - ROUNDING and other.top < self.bottom - ROUNDING
         )  # fmt: skip
+
+    def measure_distance(self, x: float, y: float) -> float:
+        """Measure the distance of a place from the box, 0 within it."""
+        return math.hypot(max(self.left - x, 0.0, x - self.right), max(self.top - y, 0.0, y - self.bottom))
 
     def contains(self, other: WordBox) -> bool:
         """Return whether another box lies within this one."""
@@ -79,7 +85,7 @@ class WordField:
         self.cost = np.zeros((rows, columns))
         self.occupied: list[WordBox] = []
 
-    def add_curve(self, points: Array) -> None:
+    def add_curve(self, points: Array, cell_cost: float = CURVE_COST) -> None:
         """Add the cost of a line through points (n, 2)."""
         if len(points) < 2 or not np.isfinite(points).all():
             return
@@ -90,7 +96,7 @@ class WordField:
         rows, columns = self.cost.shape
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
         row, column = row[inside], column[inside]
-        self.cost[row, column] = np.maximum(self.cost[row, column], CURVE_COST)
+        self.cost[row, column] = np.maximum(self.cost[row, column], cell_cost)
 
     def add_area(self, corners: Array) -> None:
         """Add the cost of an upright rectangle with corners (n, 2)."""
@@ -214,7 +220,8 @@ def make_field(shapes: Sequence[Shape], area: WordBox) -> WordField:
     for shape in shapes:
         if isinstance(shape, Line):
             if shape.name or shape.width >= MIN_LINE_WIDTH or shape.width == style.HATCH_WIDTH:
-                field.add_curve(np.array(shape.points))
+                is_arrow = bool(shape.name) and shape.width == style.ARROW_WIDTH
+                field.add_curve(np.array(shape.points), ARROW_COST if is_arrow else CURVE_COST)
         elif isinstance(shape, Area):
             if shape.opacity == style.BAR_OPACITY:
                 field.add_area(np.array(shape.points))
@@ -268,11 +275,16 @@ def _place_spot_words(item: Spot, box: PanelBox, field: WordField) -> list[Shape
     return [*_connect(mark.x, mark.y, place, field, colour, _make_mark_box(mark)), words]
 
 
-def _connect(x: float, y: float, place: WordBox, field: WordField, colour: str, *own_boxes: WordBox) -> Iterator[Shape]:
-    """Draw a line from a place to its words if these are far from it and no other words or marks are between."""
+def _connect(
+    x: float, y: float, place: WordBox, field: WordField, colour: str, *own_boxes: WordBox, is_ambiguous: bool = False
+) -> Iterator[Shape]:
+    """Draw a line from a place to its words if these are far from it or seem to belong to another place.
+
+    No line is drawn across other words or marks.
+    """
     end = min(max(x, place.left), place.right), min(max(y, place.top), place.bottom)
-    is_far = math.hypot(end[0] - x, end[1] - y) > MAX_UNLINKED_DISTANCE
-    if is_far and not field.is_struck((x, y), end, except_boxes=(place, *own_boxes)):
+    is_far = place.measure_distance(x, y) > MAX_UNLINKED_DISTANCE
+    if (is_far or is_ambiguous) and not field.is_struck((x, y), end, except_boxes=(place, *own_boxes)):
         yield Line(((x, y), end), colour, style.GRID_WIDTH)
 
 
@@ -333,19 +345,23 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
     lines: list[Shape] = []
     texts: list[Shape] = []
     omitted: list[str] = []
-    for label in labels:
-        text, x, y = escape(label.number or label.text), box.to_pixel_x(label.x), box.to_pixel_y(label.y)
+    places = [(box.to_pixel_x(label.x), box.to_pixel_y(label.y)) for label in labels]
+    for k, label in enumerate(labels):
+        text, (x, y), others = escape(label.number or label.text), places[k], places[:k] + places[k + 1 :]
         width, height = estimate_width(text, SMALL_SIZE), HEIGHT_FACTOR * SMALL_SIZE
         if label.number:
             width = height = 2.0 * CIRCLE_SIZE + CIRCLE_GAP
-        place = field.occupy_best(_iter_boxes_on_circles(x, y, width, height))
+        place = field.occupy_best(
+            (cost + AMBIGUITY_COST * _is_ambiguous(candidate, (x, y), others), candidate)
+            for cost, candidate in _iter_boxes_on_circles(x, y, width, height)
+        )
         if place is None:
             omitted += [] if label.is_optional else [label.text]
             continue
         colour, base = find_colour(label.pen), place.top + BASE_FACTOR * SMALL_SIZE
         if label.is_ghost:
             colour = mix_with_white(colour, GHOST_LABEL)
-        lines += _connect(x, y, place, field, colour)
+        lines += _connect(x, y, place, field, colour, is_ambiguous=_is_ambiguous(place, (x, y), others))
         if label.number:
             middle = 0.5 * (place.left + place.right), 0.5 * (place.top + place.bottom)
             texts.append(Mark(*middle, "circle", colour, False, CIRCLE_SIZE))
@@ -355,6 +371,12 @@ def place_labels(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) 
         else:
             texts.append(Text(place.left, base, text, SMALL_SIZE, colour=colour, has_halo=True))
     return [*lines, *texts], omitted
+
+
+def _is_ambiguous(box: WordBox, place: Place, others: Sequence[Place]) -> bool:
+    """Return whether words in a box are nearer to another label's place than to their own."""
+    limit = box.measure_distance(*place) - MIN_DIFFERENCE
+    return any(box.measure_distance(*other) < limit for other in others)
 
 
 def _iter_boxes_on_circles(x: float, y: float, width: float, height: float) -> Iterator[tuple[float, WordBox]]:

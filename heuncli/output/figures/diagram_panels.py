@@ -83,7 +83,7 @@ def make_panel(
     magnitudes = [bar.find_magnitude(quantity) for bar in bars]
     style = choose_number_style(bars[0].bar.find_unit(quantity), np.nanmax([0.0, *magnitudes]), units)
     scales = DisplayScales(length, style, -1.0 if is_inverted else 1.0)
-    y = _make_axis(quantity, bars, scales, f"{quantity} [{style.unit}]")
+    y = _make_axis(quantity, bars, scales, f"{quantity.rpartition('.')[2]} [{style.unit}]")
     items = [item for bar in bars for item in _draw_bar(bar, quantity, scales, y, alone=len(bars) == 1)]
     is_open = all(np.isnan(magnitude) for magnitude in magnitudes)
     return Panel(y, y, tuple(items), OPEN_PANEL_HEIGHT if is_open else PANEL_HEIGHT)

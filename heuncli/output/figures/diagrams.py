@@ -1,4 +1,5 @@
-"""Section diagrams: N, Q1, Q2, T, M1, M2 along a bar in stacked panels, hatched between curve and zero line.
+"""Section diagrams: N, Q1, Q2, T, M1, M2 along a bar in stacked panels, hatched between curve and zero line; below
+them the deflections w1, w2, if they are computed.
 
 At one instant there is a curve for each quantity. Over a run the lowest and highest values at each place are a band,
 with the curve of the instant at which the quantity is largest. A quantity that is 0 all along is named but not drawn:
@@ -35,7 +36,6 @@ from heuncli.output.drawing.figure import (
 )
 from heuncli.output.figures.courses import FigureSource, make_title, require_claimed
 from heuncli.output.figures.diagram_panels import BarCurves, make_panel
-from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.study.quantities.captions import WORDS, describe_object
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, choose_reader_style, format_error
 from heuncli.study.quantities.labels import make_labels
@@ -48,6 +48,11 @@ TENSION_SIDES = {"M1": "e2", "M2": "e1"}  # the axis that points up
 INSTANT_SEPARATOR = ": t = "  # between the name of a run and an instant
 BAND_SENTENCE = "Thin lines: range over the run; thick line: at the instant of the greatest magnitude."
 TENSION_SENTENCE = "M1 and M2 are drawn on the tension side."
+REFERENCES = {
+    "chord": "the chord between the ends",
+    "start": "the tangent at the start",
+    "end": "the tangent at the end",
+}
 HEIGHT = 104.0  # pixels; the axis of the sketch is in pixels, too, with the bar about 0
 UPPER, LOWER = 44.0, 60.0  # pixels above and below the bar's axis
 HALF_DEPTH = 5.0  # of the bar
@@ -59,7 +64,7 @@ DOWN = (0.0, -1.0)
 
 def make_diagrams(
     sources: Sequence[FigureSource],
-    names: Sequence[str],
+    entries: Sequence[str],
     units: Units,
     times: Sequence[float] | None = None,
     tension_side: bool = False,
@@ -67,22 +72,23 @@ def make_diagrams(
 ) -> Figure:
     """Make the section diagrams of some series of cuts, of one run or of several over each other.
 
+    entries: names of series of cuts, or such as NAME.deflection or NAME.deflection.w2 for these panels alone
     times: instants [s] within all runs and before their horizons, a curve each; by default the range over the whole run
     known_extremes: of the only series of cuts over the only run, if they are searched already
     """
     panels, notes, legend = list[Panel](), list[str](), list[tuple[str, int]]()
     words = [sentence for source in sources for sentence in _describe_source(source, times)]
     headings, has_bands = dict[str, None](), False
-    for name in names:
+    for name, _, wanted in (entry.partition(".") for entry in entries):
         bars = list(_make_bars(sources, name, times, known_extremes))
         for source in sources:
             headings[_make_heading(source, name)] = None
         for bar in bars:
             if bar.name and (bar.name, bar.pen) not in legend:
                 legend.append((bar.name, bar.pen))
-        shown, left_out = _choose_quantities(bars)
+        shown, left_out = _choose_quantities(bars, wanted)
         notes += [f"{name}: {text}" for text in left_out]
-        panels += _make_panels(name, bars, shown, units, tension_side=tension_side, has_title=len(names) > 1)
+        panels += _make_panels(name, bars, shown, units, tension_side=tension_side, has_title=len(entries) > 1)
         has_bands = has_bands or any(bar.ranges for bar in bars)
     if any(isinstance(item, Blank) and item.text.endswith(OPEN) for panel in panels for item in panel.items):
         notes.append(OPEN_NOTE)
@@ -141,25 +147,39 @@ def _make_heading(source: FigureSource, name: str) -> str:
     body, section = describe_object("bodies", info.body, labels), describe_object("sections", name, labels)
     what = body if body == section else f"{section}, body {body}"
     point = "" if info.moment_point == "the cut's point" else f"; moments about {info.moment_point}"
-    return f"{what}: N > 0 tension; e1 = {info.first_axis}, e2 = n × e1{point}"
+    theory = source.study.spec.sections[name].beam_theory
+    beam = "" if theory is None else f"; w1, w2: deflection along e1, e2 from {REFERENCES[theory.reference]}"
+    return f"{what}: N > 0 tension; e1 = {info.first_axis}, e2 = n × e1{point}{beam}"
 
 
-def _choose_quantities(bars: Sequence[BarCurves]) -> tuple[list[str], list[str]]:
-    """Return the quantities to draw, and sentences on those that are 0 all along."""
+def _choose_quantities(bars: Sequence[BarCurves], wanted: str) -> tuple[list[str], list[str]]:
+    """Return the quantities to draw, and sentences on those that are 0 all along.
+
+    wanted: only those that begin with these words; slopes are drawn only if they are wanted by name
+    """
     zero, within, shown = list[str](), list[str](), list[str]()
-    for quantity in RESULTANTS:
+    common = [q for q in bars[0].bar.quantities if all(q in bar.bar.quantities for bar in bars)]
+    for quantity in common:
+        if quantity != wanted and (
+            "slope" in quantity or not f"{quantity}.".startswith(f"{wanted}." if wanted else "")
+        ):
+            continue
         verdicts = {_classify(bar, quantity) for bar in bars}
         matching_list = zero if verdicts == {"zero"} else within if verdicts <= {"zero", "within"} else shown
         matching_list.append(quantity)
-    notes = [f"all zero, not drawn: {', '.join(zero)}"] if zero else []
+    notes = [f"all zero, not drawn: {_join_symbols(zero)}"] if zero else []
     if within:
         error = {bars[0].bar.find_unit(q): max(bar.bar.find_error(q) for bar in bars) for q in within}
         errors_text = ", ".join(f"{format_error(size)} {unit}" for unit, size in error.items())
-        notes.append(f"zero within the stated error ({errors_text}), not drawn: {', '.join(within)}")
+        notes.append(f"zero within the stated error ({errors_text}), not drawn: {_join_symbols(within)}")
     partly_open = [q for q in shown if any(_is_open_at_times(bar, q) for bar in bars)]
     if partly_open:
-        notes.append(f"open at some times, not included in the band: {', '.join(partly_open)}")
+        notes.append(f"open at some times, not included in the band: {_join_symbols(partly_open)}")
     return shown, notes
+
+
+def _join_symbols(quantities: Sequence[str]) -> str:
+    return ", ".join(quantity.rpartition(".")[2] for quantity in quantities)
 
 
 def _is_open_at_times(bar: BarCurves, quantity: str) -> bool:
@@ -177,7 +197,7 @@ def _classify(curves: BarCurves, quantity: str) -> str:
         return "zero"
     if not curves.is_zero(quantity):
         return "some"
-    family = [q for q in RESULTANTS if RESULTANT_UNITS[q] == RESULTANT_UNITS[quantity]]
+    family = [q for q in bar.quantities if bar.find_unit(q) == bar.find_unit(quantity)]
     return "within" if any(not curves.is_zero(q) for q in family) else "unknown"
 
 
@@ -201,8 +221,9 @@ def _make_panels(
     places = sorted({style.size * attachment.s for bar in sketched.values() for attachment in bar.attachments})
     for k, quantity in enumerate(quantities):
         panel = make_panel(quantity, bars, units, style, is_inverted=tension_side and quantity in INVERTED)
-        words = str(WORDS[quantity]).removesuffix(f" {quantity}")  # of one text: section forces have no components
-        title = f"{words[:1].upper()}{words[1:]} {quantity}"
+        symbol = quantity.rpartition(".")[2]
+        words = str(WORDS[quantity]).removesuffix(f" {symbol}")  # of one text: section forces have no components
+        title = f"{words[:1].upper()}{words[1:]} {symbol}"
         if tension_side and quantity in TENSION_SIDES:
             title += f", {TENSION_SIDES[quantity]} up"
         items = (*(VerticalMark(s, "") for s in places), *panel.items)

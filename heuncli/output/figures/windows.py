@@ -38,11 +38,11 @@ class Window(NamedTuple):
         return float((self.high - self.low).max())
 
     def extend_to_arrows(self, arrows: Sequence[Arrow]) -> Window:
-        """Extend the window so that it contains the arrows."""
+        """Extend the window so that it contains the arrows, with room for two lines of words at their tips."""
         tips = [(a.x + a.by_x, a.y + a.by_y) for a in arrows]
         margin = MARGIN * self.side
-        low = np.min([self.low, *(np.array(tip) - 0.5 * margin for tip in tips)], axis=0)
-        high = np.max([self.high, *(np.array(tip) + 0.5 * margin for tip in tips)], axis=0)
+        low = np.min([self.low, *(np.array(tip) - margin for tip in tips)], axis=0)
+        high = np.max([self.high, *(np.array(tip) + margin for tip in tips)], axis=0)
         return self._replace(low=low, high=high)
 
 

@@ -1,4 +1,5 @@
-/** @file The colours of the page, those of its style, light or dark; of bodies tints that are told apart by all. */
+/** @file Colours: the page's own, from its style sheet, and tints of bodies, chosen so that the colour-blind can
+ * tell them apart. */
 
 const NAMES = ["paper", "ink", "faint", "line", "panel", "accent", "positive", "negative", "force", "moment"];
 const HUES = [
@@ -13,8 +14,8 @@ const HUES = [
 ];
 export const SHADES = 12;
 
-/** The colours now in force. @returns {Record<string, string> & {dark: boolean}} */
-export function coloursNow() {
+/** Read the colours of the style sheet, light or dark. @returns {Record<string, string> & {dark: boolean}} */
+export function readColours() {
   const style = getComputedStyle(document.documentElement);
   const found = { dark: matchMedia("(prefers-color-scheme: dark)").matches };
   for (const name of NAMES) found[name] = style.getPropertyValue(`--${name}`).trim();
@@ -23,8 +24,8 @@ export function coloursNow() {
 
 const made = new Map();
 
-/** The number of a body's kind: bodies whose names differ by digits alone have one colour. Made once. */
-export function kindsOf(scene) {
+/** Get the number of each body's kind: bodies whose names differ in digits alone share a colour. Computed once. */
+export function getBodyKinds(scene) {
   if (!scene.kinds) {
     const known = new Map();
     scene.kinds = scene.bodies.map(({ name }) => {
@@ -36,14 +37,17 @@ export function kindsOf(scene) {
   return scene.kinds;
 }
 
-/** The colours of a body: shades from dark to bright, and one for its edges. @param {number} k @param {boolean} dark */
-export function tints(k, dark) {
+/**
+ * Get the colours of a kind of body: shades from dark to bright, and one for its edges.
+ * @param {number} k @param {boolean} dark
+ */
+export function getTints(k, dark) {
   const key = 2 * (k % HUES.length) + Number(dark);
-  if (!made.has(key)) made.set(key, mixed(k, dark));
+  if (!made.has(key)) made.set(key, mixTints(k, dark));
   return made.get(key);
 }
 
-function mixed(k, dark) {
+function mixTints(k, dark) {
   const [hue, rich] = HUES[k % HUES.length];
   const [low, high] = dark ? [24, 52] : [52, 88];
   const shades = [];

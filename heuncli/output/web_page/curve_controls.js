@@ -1,73 +1,74 @@
-/** @file The controls of the curves: which are drawn, over what, and whether with the envelope of all load cases. */
+/** @file The controls of the curves: which are drawn, over which axis, with or without the envelope of load cases. */
 
-import { peakOf } from "./courses.js";
+import { listenToCheckBox } from "./controls.js";
+import { findPeakFrame } from "./histories.js";
 import { PENS } from "./curve.js";
-import { findElement, fill, makeElement } from "./elements.js";
+import { findElement, fillSelect, makeElement } from "./elements.js";
 
-/** Which curves; a click into them goes to the frame there. @param {() => import("./curve.js").Panel|null} panel */
-export function listenToCurve(chosen, player, changed, panel) {
+/**
+ * Let the user choose curves; a click into the plot goes to the frame there.
+ * @param {() => import("./curve.js").Panel|null} panel
+ */
+export function listenToCurve(selection, player, redraw, panel) {
   const select = findElement("path");
-  fill(select, chosen.courses.map((course) => [course.path, course.label]));
-  const offer = () => {
-    fill(findElement("more"), [["", "…"], ...chosen.others.map((course) => [course.path, course.label])]);
-    findElement("more").disabled = !chosen.others.length || chosen.curves.length >= PENS.length;
-    const chips = chosen.curves.slice(1).map((path, k) => {
-      const { label } = chosen.courses.find((course) => course.path === path);
+  fillSelect(select, selection.histories.map((history) => [history.path, history.label]));
+  const showAddable = () => {
+    const addable = selection.addableHistories.map((history) => [history.path, history.label]);
+    fillSelect(findElement("more"), [["", "…"], ...addable]);
+    findElement("more").disabled = !addable.length || selection.curves.length >= PENS.length;
+    const chips = selection.curves.slice(1).map((path, k) => {
+      const { label } = selection.histories.find((history) => history.path === path);
       const chip = makeElement("button", `${label} ×`, { type: "button", class: "chip" });
       chip.style.borderLeftColor = `var(--${PENS[(k + 1) % PENS.length][0]})`;
       chip.addEventListener("click", () => {
-        chosen.curves = chosen.curves.filter((other) => other !== path);
-        offer();
+        selection.curves = selection.curves.filter((other) => other !== path);
+        showAddable();
       });
       return chip;
     });
     findElement("added").replaceChildren(...chips);
-    changed();
+    redraw();
   };
-  const begin = () => {
-    if (chosen.curves.length) select.value = chosen.curves[0];
-    offer();
+  const showFirst = () => {
+    if (selection.curves.length) select.value = selection.curves[0];
+    showAddable();
   };
   const show = (path) => {
-    chosen.setCourse(path);
-    begin();
+    selection.showHistory(path);
+    showFirst();
   };
   select.addEventListener("change", () => show(select.value));
   findElement("more").addEventListener("change", () => {
-    if (findElement("more").value) chosen.curves.push(findElement("more").value);
-    offer();
+    if (findElement("more").value) selection.curves.push(findElement("more").value);
+    showAddable();
   });
-  fill(findElement("across"), chosen.axes.map((axis, k) => [String(k), axis.label]));
-  findElement("across").value = String(chosen.axes.indexOf(chosen.axis));
-  findElement("acrosslabel").hidden = chosen.axes.length < 2;
+  fillSelect(findElement("across"), selection.axes.map((axis, k) => [String(k), axis.label]));
+  findElement("across").value = String(selection.axes.indexOf(selection.axis));
+  findElement("acrosslabel").hidden = selection.axes.length < 2;
   findElement("across").addEventListener("change", () => {
-    chosen.axis = chosen.axes[Number(findElement("across").value)];
-    changed();
+    selection.axis = selection.axes[Number(findElement("across").value)];
+    redraw();
   });
-  const go = (highest) => () => player.halt(Math.max(0, peakOf(chosen.shownCourses[0], highest)));
-  findElement("lowest").addEventListener("click", go(false));
-  findElement("highest").addEventListener("click", go(true));
+  const goToPeak = (highest) => () => player.halt(Math.max(0, findPeakFrame(selection.shownHistories[0], highest)));
+  findElement("lowest").addEventListener("click", goToPeak(false));
+  findElement("highest").addEventListener("click", goToPeak(true));
   const canvas = findElement("curve");
-  const follow = (event) => {
-    if (event.buttons && panel()) player.halt(panel().frame(event.offsetX));
+  const goToPointer = (event) => {
+    if (event.buttons && panel()) player.halt(panel().findFrame(event.offsetX));
   };
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);
-    follow(event);
+    goToPointer(event);
   });
-  canvas.addEventListener("pointermove", follow);
-  if (!chosen.curves.length) chosen.setCourse(chosen.findLargestCourse());
-  begin();
-  if (!chosen.courses.length) findElement("over").hidden = true;
+  canvas.addEventListener("pointermove", goToPointer);
+  if (!selection.curves.length) selection.showHistory(selection.findLargestHistory());
+  showFirst();
+  if (!selection.histories.length) findElement("over").hidden = true;
   return show;
 }
 
-/** Whether the envelope of all load cases is drawn. @param {boolean} some whether there are several */
-export function listenToBand(chosen, changed, some) {
-  findElement("bandlabel").hidden = !some;
-  findElement("band").checked = chosen.band;
-  findElement("band").addEventListener("change", () => {
-    chosen.band = findElement("band").checked;
-    changed();
-  });
+/** Let the user show the envelope of all load cases. @param {boolean} hasCases whether there are several */
+export function listenToEnvelope(selection, redraw, hasCases) {
+  findElement("bandlabel").hidden = !hasCases;
+  listenToCheckBox("band", selection, "hasEnvelope", redraw);
 }

@@ -1,6 +1,6 @@
-/** @file Numbers as text, to the digits that a reader compares and the run can stand behind. */
+/** @file Formats numbers, with the digits of the tables that `heun run` prints. */
 
-const DIGITS = 6;
+const MAX_DIGITS = 6;
 
 /**
  * @typedef {[number, boolean, number, boolean]} Style
@@ -8,7 +8,7 @@ const DIGITS = 6;
  */
 
 /**
- * A number in the unit in which it is shown.
+ * Format a number given in the unit in which it is shown.
  * @param {number} value @param {Style} style @returns {string}
  */
 export function formatNumber(value, [decimals, exponent, rounding, known]) {
@@ -18,37 +18,37 @@ export function formatNumber(value, [decimals, exponent, rounding, known]) {
   if (size <= rounding) return "0";
   if (!known) return "?";
   if (size < 0.5 * 10 ** -decimals) return "0";
-  if (!exponent) return signed(value.toFixed(Math.max(decimals, 0)));
+  if (!exponent) return useMinusSign(value.toFixed(Math.max(decimals, 0)));
   const lead = Math.floor(Math.log10(size));
-  return signed(value.toExponential(Math.min(Math.max(decimals + lead, 0), DIGITS - 1)));
+  return useMinusSign(value.toExponential(Math.min(Math.max(decimals + lead, 0), MAX_DIGITS - 1)));
 }
 
-/** With the sign of minus that is as wide as plus. @param {string} text @returns {string} */
-function signed(text) {
+/** Replace the hyphen by the minus sign, which is as wide as plus. @param {string} text @returns {string} */
+function useMinusSign(text) {
   return text.startsWith("-") ? `−${text.slice(1)}` : text;
 }
 
-/** A number with as many digits as the page holds. @param {number} value @returns {string} */
+/** Format a number with all digits that the page holds. @param {number} value @returns {string} */
 export function formatAllDigits(value) {
-  return signed(String(Number(value.toPrecision(DIGITS))));
+  return useMinusSign(String(Number(value.toPrecision(MAX_DIGITS))));
 }
 
-/** A number of an axis or a scale, short. @param {number} value @returns {string} */
+/** Format a number of an axis or a scale. @param {number} value @returns {string} */
 export function formatShort(value) {
   if (value === 0) return "0";
   const size = Math.abs(value);
-  return signed(size >= 1e6 || size < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(4))));
+  return useMinusSign(size >= 1e6 || size < 1e-4 ? value.toExponential(1) : String(Number(value.toPrecision(4))));
 }
 
-/** An instant, to a part of the run. @param {number} t [s] @param {number} span [s] @param {number} places of it */
-export function instant(t, span, places = 5) {
-  const decimals = span > 0 ? Math.min(20, Math.max(0, places - Math.ceil(Math.log10(span)))) : DIGITS;
+/** Format an instant with `places` digits of the duration. @param {number} t [s] @param {number} duration [s] */
+export function formatInstant(t, duration, places = 5) {
+  const decimals = duration > 0 ? Math.min(20, Math.max(0, places - Math.ceil(Math.log10(duration)))) : MAX_DIGITS;
   const text = t.toFixed(decimals);
-  return signed(text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text);
+  return useMinusSign(text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text);
 }
 
-/** The largest of 1, 2, 5 times a power of ten that is not above a number > 0. @param {number} most */
-export function roundBelow(most) {
-  const power = 10 ** Math.floor(Math.log10(most));
-  return [5, 2, 1].find((step) => step * power <= most * (1 + 1e-9)) * power;
+/** Round down to 1, 2 or 5 times a power of ten. @param {number} limit */
+export function roundBelow(limit) {
+  const power = 10 ** Math.floor(Math.log10(limit));
+  return [5, 2, 1].find((step) => step * power <= limit * (1 + 1e-9)) * power;
 }

@@ -1,12 +1,12 @@
-/** @file Elements of the page. All words go in as text: nothing that a spec says is ever read as a mark. */
+/** @file Finds and makes elements. Words go in as text, never as markup, since they may come from a spec. */
 
-/** The element of an id. @param {string} id @returns {HTMLElement} */
+/** Find an element that the page has. @param {string} id @returns {HTMLElement} */
 export function findElement(id) {
   return document.getElementById(id);
 }
 
 /**
- * A new element.
+ * Make an element.
  * @param {string} tag @param {string} text @param {Record<string, string>} [given] attributes
  */
 export function makeElement(tag, text = "", given = {}) {
@@ -16,7 +16,10 @@ export function makeElement(tag, text = "", given = {}) {
   return element;
 }
 
-/** Options of a select: value, words. @param {HTMLSelectElement} select @param {[string, string][]} options */
-export function fill(select, options) {
+/**
+ * Fill a select with options of value and words.
+ * @param {HTMLSelectElement} select @param {[string, string][]} options
+ */
+export function fillSelect(select, options) {
   select.replaceChildren(...options.map(([value, label]) => makeElement("option", label, { value })));
 }

@@ -1,6 +1,6 @@
-/** @file The envelope of a curve over the load cases: its least and greatest value, and the case that has each. */
+/** @file Computes the envelope of a curve over the load cases, and which case has each extreme. */
 
-import { axesOf, coursesOf, madeOf, peakOf } from "./courses.js";
+import { getAxes, getHistories, computeHistory, findPeakFrame } from "./histories.js";
 
 /**
  * @typedef {object} Envelope
@@ -9,20 +9,20 @@ import { axesOf, coursesOf, madeOf, peakOf } from "./courses.js";
  * @property {{run: number, frame: number, value: number, x: number}} least @property {object} greatest of all instants
  */
 
-/** A curve of a case over an axis, in a unit of this size. */
-function curveOf(data, run, path, label, size) {
-  const course = coursesOf(data).find((each) => each.path === path);
-  const axis = axesOf(data).find((each) => each.label === label);
-  if (!course || !axis) return null;
-  const made = madeOf(course);
+/** Make the curve of a case over an axis, in a unit of the given size; null if the case lacks either. */
+function makeCaseCurve(data, run, path, label, size) {
+  const history = getHistories(data).find((each) => each.path === path);
+  const axis = getAxes(data).find((each) => each.label === label);
+  if (!history || !axis) return null;
+  const made = computeHistory(history);
   const share = size / made.size;
   const low = made.low.map((value) => value * share);
   const high = made.low === made.high ? low : made.high.map((value) => value * share);
   return { run, made, x: axis.values, low, high };
 }
 
-/** Add a curve to the least and greatest values over a grid: straight between its instants, nowhere beyond them. */
-function add(curve, grid, found, values, isBeyond) {
+/** Extend one side of the envelope by a curve, which is linear between its instants and ends with them. */
+function extendEnvelope(curve, grid, found, values, isBeyond) {
   const { x } = curve;
   const way = x[x.length - 1] < x[0] ? -1 : 1;
   const at = (k) => (way > 0 ? k : x.length - 1 - k);
@@ -37,11 +37,11 @@ function add(curve, grid, found, values, isBeyond) {
   }
 }
 
-/** The extreme of all cases: its case and frame. */
-function extremeOf(curves, highest) {
+/** Find the extreme of all cases, with its case and frame. */
+function findExtreme(curves, highest) {
   let best = null;
   for (const { run, made, x, low, high } of curves) {
-    const frame = peakOf(made, highest);
+    const frame = findPeakFrame(made, highest);
     if (frame < 0) continue;
     const value = (highest ? high : low)[frame];
     if (!best || (highest ? value > best.value : value < best.value)) best = { run, frame, value, x: x[frame] };
@@ -50,21 +50,21 @@ function extremeOf(curves, highest) {
 }
 
 /**
- * The envelope of a number over all cases that have it.
- * @param {object[]} runs ready to be shown @param {import("./courses.js").Course} course of the case that is shown
+ * Compute the envelope of a number over all cases that have it.
+ * @param {object[]} runs ready to be shown @param {import("./histories.js").Course} history of the case that is shown
  * @param {{label: string}} axis over what @returns {Envelope|null} null where fewer than two cases have the number
  */
-export function envelopeOf(runs, course, axis) {
+export function computeEnvelope(runs, history, axis) {
   const curves = runs
-    .map((data, run) => curveOf(data, run, course.path, axis.label, course.size))
+    .map((data, run) => makeCaseCurve(data, run, history.path, axis.label, history.size))
     .filter((curve) => curve && curve.x.length > 1);
-  const greatest = extremeOf(curves, true);
+  const greatest = findExtreme(curves, true);
   if (curves.length < 2 || !greatest) return null;
   const values = Float64Array.from(new Set(curves.flatMap(({ x }) => Array.from(x)))).sort();
   const [low, high] = [new Float64Array(values.length).fill(NaN), new Float64Array(values.length).fill(NaN)];
   for (const curve of curves) {
-    add(curve, values, low, curve.low, (value, found) => value < found);
-    add(curve, values, high, curve.high, (value, found) => value > found);
+    extendEnvelope(curve, values, low, curve.low, (value, found) => value < found);
+    extendEnvelope(curve, values, high, curve.high, (value, found) => value > found);
   }
-  return { values, low, high, least: extremeOf(curves, false), greatest };
+  return { values, low, high, least: findExtreme(curves, false), greatest };
 }

@@ -1,34 +1,35 @@
-/** @file An animated GIF of pictures of one size: one palette of their commonest colours, and of each what changed. */
+/** @file Encodes an animated GIF: one palette of the commonest colours, and of each picture only the pixels that
+ * change. */
 
-const MOST_COLOURS = 255; // the last number of a palette is that of "as before"
-const SAME = 255;
+const MAX_COLOURS = 255; // the last number of a palette is that of "as before"
+const UNCHANGED = 255;
 const SAMPLES = 12; // pictures whose colours are counted
 const LONGEST_CODE = 4096;
 
-/** A colour to five bits of red, green and blue, as one number. */
-const coarse = (data, i) => ((data[i] >> 3) << 10) | ((data[i + 1] >> 3) << 5) | (data[i + 2] >> 3);
+/** Reduce a colour to five bits each of red, green and blue, as one number. */
+const reduceColour = (data, i) => ((data[i] >> 3) << 10) | ((data[i + 1] >> 3) << 5) | (data[i + 2] >> 3);
 
-/** The commonest colours: [red, green, blue] each. @param {Uint8ClampedArray[]} pictures */
-function paletteOf(pictures) {
+/** Choose the commonest colours, [red, green, blue] each. @param {Uint8ClampedArray[]} pictures */
+function choosePalette(pictures) {
   const counts = new Map();
   const step = Math.max(1, Math.floor(pictures.length / SAMPLES));
   for (let k = 0; k < pictures.length; k += step) {
     for (let i = 0; i < pictures[k].length; i += 4) {
-      const key = coarse(pictures[k], i);
+      const key = reduceColour(pictures[k], i);
       const found = counts.get(key);
       if (found) found[3] += 1;
       else counts.set(key, [pictures[k][i], pictures[k][i + 1], pictures[k][i + 2], 1]);
     }
   }
   const sorted = [...counts.values()].sort((a, b) => b[3] - a[3]);
-  return sorted.slice(0, MOST_COLOURS).map(([red, green, blue]) => [red, green, blue]);
+  return sorted.slice(0, MAX_COLOURS).map(([red, green, blue]) => [red, green, blue]);
 }
 
-/** What finds the number of the nearest colour of a palette. */
-function finder(palette) {
+/** Make the function that finds the number of the nearest colour of a palette. */
+function makeColourFinder(palette) {
   const known = new Map();
   return (data, i) => {
-    const key = coarse(data, i);
+    const key = reduceColour(data, i);
     if (!known.has(key)) {
       let [best, least] = [0, Infinity];
       palette.forEach(([r, g, b], k) => {
@@ -41,8 +42,8 @@ function finder(palette) {
   };
 }
 
-/** Numbers of eight bits as GIF packs them (LZW), in blocks of 255 bytes. */
-function pack(numbers, out) {
+/** Compress numbers of eight bits by GIF's LZW, in blocks of 255 bytes. */
+function compressLzw(numbers, out) {
   const bytes = [];
   let [bits, held, size] = [0, 0, 9];
   const put = (code) => {
@@ -87,13 +88,13 @@ function pack(numbers, out) {
 }
 
 /**
- * A GIF that repeats for ever.
+ * Encode a GIF that repeats for ever.
  * @param {Uint8ClampedArray[]} pictures red, green, blue, opacity of each pixel @param {number} delay [s] of each
  * @returns {number[]} its bytes
  */
-export function gifOf(pictures, width, height, delay) {
-  const palette = paletteOf(pictures);
-  const nearest = finder(palette);
+export function encodeGif(pictures, width, height, delay) {
+  const palette = choosePalette(pictures);
+  const nearest = makeColourFinder(palette);
   const two = (n) => [n & 255, n >> 8];
   const letters = (text) => [...text].map((letter) => letter.charCodeAt(0));
   const out = [...letters("GIF89a"), ...two(width), ...two(height), 0xf7, 0, 0];
@@ -105,12 +106,12 @@ export function gifOf(pictures, width, height, delay) {
     const whole = new Uint8Array(width * height);
     for (let p = 0; p < numbers.length; p += 1) {
       whole[p] = nearest(data, 4 * p);
-      numbers[p] = before && before[p] === whole[p] ? SAME : whole[p];
+      numbers[p] = before && before[p] === whole[p] ? UNCHANGED : whole[p];
     }
     before = whole;
-    out.push(0x21, 0xf9, 4, 0x05, ...two(Math.round(100 * delay)), SAME, 0);
+    out.push(0x21, 0xf9, 4, 0x05, ...two(Math.round(100 * delay)), UNCHANGED, 0);
     out.push(0x2c, 0, 0, 0, 0, ...two(width), ...two(height), 0, 8);
-    pack(numbers, out);
+    compressLzw(numbers, out);
   }
   out.push(0x3b);
   return out;

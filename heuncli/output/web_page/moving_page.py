@@ -125,7 +125,7 @@ def make_page_data(
         ),
         "acting": make_acting_loads(study, frames.times, labels, stated_errors),
         "blocks": make_blocks(results, labels, stated_errors),
-        "blows": list(_iter_impacts(original, frames, labels, stated_errors)),
+        "impulses": list(_iter_impacts(original, frames, labels, stated_errors)),
         "sections": make_sections(spec, results, labels, stated_errors),
         "cutting": split_heading(SECTIONS.heading(results, labels)),
         "foundation": _find_moment_center(results),
@@ -188,7 +188,7 @@ def _find_moment_center(results: Results) -> list[float] | None:
 
 def _iter_time_marks(results: Results, frames: PageFrames) -> Iterator[dict[str, Any]]:
     """Yield the impacts and events within the frames: name, time and frame."""
-    found = [(float(impact["time"]), ", ".join(impact["names"]) or "blow") for impact in results.impulses]
+    found = [(float(impact["time"]), ", ".join(impact["names"]) or "impulse") for impact in results.impulses]
     for name, event in results.events.items():
         words = event.get("to", ())
         for k, time in enumerate(np.asarray(event["time"]).tolist()):

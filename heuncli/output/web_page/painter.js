@@ -1,7 +1,7 @@
-/** @file What is nearer hides what is farther: faces, balls and lines, gathered, then painted, the farthest first. */
+/** @file Painter's algorithm: collects faces, balls and lines, and paints the farthest first. */
 
-const WIDER = 0.4; // pixels: how far beyond its sides a face is painted, so that no seam shows between two
-const SHARPEST = 0.3; // where two sides meet in a point, that does not stand out farther
+const OVERLAP = 0.4; // pixels: how far beyond its sides a face is painted, so that no seam shows between two
+const MIN_CORNER = 0.3; // where two sides meet in a point, that does not stand out farther
 
 /**
  * @typedef {object} Item
@@ -9,28 +9,28 @@ const SHARPEST = 0.3; // where two sides meet in a point, that does not stand ou
  * @property {(pen: CanvasRenderingContext2D, opaque: number) => void} paint what paints it
  */
 
-/** Go round a polygon: right, down, right, down, ... [pixels]. */
-function round(pen, points) {
+/** Trace a polygon: right, down, right, down, ... [pixels]. */
+function tracePolygon(pen, points) {
   pen.beginPath();
   pen.moveTo(points[0], points[1]);
   for (let k = 2; k < points.length; k += 2) pen.lineTo(points[k], points[k + 1]);
 }
 
-/** The direction out of a polygon that looks at the viewer, across one of its sides; of unit length. */
-function outOf(points, k, next) {
+/** Find the outward unit normal of a side of a polygon that faces the viewer. */
+function findOutwardNormal(points, k, next) {
   const [dx, dy] = [points[next] - points[k], points[next + 1] - points[k + 1]];
   const size = Math.sqrt(dx * dx + dy * dy) || 1;
   return [-dy / size, dx / size];
 }
 
-/** A polygon whose sides are moved out. @param {number[]} points */
-function widened(points) {
+/** Move the sides of a polygon outwards, so that neighbours overlap. @param {number[]} points */
+function widenPolygon(points) {
   const n = points.length;
   const found = new Array(n);
-  let [ax, ay] = outOf(points, n - 2, 0);
+  let [ax, ay] = findOutwardNormal(points, n - 2, 0);
   for (let k = 0; k < n; k += 2) {
-    const [bx, by] = outOf(points, k, (k + 2) % n);
-    const share = WIDER / Math.max(SHARPEST, 1 + ax * bx + ay * by);
+    const [bx, by] = findOutwardNormal(points, k, (k + 2) % n);
+    const share = OVERLAP / Math.max(MIN_CORNER, 1 + ax * bx + ay * by);
     found[k] = points[k] + share * (ax + bx);
     found[k + 1] = points[k + 1] + share * (ay + by);
     [ax, ay] = [bx, by];
@@ -38,8 +38,8 @@ function widened(points) {
   return found;
 }
 
-/** Fill what was gone round, as opaque as bodies are. */
-function filled(pen, fill, opaque) {
+/** Fill the traced path. */
+function fillPath(pen, fill, opaque) {
   if (opaque === 0) return;
   pen.fillStyle = fill;
   pen.globalAlpha = opaque;
@@ -47,7 +47,7 @@ function filled(pen, fill, opaque) {
   pen.globalAlpha = 1;
 }
 
-/** A painter. */
+/** Collects the items of a picture, then paints them. */
 export class Painter {
   /** @param {CanvasRenderingContext2D} pen */
   constructor(pen) {
@@ -57,17 +57,17 @@ export class Painter {
   }
 
   /**
-   * A face with some of its sides drawn.
+   * Add a face with some of its sides drawn.
    * @param {number} near @param {number[]} points @param {string} fill
    * @param {number[]} sides pieces of line: from right, down, to right, down, ... @param {string} line
-   * @param {number} own how opaque it is itself, 0 to 1
+   * @param {number} opacity how opaque the face is itself, 0 to 1
    */
-  face(near, points, fill, sides, line, own) {
+  face(near, points, fill, sides, line, opacity) {
     this.items.push({
       near,
       paint: (pen, opaque) => {
-        round(pen, own * opaque === 1 ? widened(points) : points);
-        filled(pen, fill, own * opaque);
+        tracePolygon(pen, opacity * opaque === 1 ? widenPolygon(points) : points);
+        fillPath(pen, fill, opacity * opaque);
         if (!sides.length) return;
         pen.beginPath();
         for (let k = 0; k < sides.length; k += 4) {
@@ -81,7 +81,7 @@ export class Painter {
     });
   }
 
-  /** A ball, lit from above left. @param {string[]} shades from dark to bright */
+  /** Add a ball, lit from above left. @param {string[]} shades from dark to bright */
   ball(near, x, y, radius, shades, line) {
     this.items.push({
       near,
@@ -90,7 +90,7 @@ export class Painter {
         pen.arc(x, y, radius, 0, 2 * Math.PI);
         const light = pen.createRadialGradient(x - 0.37 * radius, y - 0.5 * radius, 0, x, y, 1.15 * radius);
         shades.forEach((shade, k) => light.addColorStop(1 - k / (shades.length - 1), shade));
-        filled(pen, light, opaque);
+        fillPath(pen, light, opaque);
         pen.strokeStyle = line;
         pen.lineWidth = 1;
         pen.stroke();
@@ -98,12 +98,12 @@ export class Painter {
     });
   }
 
-  /** A line. */
+  /** Add a polyline. */
   line(near, points, line, width) {
     this.items.push({
       near,
       paint: (pen) => {
-        round(pen, points);
+        tracePolygon(pen, points);
         pen.strokeStyle = line;
         pen.lineWidth = width;
         pen.stroke();
@@ -111,12 +111,12 @@ export class Painter {
     });
   }
 
-  /** Anything else, by what paints it. @param {number} near [m] @param {() => void} paint */
+  /** Add an item that paints itself. @param {number} near [m] @param {() => void} paint */
   add(near, paint) {
     this.items.push({ near, paint });
   }
 
-  /** Paint all that was gathered, the farthest first. @param {number} opaque how opaque bodies are, 0 to 1 */
+  /** Paint all items, the farthest first. @param {number} opaque how opaque bodies are, 0 to 1 */
   paint(opaque) {
     this.items.sort((a, b) => a.near - b.near);
     this.pen.lineJoin = "round";

@@ -1,11 +1,11 @@
-/** @file Which instant is shown: a solved frame, and while the machine plays how far it is on the way to the next. */
+/** @file The player: which frame is shown, and during playback how far the motion is on the way to the next. */
 
-/** How often a still follows a still where motion is to be reduced [ms]. */
-const STILLS = 400;
-/** How long a run should take at the speed that is proposed [s]. */
-const LONG_ENOUGH = 1.5;
+/** Time between pictures if the user's system asks for reduced motion [ms]. */
+const REDUCED_INTERVAL = 400;
+/** The shortest playback that can be followed [s]. */
+const MIN_PLAYBACK = 1.5;
 
-/** The speeds to choose from: times true speed, as words. */
+/** The speeds to choose from: factor of real time, words. */
 export const SPEEDS = [
   [100, "100 times faster"],
   [10, "10 times faster"],
@@ -17,35 +17,38 @@ export const SPEEDS = [
   [0.0001, "10000 times slower"],
 ];
 
-/** The speed that is proposed for a run that lasts so long [s]: true speed, unless nothing could be seen. */
-export function speedFor(duration) {
-  const wanted = SPEEDS.find(([speed]) => duration / speed >= LONG_ENOUGH && (speed <= 1 || duration / speed >= 20));
-  return (wanted ?? SPEEDS[SPEEDS.length - 1])[0];
+/** Propose a speed for a duration [s]: real time, unless that is too fast to follow or takes very long. */
+export function proposeSpeed(duration) {
+  const choice = SPEEDS.find(([speed]) => duration / speed >= MIN_PLAYBACK && (speed <= 1 || duration / speed >= 20));
+  return (choice ?? SPEEDS[SPEEDS.length - 1])[0];
 }
 
-/** The player. @property {number} frame @property {number} share of the way to the next frame, 0 where it stands */
+/**
+ * Moves through the frames.
+ * @property {number} frame @property {number} share of the way to the next frame, 0 where it stands
+ */
 export class Player {
-  /** @param {Float64Array} time of the frames [s] @param {() => void} changed called after every change */
-  constructor(time, changed) {
+  /** @param {Float64Array} time of the frames [s] @param {() => void} redraw called after every change */
+  constructor(time, redraw) {
     this.time = time;
-    this.changed = changed;
+    this.redraw = redraw;
     this.frame = 0;
     this.share = 0;
     this.playing = false;
     this.repeats = true;
     this.speed = 1;
-    this.still = matchMedia("(prefers-reduced-motion: reduce)");
+    this.reducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
   }
 
-  /** Stand at a frame. @param {number} frame */
+  /** Show a frame. @param {number} frame */
   show(frame) {
     this.frame = Math.min(this.time.length - 1, Math.max(0, frame));
     this.share = 0;
-    this.at = this.time[this.frame];
-    this.changed();
+    this.instant = this.time[this.frame];
+    this.redraw();
   }
 
-  /** Halt, and stand at a frame. @param {number} frame */
+  /** Halt at a frame. @param {number} frame */
   halt(frame = this.frame) {
     this.playing = false;
     this.show(frame);
@@ -59,43 +62,43 @@ export class Player {
     }
     if (this.frame === this.time.length - 1) this.show(0);
     this.playing = true;
-    this.at = this.time[this.frame];
-    this.last = null;
+    this.instant = this.time[this.frame];
+    this.lastImage = null;
     requestAnimationFrame((now) => this.step(now));
-    this.changed();
+    this.redraw();
   }
 
-  /** One image later. @param {number} now [ms] */
+  /** Advance to the next image. @param {number} now [ms] */
   step(now) {
     if (!this.playing) return;
-    const passed = this.last === null ? 0 : now - this.last;
-    if (this.last === null || !this.still.matches || passed >= STILLS) {
-      this.last = now;
+    const passed = this.lastImage === null ? 0 : now - this.lastImage;
+    if (this.lastImage === null || !this.reducedMotion.matches || passed >= REDUCED_INTERVAL) {
+      this.lastImage = now;
       this.advance((passed / 1000) * this.speed);
     }
     requestAnimationFrame((later) => this.step(later));
   }
 
-  /** On by so much of the run's time [s]. */
-  advance(by) {
+  /** Advance by a part of the run's time [s]. @param {number} duration */
+  advance(duration) {
     const end = this.time[this.time.length - 1];
     const span = end - this.time[0];
-    this.at += by;
-    if (this.at >= end) {
+    this.instant += duration;
+    if (this.instant >= end) {
       if (!this.repeats) {
         this.halt(this.time.length - 1);
         return;
       }
-      this.at = this.time[0] + ((this.at - this.time[0]) % span);
+      this.instant = this.time[0] + ((this.instant - this.time[0]) % span);
     }
-    this.frame = this.frameAt(this.at);
+    this.frame = this.findFrame(this.instant);
     const step = this.time[this.frame + 1] - this.time[this.frame];
-    this.share = this.still.matches || !(step > 0) ? 0 : (this.at - this.time[this.frame]) / step;
-    this.changed();
+    this.share = this.reducedMotion.matches || !(step > 0) ? 0 : (this.instant - this.time[this.frame]) / step;
+    this.redraw();
   }
 
-  /** The last frame that is not after an instant [s]. */
-  frameAt(t) {
+  /** Find the last frame at or before an instant [s]. */
+  findFrame(t) {
     let [low, high] = [0, this.time.length - 1];
     while (low < high) {
       const middle = (low + high + 1) >> 1;
@@ -105,9 +108,9 @@ export class Player {
     return low;
   }
 
-  /** The frame nearest to an instant [s]. */
-  nearest(t) {
-    const k = this.frameAt(t);
+  /** Find the frame nearest to an instant [s]. */
+  findNearestFrame(t) {
+    const k = this.findFrame(t);
     const next = this.time[k + 1];
     return next !== undefined && next - t < t - this.time[k] ? k + 1 : k;
   }

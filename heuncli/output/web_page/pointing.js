@@ -1,4 +1,4 @@
-/** @file Turning, zooming and shifting the machine: by mouse, finger and keys. */
+/** @file Rotates, zooms and pans the machine by mouse, fingers and keys. */
 
 const TURN = 0.008; // rad a pixel
 const KEY_TURN = 0.1; // rad a key
@@ -7,10 +7,10 @@ export const ZOOM = 1.15; // of one step
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /**
- * Let a canvas be turned.
- * @param {HTMLCanvasElement} canvas @param {import("./view.js").View} view @param {() => void} changed
+ * Let pointers on a canvas move the view.
+ * @param {HTMLCanvasElement} canvas @param {import("./view.js").View} view @param {() => void} redraw
  */
-export function listenToPointers(canvas, view, changed) {
+export function listenToPointers(canvas, view, redraw) {
   /** @type {Map<number, number[]>} fingers or the mouse, by their numbers */
   const held = new Map();
   const spread = () => {
@@ -36,7 +36,7 @@ export function listenToPointers(canvas, view, changed) {
     } else {
       view.turn(-TURN * dx, TURN * dy);
     }
-    changed();
+    redraw();
   });
   for (const name of ["pointerup", "pointercancel"]) {
     canvas.addEventListener(name, (event) => held.delete(event.pointerId));
@@ -47,20 +47,20 @@ export function listenToPointers(canvas, view, changed) {
     (event) => {
       event.preventDefault();
       view.magnify(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), event.offsetX, event.offsetY);
-      changed();
+      redraw();
     },
     { passive: false },
   );
 }
 
-/** What a key does to the view; whether it does anything. @param {KeyboardEvent} event */
-export function viewKey(event, view) {
+/** Move the view by a key; returns whether the key has a meaning. @param {KeyboardEvent} event */
+export function moveViewByKey(event, view) {
   const way = ARROWS[event.key];
   if (way && event.shiftKey) view.move(KEY_SHIFT * way[0], KEY_SHIFT * way[1]);
   else if (way) view.turn(KEY_TURN * way[0], -KEY_TURN * way[1]);
   else if (event.key === "+" || event.key === "=") view.magnify(ZOOM);
   else if (event.key === "-") view.magnify(1 / ZOOM);
-  else if (event.key === "0") view.begin();
+  else if (event.key === "0") view.reset();
   else return false;
   return true;
 }

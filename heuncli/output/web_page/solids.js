@@ -1,12 +1,12 @@
-/** @file Bodies: faces of their shapes with light from above left, their edges; bars where a body has no shapes. */
+/** @file Paints bodies: the faces and edges of their shapes, lit from above left; bars where a body has no shapes. */
 
-import { SHADES, kindsOf, tints } from "./colours.js";
+import { SHADES, getBodyKinds, getTints } from "./colours.js";
 import { locatePoint } from "./poses.js";
 
-const EDGE = 0.8; // cosine of the angle between two faces below which the side between them is an edge
+const MAX_SMOOTH = 0.8; // cosine of the angle between two faces below which the side between them is an edge
 
-/** The direction in which a face looks, by all of its corners. */
-function outward(corners, face) {
+/** Compute the unit normal of a face from all of its corners (Newell's method). */
+function computeFaceNormal(corners, face) {
   const n = [0, 0, 0];
   for (let k = 0; k < face.length; k += 1) {
     const [i, j] = [3 * face[k], 3 * face[(k + 1) % face.length]];
@@ -20,14 +20,14 @@ function outward(corners, face) {
 }
 
 /**
- * The sides of each face: its two corners, the face beyond it (-1: none), whether it is an edge. Made once.
+ * Get the sides of each face: its corners, the face beyond (-1: none), whether it is an edge. Computed once.
  * @param {object} surface @returns {{i: number, j: number, beyond: number, edge: boolean}[][]}
  */
-function sidesOf(surface) {
+function getSides(surface) {
   if (surface.sides) return surface.sides;
   const { corners, faces } = surface;
   const known = new Map();
-  const looks = faces.map((face) => outward(corners, face));
+  const looks = faces.map((face) => computeFaceNormal(corners, face));
   const key = (i, j) => (i < j ? `${i},${j}` : `${j},${i}`);
   surface.sides = faces.map((face, f) =>
     face.map((i, k) => {
@@ -38,7 +38,7 @@ function sidesOf(surface) {
         const along = looks[f].reduce((sum, c, a) => sum + c * looks[other.face][a], 0);
         other.beyond = f;
         side.beyond = other.face;
-        other.edge = side.edge = along < EDGE;
+        other.edge = side.edge = along < MAX_SMOOTH;
       }
       known.set(key(i, j), side);
       return side;
@@ -50,18 +50,18 @@ function sidesOf(surface) {
 const LIGHT = [-0.37, 0.56, 0.74];
 const BAR = 6; // pixels: how thick a body without shapes is drawn
 const ARM = 2; // pixels: lines on a body, and from its shapes to a point that lies off them
-const LIGHT_AS_AIR = 0.45; // how opaque the plate is that is drawn between the points of a body without shapes
-const BEFORE = 0.004; // of the scene: how much nearer a bar is taken than its rim
+const PLATE_OPACITY = 0.45; // how opaque the plate is that is drawn between the points of a body without shapes
+const BAR_OFFSET = 0.004; // of the scene: how much nearer a bar is taken than its rim
 
 /**
- * Corners on the screen: right, down [pixels], near [m], one after the other.
+ * Project corners to the screen: right, down [pixels], near [m], one after the other.
  * @param {Float32Array} corners body axes [m] @param {object} pose @param {object} view
  * @returns {Float64Array}
  */
-function seen(corners, pose, view) {
+function projectCorners(corners, pose, view) {
   const { place, R } = pose;
   const at = view.project(place);
-  const [a, b, c] = [0, 1, 2].map((k) => view.direct([R[k], R[3 + k], R[6 + k]]));
+  const [a, b, c] = [0, 1, 2].map((k) => view.projectVector([R[k], R[3 + k], R[6 + k]]));
   const found = new Float64Array(corners.length);
   for (let i = 0; i < corners.length; i += 3) {
     const [x, y, z] = [corners[i], corners[i + 1], corners[i + 2]];
@@ -72,8 +72,11 @@ function seen(corners, pose, view) {
   return found;
 }
 
-/** How bright a face is, 0 to 1, by three of its corners. @param {Float64Array} c @param {number[]} face */
-function brightness(c, face, scale) {
+/**
+ * Compute the brightness of a face, 0 to 1, from three of its corners.
+ * @param {Float64Array} c @param {number[]} face
+ */
+function computeBrightness(c, face, scale) {
   const [i, j, k] = [3 * face[0], 3 * face[1], 3 * face[2]];
   const a = [c[j] - c[i], c[i + 1] - c[j + 1], scale * (c[j + 2] - c[i + 2])];
   const b = [c[k] - c[i], c[i + 1] - c[k + 1], scale * (c[k + 2] - c[i + 2])];
@@ -83,8 +86,10 @@ function brightness(c, face, scale) {
   return Math.max(0, (n[0] * LIGHT[0] + n[1] * LIGHT[1] + n[2] * LIGHT[2]) / size);
 }
 
-/** Twice the area of a face on the screen: negative where it looks at the viewer, for down is positive there. */
-function areaOf(c, face) {
+/**
+ * Compute twice the area of a face on the screen; negative if it faces the viewer, since the screen's y points down.
+ */
+function computeScreenArea(c, face) {
   let area = 0;
   for (let k = 0; k < face.length; k += 1) {
     const i = 3 * face[k];
@@ -94,12 +99,12 @@ function areaOf(c, face) {
   return area;
 }
 
-/** The faces of a surface that look at the viewer, with the edges between them and at the outline. */
+/** Paint the faces of a surface that face the viewer, with sharp edges and the outline. */
 function paintFaces(painter, surface, pose, view, { shades, edge }) {
   const { faces } = surface;
-  const sides = sidesOf(surface);
-  const c = seen(surface.corners, pose, view);
-  const looks = faces.map((face) => areaOf(c, face) < 0);
+  const sides = getSides(surface);
+  const c = projectCorners(surface.corners, pose, view);
+  const looks = faces.map((face) => computeScreenArea(c, face) < 0);
   faces.forEach((face, f) => {
     if (!looks[f]) return;
     const points = new Array(2 * face.length);
@@ -114,21 +119,21 @@ function paintFaces(painter, surface, pose, view, { shades, edge }) {
     for (const { i, j, beyond, edge: sharp } of sides[f]) {
       if (sharp || !looks[beyond]) drawn.push(c[i], c[i + 1], c[j], c[j + 1]);
     }
-    const bright = Math.round(brightness(c, face, view.scale) * (SHADES - 1));
+    const bright = Math.round(computeBrightness(c, face, view.scale) * (SHADES - 1));
     painter.face(near, points, shades[bright], drawn, edge, 1);
   });
 }
 
-/** A polyline of a body, a piece at a time, so that each is hidden by itself. */
+/** Paint a polyline of a body segment by segment, so that each has its own depth. */
 function paintPieces(line, pose, view, paint) {
-  const c = seen(line, pose, view);
+  const c = projectCorners(line, pose, view);
   for (let i = 0; i + 5 < c.length; i += 3) {
     paint((c[i + 2] + c[i + 5]) / 2, [c[i], c[i + 1], c[i + 3], c[i + 4]]);
   }
 }
 
-/** The corners of the outline of points on the screen, counter-clockwise. @param {number[][]} points */
-function outlineOf(points) {
+/** Compute the convex hull of points of the screen (Andrew's monotone chain). @param {number[][]} points */
+function computeConvexHull(points) {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const half = (list) => {
     const found = [];
@@ -145,32 +150,32 @@ function outlineOf(points) {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
-/** A body without shapes: bars through its points, and a plate between three and more; a single point is a dot. */
+/** Paint a body without shapes: bars through its points, a plate between three or more, a dot for one. */
 function paintBars(painter, line, pose, view, { edge, bar, shades }) {
   if (line.length > 6) {
-    const c = seen(line, pose, view);
+    const c = projectCorners(line, pose, view);
     const places = [];
     let near = 0;
     for (let i = 0; i < c.length; i += 3) {
       places.push([c[i], c[i + 1]]);
       near += (3 * c[i + 2]) / c.length;
     }
-    painter.face(near, outlineOf(places).flat(), shades[SHADES - 3], [], edge, LIGHT_AS_AIR);
+    painter.face(near, computeConvexHull(places).flat(), shades[SHADES - 3], [], edge, PLATE_OPACITY);
   }
   paintPieces(line, pose, view, (near, points) => {
     painter.line(near, points, edge, BAR + 2);
-    painter.line(near + BEFORE * view.radius, points, bar, BAR);
+    painter.line(near + BAR_OFFSET * view.radius, points, bar, BAR);
   });
   if (line.length === 3) {
-    const [x, y, near] = seen(line, pose, view);
+    const [x, y, near] = projectCorners(line, pose, view);
     painter.line(near, [x, y, x, y], edge, 2 * BAR);
   }
 }
 
-/** All bodies, given to the painter. */
+/** Give the painter all bodies. */
 export function paintBodies(painter, scene, poses, view, colours) {
   scene.bodies.forEach((body, k) => {
-    const own = tints(kindsOf(scene)[k], colours.dark);
+    const own = getTints(getBodyKinds(scene)[k], colours.dark);
     for (const surface of body.surfaces) {
       if (surface.ball) {
         const [x, y, near] = view.project(locatePoint(poses, k, surface.ball.center));

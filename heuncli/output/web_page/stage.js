@@ -1,18 +1,21 @@
-/** @file The machine on its canvas: bodies and symbols by depth, then arrows and loads, then all words. */
+/** @file Draws the machine: bodies and symbols by depth, then arrows and section loads, then all labels. */
 
+import { drawArrowScales, drawArrows } from "./arrows.js";
+import { paintLine } from "./load_symbols.js";
 import { drawLoad, drawLoadScale } from "./loads.js";
+import { drawActing, drawMark, nameMark } from "./marks.js";
 import { Painter } from "./painter.js";
-import { drawPaths, posesAt, locatePoint } from "./poses.js";
+import { drawPaths, computePoses, locatePoint } from "./poses.js";
 import { paintBodies } from "./solids.js";
-import { drawActing, drawMark, nameMark, paintBelt, paintRope } from "./running.js";
-import { cleared } from "./strokes.js";
-import { drawCorner, drawGroundPoint, paintJoint, paintLine, paintPath } from "./symbols.js";
-import { drawArrows, drawScale } from "./wrenches.js";
+import { paintBelt, paintRope } from "./ropes.js";
+import { clearCanvas } from "./strokes.js";
+import { drawCorner, drawGroundPoint, paintJoint, paintPath } from "./symbols.js";
 
-const MANY = 40; // joints
 
-/** Where a body's name stands: the middle of what is drawn of it, body axes [m]. */
-function middleOf(body) {
+const MANY_JOINTS = 40; // joints
+
+/** Get the middle of what is drawn of a body, body axes [m], where its name stands. */
+function getMiddle(body) {
   if (body.middle) return body.middle;
   const solid = body.surfaces.map((surface) => surface.ball?.center ?? surface.corners);
   const clouds = solid.length ? solid : body.bars;
@@ -26,10 +29,10 @@ function middleOf(body) {
   return body.middle;
 }
 
-/** Names of bodies and joints. @param {boolean} areNamed whether the arrows name the joints */
+/** Write the names of bodies and joints. @param {boolean} areNamed whether the arrows name the joints */
 function drawNames(labels, scene, poses, view, colours, areNamed) {
   scene.bodies.forEach((body, k) => {
-    const [x, y] = view.project(locatePoint(poses, k, middleOf(body)));
+    const [x, y] = view.project(locatePoint(poses, k, getMiddle(body)));
     labels.add(`body ${body.name}`, body.caption, x, y, colours.ink, 1.2);
   });
   for (const joint of areNamed ? [] : scene.joints) {
@@ -38,46 +41,46 @@ function drawNames(labels, scene, poses, view, colours, areNamed) {
   }
 }
 
-/** What is hidden by what is before it: bodies, symbols, ropes. */
-function paintMachine(pen, scene, poses, view, shown, colours) {
+/** Paint bodies, ropes and symbols by depth; the symbols of marks stand before all. */
+function paintMachine(pen, scene, poses, view, options, colours) {
   const painter = new Painter(pen);
-  const small = scene.joints.length > MANY;
+  const small = scene.joints.length > MANY_JOINTS;
   paintBodies(painter, scene, poses, view, colours);
   for (const path of scene.paths) paintPath(painter, view, path, colours);
   for (const belt of scene.belts) paintBelt(painter, view, poses, belt, colours);
-  for (const rope of scene.ropes) paintRope(painter, view, poses, rope, shown, colours);
+  for (const rope of scene.ropes) paintRope(painter, view, poses, rope, options, colours);
   for (const line of scene.lines) paintLine(painter, view, poses, scene, line, colours);
   for (const joint of scene.joints) paintJoint(painter, view, poses, scene, joint, colours, small);
-  painter.paint(shown.look);
-  for (const mark of scene.marks) drawMark(pen, view, scene.symbols[mark.symbol], mark, shown, colours);
+  painter.paint(options.opacity);
+  for (const mark of scene.marks) drawMark(pen, view, scene.symbols[mark.symbol], mark, options, colours);
   for (const own of small ? [] : scene.acting) drawActing(pen, view, poses, scene, own, colours);
 }
 
 /**
- * The machine at a frame.
+ * Draw the machine at a frame.
  * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./view.js").View} view
- * @param {object} shown the frame and what is chosen to be drawn @param {import("./labels.js").LabelList} labels
+ * @param {object} options the frame and what is chosen to be drawn @param {import("./labels.js").LabelList} labels
  */
-export function drawMachine(canvas, data, view, shown, colours, labels) {
-  const { pen, width, height } = cleared(canvas);
-  view.fill(width, height);
+export function drawMachine(canvas, data, view, options, colours, labels) {
+  const { pen, width, height } = clearCanvas(canvas);
+  view.resize(width, height);
   labels.begin(pen, width, height, view.fits);
   const { scene } = data;
-  const poses = posesAt(scene, shown.frame, shown.share);
+  const poses = computePoses(scene, options.frame, options.share);
   for (const point of scene.ground) drawGroundPoint(pen, view, point.at, colours);
-  if (shown.paths) drawPaths(pen, view, data, colours);
-  paintMachine(pen, scene, poses, view, shown, colours);
-  if (shown.names) {
-    for (const mark of scene.marks) nameMark(labels, view, mark, shown, colours);
-    drawNames(labels, scene, poses, view, colours, shown.values && shown.choice?.joints);
+  if (options.paths) drawPaths(pen, view, data, colours);
+  paintMachine(pen, scene, poses, view, options, colours);
+  if (options.names) {
+    for (const mark of scene.marks) nameMark(labels, view, mark, options, colours);
+    drawNames(labels, scene, poses, view, colours, options.values && options.choice?.joints);
   }
-  if (shown.load) drawLoad(pen, view, poses, { ...shown.load, ...shown }, colours, labels);
+  if (options.load) drawLoad(pen, view, poses, { ...options.load, ...options }, colours, labels);
   let line = 0;
-  if (shown.choice) {
-    drawArrows(pen, view, poses, shown, colours, labels);
-    line = drawScale(pen, view, shown.choice, colours, shown.size, labels);
+  if (options.choice) {
+    drawArrows(pen, view, poses, options, colours, labels);
+    line = drawArrowScales(pen, view, options.choice, colours, options.size, labels);
   }
-  if (shown.load) drawLoadScale(pen, view, { ...shown.load, size: shown.size }, colours, line, labels);
+  if (options.load) drawLoadScale(pen, view, { ...options.load, size: options.size }, colours, line, labels);
   drawCorner(pen, view, scene.gravity, colours, labels);
   labels.write(colours.panel);
 }

@@ -1,11 +1,11 @@
-/** @file What is drawn in pixels: canvases as sharp as the screen is, lines, arrows, words. */
+/** @file Draws in pixels: lines, shapes, arrows and text on sharp canvases. */
 
-/** The font of all words on canvases. */
+/** The font of all text on canvases. */
 export const FONT = '12px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
 const HEAD = 9;
 
-/** A polyline. @param {number[][]} points */
-export function polyline(pen, points, colour, width = 1.5, dash = []) {
+/** Draw a polyline. @param {number[][]} points */
+export function drawPolyline(pen, points, colour, width = 1.5, dash = []) {
   pen.beginPath();
   points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
   pen.strokeStyle = colour;
@@ -15,8 +15,8 @@ export function polyline(pen, points, colour, width = 1.5, dash = []) {
   pen.setLineDash([]);
 }
 
-/** A closed shape. @param {number[][]} points */
-export function shape(pen, points, fill, line, width = 1.5) {
+/** Draw a closed shape. @param {number[][]} points */
+export function drawShape(pen, points, fill, line, width = 1.5) {
   pen.beginPath();
   points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
   pen.closePath();
@@ -27,8 +27,8 @@ export function shape(pen, points, fill, line, width = 1.5) {
   pen.stroke();
 }
 
-/** A ring. */
-export function ring(pen, x, y, radius, fill, line, width = 1.6) {
+/** Draw a circle. */
+export function drawRing(pen, x, y, radius, fill, line, width = 1.6) {
   pen.beginPath();
   pen.arc(x, y, radius, 0, 2 * Math.PI);
   pen.fillStyle = fill;
@@ -38,8 +38,8 @@ export function ring(pen, x, y, radius, fill, line, width = 1.6) {
   pen.stroke();
 }
 
-/** Words with a rim of the ground's colour, so that they can be read on anything; x: where they begin. */
-export function words(pen, text, x, y, colour, paper) {
+/** Draw text with a rim of the background's colour, so that it is readable on anything; x: its left end. */
+export function drawText(pen, text, x, y, colour, paper) {
   pen.font = FONT;
   pen.textAlign = "left";
   pen.textBaseline = "middle";
@@ -52,26 +52,26 @@ export function words(pen, text, x, y, colour, paper) {
 }
 
 /**
- * An arrow, with two heads where it is a moment.
+ * Draw an arrow; a moment has two heads.
  * @param {number[]} from @param {number[]} to on the screen [pixels]; near: toward the viewer [pixels]
  */
-export function arrow(pen, from, to, toward, colour, paper, heads = 1, dash = []) {
+export function drawArrow(pen, from, to, toward, colour, paper, heads = 1, dash = []) {
   const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
   const length = Math.hypot(dx, dy);
   if (length < 4) {
-    if (Math.abs(toward) >= 8) endOn(pen, from, toward, colour, paper);
+    if (Math.abs(toward) >= 8) drawArrowEndOn(pen, from, toward, colour, paper);
     return;
   }
   const [ux, uy] = [dx / length, dy / length];
   const head = Math.min(HEAD, 0.6 * length);
   const neck = [to[0] - 0.8 * head * ux, to[1] - 0.8 * head * uy];
-  polyline(pen, [from, neck], paper, 5);
-  polyline(pen, [from, neck], colour, 2.4, dash);
+  drawPolyline(pen, [from, neck], paper, 5);
+  drawPolyline(pen, [from, neck], colour, 2.4, dash);
   for (let k = 0; k < heads; k += 1) {
     const [x, y] = [to[0] - 0.75 * k * head * ux, to[1] - 0.75 * k * head * uy];
     const [bx, by] = [x - head * ux, y - head * uy];
     const w = 0.42 * head;
-    shape(
+    drawShape(
       pen,
       [
         [x, y],
@@ -85,13 +85,13 @@ export function arrow(pen, from, to, toward, colour, paper, heads = 1, dash = []
   }
 }
 
-/** An arrow that is seen from its head (a dot) or from its tail (a cross). */
-function endOn(pen, [x, y], toward, colour, paper) {
-  ring(pen, x, y, 7, paper, colour, 2.2);
+/** Draw an arrow seen from its tip (a dot) or from its tail (a cross). */
+function drawArrowEndOn(pen, [x, y], toward, colour, paper) {
+  drawRing(pen, x, y, 7, paper, colour, 2.2);
   if (toward > 0) {
-    ring(pen, x, y, 2.2, colour, colour, 1);
+    drawRing(pen, x, y, 2.2, colour, colour, 1);
   } else {
-    polyline(
+    drawPolyline(
       pen,
       [
         [x - 4.5, y - 4.5],
@@ -100,7 +100,7 @@ function endOn(pen, [x, y], toward, colour, paper) {
       colour,
       2,
     );
-    polyline(
+    drawPolyline(
       pen,
       [
         [x - 4.5, y + 4.5],
@@ -113,11 +113,11 @@ function endOn(pen, [x, y], toward, colour, paper) {
 }
 
 /**
- * The pen of a canvas, cleared; its units are the pixels of the page.
+ * Clear a canvas and return its pen; the units are CSS pixels.
  * @param {HTMLCanvasElement} canvas
  * @returns {{pen: CanvasRenderingContext2D, width: number, height: number}}
  */
-export function cleared(canvas) {
+export function clearCanvas(canvas) {
   const { clientWidth: width, clientHeight: height } = canvas;
   const fine = window.devicePixelRatio || 1;
   const [w, h] = [Math.round(width * fine), Math.round(height * fine)];

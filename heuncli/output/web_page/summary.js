@@ -1,16 +1,16 @@
-/** @file The summary: the greatest loads of the run, when they occur, and what they are at the frame that is shown. */
+/** @file The summary table: the greatest loads of the run, when they occur, and their values at the shown frame. */
 
-import { instant, formatAllDigits, formatNumber } from "./digits.js";
+import { formatInstant, formatAllDigits, formatNumber } from "./digits.js";
 import { makeElement } from "./elements.js";
-import { arrowChoices, largestOf, vectorAt } from "./wrenches.js";
-import { lengthOf } from "./vectors.js";
+import { listArrowChoices, getLargest, readVector } from "./arrow_choices.js";
+import { norm } from "./vectors.js";
 
-const MOST = 12; // rows
+const MAX_ROWS = 12; // rows
 const MOMENTS = new Set(["T", "M", "M1", "M2"]);
 const FORCES = new Set(["N", "Q", "Q1", "Q2"]);
-const LEAST = 1e-3; // of the greatest of its kind: what is smaller is left to the tables
+const MIN_SHARE = 1e-3; // of the greatest of its kind: what is smaller is left to the tables
 
-/** The frame at which a number is greatest, and how great it is. */
+/** Find the frame at which a number is greatest, and its value there. */
 function findGreatest(count, at) {
   let [best, most] = [0, 0];
   for (let k = 0; k < count; k += 1) {
@@ -20,15 +20,16 @@ function findGreatest(count, at) {
   return { frame: best, value: at(best), size: most };
 }
 
-/** The entry of a vector: its size over the frames. */
+/** Make the entry of a vector: its magnitude over the frames. */
 function makeVectorEntry({ row, name, vector }, count) {
-  const at = (frame) => (vector ? row.parts[0].values[frame] : lengthOf(vectorAt(row, frame)));
-  const own = row.path.startsWith("joints.") || row.path.startsWith("foundation.");
-  const caption = own && !vector ? row.caption : row.path.endsWith("moment") && !vector ? `${name}, moment` : name;
+  const at = (frame) => (vector ? row.parts[0].values[frame] : norm(readVector(row, frame)));
+  const isReaction = row.path.startsWith("joints.") || row.path.startsWith("foundation.");
+  const plain = row.path.endsWith("moment") && !vector ? `${name}, moment` : name;
+  const caption = isReaction && !vector ? row.caption : plain;
   return { caption, path: row.path, row, at, ...findGreatest(count, at) };
 }
 
-/** The greatest loads of a section: over all of its cuts. */
+/** Make the entries of a section: its greatest moment and force over all cuts. */
 function makeSectionEntries(section, count) {
   const n = section.cuts.length;
   const found = section.loads.map((load) => {
@@ -47,7 +48,7 @@ function makeSectionEntries(section, count) {
   return [...bending.slice(0, 1), ...forces.slice(0, 1)];
 }
 
-/** Loads whose names differ by digits alone in one row, with the greatest of them. */
+/** Group loads whose names differ in digits alone; the greatest of them stands for the group. */
 function groupAlike(list) {
   const groups = new Map();
   for (const load of list) {
@@ -62,23 +63,23 @@ function groupAlike(list) {
   });
 }
 
-/** The rows of the summary, the greatest of each kind first. */
+/** Make the rows of the summary, the greatest of each kind first. */
 function makeRows(data) {
   const { count } = data;
-  const choices = new Map(arrowChoices(data).map((choice) => [choice.key, choice.rows]));
+  const choices = new Map(listArrowChoices(data).map((choice) => [choice.key, choice.rows]));
   const collect = (key) => {
-    const vectors = (choices.get(key) ?? []).filter(({ row }) => largestOf(row) > 0);
+    const vectors = (choices.get(key) ?? []).filter(({ row }) => getLargest(row) > 0);
     const rows = vectors.map((each) => makeVectorEntry(each, count));
     const forces = rows.filter(({ path }) => !path.endsWith("moment")).sort((a, b) => b.size - a.size);
     const moments = rows.filter(({ path }) => path.endsWith("moment")).sort((a, b) => b.size - a.size);
-    return [forces, moments].flatMap((list) => list.filter(({ size }) => size > LEAST * list[0].size));
+    return [forces, moments].flatMap((list) => list.filter(({ size }) => size > MIN_SHARE * list[0].size));
   };
   const ground = collect("foundation");
   const loads = groupAlike([...collect("joints.force"), ...collect("couplings"), ...collect("forces")]);
   const sections = data.sections.flatMap((section) => makeSectionEntries(section, count));
-  const rest = MOST - Math.min(4, sections.length) - ground.length;
+  const rest = MAX_ROWS - Math.min(4, sections.length) - ground.length;
   const shown = loads.slice(0, Math.max(4, rest));
-  return [...shown, ...ground, ...sections].slice(0, MOST);
+  return [...shown, ...ground, ...sections].slice(0, MAX_ROWS);
 }
 
 /** The table. */
@@ -86,9 +87,9 @@ export class SummaryTable {
   /** @param {HTMLTableElement} table @param {object} data @param {object|null} crank the angle that names instants */
   constructor(table, data, crank, go) {
     this.cells = [];
-    const moving = data.count > 1;
+    const isMoving = data.count > 1;
     const head = makeElement("tr");
-    const titles = moving ? ["Load", "greatest", "unit", "at", "now"] : ["Load", "value", "unit"];
+    const titles = isMoving ? ["Load", "greatest", "unit", "at", "now"] : ["Load", "value", "unit"];
     head.append(...titles.map((name) => makeElement("th", name, { scope: "col", class: name })));
     const top = makeElement("thead");
     top.append(head);
@@ -100,9 +101,9 @@ export class SummaryTable {
       const all = `${formatAllDigits(value * row.size)} ${row.unit}`;
       line.append(makeElement("td", formatNumber(value * row.size, row.style), { title: all }));
       line.append(makeElement("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
-      if (moving) {
+      if (isMoving) {
         const turn = crank ? `${Math.round(crank.values[frame])}°` : "";
-        const when = `${instant(data.time[frame], span, 3)} s`;
+        const when = `${formatInstant(data.time[frame], span, 3)} s`;
         const button = makeElement("button", turn || when, { type: "button", title: when });
         button.setAttribute("aria-label", `Go to the greatest ${caption}, ${when}`);
         button.addEventListener("click", () => go(frame, path));
@@ -117,7 +118,7 @@ export class SummaryTable {
     table.replaceChildren(top, body);
   }
 
-  /** Write the numbers of a frame. @param {number} frame */
+  /** Show the numbers of a frame. @param {number} frame */
   show(frame) {
     for (const cell of this.cells) {
       const text = formatNumber(cell.at(frame) * cell.row.size, cell.row.style);

@@ -1,13 +1,13 @@
-/** @file The numbers of the frame that is shown: a cell for each, with its path and all its digits in SI. */
+/** @file The tables of all numbers at the shown frame; each cell also holds its path and its value in SI. */
 
 import { formatShort, formatAllDigits, formatNumber } from "./digits.js";
 import { makeElement } from "./elements.js";
-import { along } from "./loads.js";
-import { lengthOf } from "./vectors.js";
+import { getLoadsAlong } from "./loads.js";
+import { norm } from "./vectors.js";
 
 const COLUMNS = ["", "x", "y", "z", "value", ""];
 
-/** A cell that is written at each frame. */
+/** A cell whose number follows the frame. */
 class Cell {
   /** @param {string} path @param {(frame: number) => number} value SI @param {string} missing what stands for nan */
   constructor(path, value, size, style, missing = "open") {
@@ -24,14 +24,14 @@ class Cell {
     this.element.dataset.value = Number.isFinite(value) ? String(value) : "";
   }
 
-  /** All digits that the page holds, where somebody points at the number. */
+  /** Show all digits that the page holds when the pointer is on the number. */
   showDigits() {
     const value = Number(this.element.dataset.value) * this.size;
     this.element.title = this.element.dataset.value ? formatAllDigits(value) : "";
   }
 }
 
-/** Rows of one head. */
+/** Add a row that is a heading. */
 function addHeading(body, text, kind, note = "") {
   const row = makeElement("tr", "", { class: kind });
   const head = makeElement("th", text, { colspan: "6", scope: "rowgroup" });
@@ -61,26 +61,26 @@ export class NumberTable {
     table.append(head);
     data.sections.forEach((section, k) => this.addSection(section, k));
     for (const block of data.blocks) this.addBlock(block);
-    for (const blow of data.blows) blow.blocks.forEach((block) => this.addBlock(block));
+    for (const impulse of data.impulses) impulse.blocks.forEach((block) => this.addBlock(block));
   }
 
-  /** Show the tables of a kind alone. @param {string} kind joints, sections or all */
-  choose(kind) {
+  /** Show only the tables of a kind. @param {string} kind joints, sections or all */
+  showKind(kind) {
     for (const body of this.table.tBodies) body.hidden = kind !== "all" && body.dataset.kind !== kind;
   }
 
-  /** Whether there are tables of a kind. */
-  has(kind) {
+  /** Whether there is a table of a kind. */
+  hasKind(kind) {
     return [...this.table.tBodies].some((body) => body.dataset.kind === kind);
   }
 
-  /** A block of rows under its heading, which tells axes and signs. */
+  /** Add a block of rows under its heading, which states axes and signs. */
   addBlock(block) {
     const body = makeElement("tbody", "", { "data-kind": block.kind });
     addHeading(body, block.heading, "heading", block.note);
     for (const group of block.groups) {
       if (group.name || group.note) addHeading(body, group.name, "group", group.note);
-      for (const row of group.rows) body.append(this.rowOf(row, block.missing));
+      for (const row of group.rows) body.append(this.makeRow(row, block.missing));
     }
     for (const text of block.notes) {
       const line = makeElement("tr", "", { class: "notes" });
@@ -90,8 +90,8 @@ export class NumberTable {
     this.table.append(body);
   }
 
-  /** A quantity: its components and its size, or its one number. */
-  rowOf(row, missing) {
+  /** Make the row of a quantity: its components and magnitude, or its one number. */
+  makeRow(row, missing) {
     const line = makeElement("tr", "", { class: "row" });
     line.append(makeElement("th", row.label, { scope: "row" }));
     const pick = (part) => (frame) => part.values[row.fixed ? 0 : frame];
@@ -105,20 +105,20 @@ export class NumberTable {
       add(row.path, pick(row.parts[0]));
     } else {
       for (const part of row.parts) add(`${row.path}.${part.name}`, pick(part));
-      if (row.sized) add(row.path, (frame) => lengthOf(row.parts.map((part) => pick(part)(frame))));
+      if (row.sized) add(row.path, (frame) => norm(row.parts.map((part) => pick(part)(frame))));
       else line.append(makeElement("td"));
     }
     line.append(makeElement("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
     return line;
   }
 
-  /** The loads of a section; of a series of cuts those of the chosen cut, with the smallest and largest along it. */
+  /** Add the loads of a section; a run of cuts shows the chosen cut, and the smallest and largest value of all cuts. */
   addSection(section, number) {
     const body = makeElement("tbody", "", { "data-kind": "sections" });
     if (number === 0) addHeading(body, this.data.cutting.heading, "heading", this.data.cutting.note);
     addHeading(body, section.name, "group", section.note);
-    section.spoken = body.lastChild.firstChild.lastChild;
-    section.chosen = 0;
+    section.noteElement = body.lastChild.firstChild.lastChild;
+    section.cutNumber = 0;
     for (const load of section.loads) body.append(this.loadRow(section, load));
     this.table.append(body);
   }
@@ -127,7 +127,8 @@ export class NumberTable {
     const line = makeElement("tr", "", { class: "row" });
     line.append(makeElement("th", load.label, { scope: "row" }));
     const range = makeElement("td", "", { colspan: "3" });
-    const cell = new Cell(load.path, (frame) => along(section, load, frame)[section.chosen], load.size, load.style);
+    const readValue = (frame) => getLoadsAlong(section, load, frame)[section.cutNumber];
+    const cell = new Cell(load.path, readValue, load.size, load.style);
     this.cells.push(cell);
     if (section.s) {
       const unit = this.data.length;
@@ -137,10 +138,10 @@ export class NumberTable {
     return line;
   }
 
-  /** Least and greatest along a run, with their places; and of which cut the number beside is. */
+  /** Show the smallest and the largest value along a run of cuts, with their positions. */
   showRange(range, section, load, frame, cell, [unit, size]) {
-    cell.element.dataset.path = `${load.path}.${section.chosen}`;
-    const values = along(section, load, frame);
+    cell.element.dataset.path = `${load.path}.${section.cutNumber}`;
+    const values = getLoadsAlong(section, load, frame);
     let [low, high] = [-1, -1];
     for (let k = 0; k < values.length; k += 1) {
       if (Number.isNaN(values[k])) continue;
@@ -155,14 +156,14 @@ export class NumberTable {
     if (range.textContent !== text) range.textContent = text;
   }
 
-  /** Write the numbers of a frame. @param {number} frame */
+  /** Show the numbers of a frame. @param {number} frame */
   show(frame) {
     for (const section of this.data.sections) {
       if (section.s) {
         const [unit, size] = this.data.length;
-        const side = section.side[section.chosen] ? `, ${section.side[section.chosen]} the load there` : "";
-        const place = `s = ${formatShort(section.s[section.chosen] * size)} ${unit}`;
-        section.spoken.textContent = `${section.note}; value: at ${place}${side}`;
+        const side = section.side[section.cutNumber] ? `, ${section.side[section.cutNumber]} the load there` : "";
+        const place = `s = ${formatShort(section.s[section.cutNumber] * size)} ${unit}`;
+        section.noteElement.textContent = `${section.note}; value: at ${place}${side}`;
       }
     }
     for (const cell of this.cells) cell.show(frame);

@@ -1,11 +1,11 @@
-/** @file The tables beside the machine: the summary first, then those of joints, of sections, and all of them. */
+/** @file The tabs of the tables, the choice of the load case, and the numbers in the page's address. */
 
 import { findElement } from "./elements.js";
 
 const TABS = ["summary", "joints", "sections", "all"];
 
 /**
- * Let the tabs choose what is shown.
+ * Let the tabs choose which tables are shown.
  * @param {import("./table.js").NumberTable} table @param {() => void} changed @param {string} first shown at first
  * @returns {() => string} the tab that is chosen
  */
@@ -16,32 +16,35 @@ export function listenToTabs(table, changed, first = TABS[0]) {
     for (const name of TABS) findElement(`tab-${name}`).setAttribute("aria-pressed", String(name === chosen));
     findElement("summary").hidden = chosen !== "summary";
     findElement("numbers").hidden = findElement("caption").hidden = chosen === "summary";
-    if (chosen !== "summary") table.choose(chosen);
+    if (chosen !== "summary") table.showKind(chosen);
     changed();
   };
   for (const name of TABS) findElement(`tab-${name}`).addEventListener("click", () => choose(name));
-  for (const name of ["joints", "sections"]) findElement(`tab-${name}`).hidden = !table.has(name);
+  for (const name of ["joints", "sections"]) findElement(`tab-${name}`).hidden = !table.hasKind(name);
   choose(findElement(`tab-${first}`).hidden ? TABS[0] : first);
   return () => current;
 }
 
-/** What a load case is called. @param {{case: string}} data */
-export function nameOf(data) {
+/** Format the name of a load case. @param {{case: string}} data */
+export function formatCaseName(data) {
   return data.case.replaceAll("_", " ") || "base";
 }
 
-/** Let the load case be chosen. @param {object[]} runs @param {number} run @param {(run: number) => void} change */
+/**
+ * Let the user choose the load case.
+ * @param {object[]} runs @param {number} run @param {(run: number) => void} change
+ */
 export function listenToCases(runs, run, change) {
   const select = findElement("case");
   findElement("caselabel").hidden = runs.length < 2 && !runs[0].case;
-  select.replaceChildren(...runs.map((data, k) => new Option(nameOf(data), String(k))));
+  select.replaceChildren(...runs.map((data, k) => new Option(formatCaseName(data), String(k))));
   select.value = String(run);
   select.disabled = runs.length < 2;
   select.addEventListener("change", () => change(Number(select.value)));
 }
 
-/** A number of the page's address, behind the #. @param {string} name @param {number} usual */
-export function numberOf(name, usual) {
+/** Read a number from the page's address, as in #frame=12. @param {string} name @param {number} fallback */
+export function readAddressNumber(name, fallback) {
   const found = new URLSearchParams(location.hash.slice(1)).get(name);
-  return found !== null && Number.isFinite(Number(found)) ? Number(found) : usual;
+  return found !== null && Number.isFinite(Number(found)) ? Number(found) : fallback;
 }

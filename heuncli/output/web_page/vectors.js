@@ -3,17 +3,17 @@
 /** @typedef {number[]} Vector */
 
 /** @param {Vector} a @param {Vector} b @returns {Vector} */
-export function plus(a, b) {
+export function add(a, b) {
   return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 }
 
 /** @param {Vector} a @param {Vector} b @returns {Vector} */
-export function minus(a, b) {
+export function subtract(a, b) {
   return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 }
 
 /** @param {Vector} a @param {number} size @returns {Vector} */
-export function times(a, size) {
+export function scale(a, size) {
   return [a[0] * size, a[1] * size, a[2] * size];
 }
 
@@ -28,22 +28,25 @@ export function cross(a, b) {
 }
 
 /** @param {Vector} a @returns {number} */
-export function lengthOf(a) {
+export function norm(a) {
   return Math.sqrt(dot(a, a));
 }
 
-/** The direction of a vector; of none the third axis. @param {Vector} a @returns {Vector} */
-export function unit(a) {
-  const length = lengthOf(a);
-  return length > 0 ? times(a, 1 / length) : [0, 0, 1];
+/**
+ * Normalize a vector; the zero vector gives the third axis, so that nothing becomes NaN.
+ * @param {Vector} a @returns {Vector}
+ */
+export function normalize(a) {
+  const length = norm(a);
+  return length > 0 ? scale(a, 1 / length) : [0, 0, 1];
 }
 
 /**
- * The matrix of an attitude, row after row: it takes components in body axes to world axes.
+ * Make the rotation matrix of an attitude, row by row: from body axes to world axes.
  * @param {number[]} q unit quaternion
  * @returns {number[]} nine numbers
  */
-export function matrixOf([w, x, y, z]) {
+export function makeRotationMatrix([w, x, y, z]) {
   return [
     1 - 2 * (y * y + z * z),
     2 * (x * y - w * z),
@@ -57,8 +60,8 @@ export function matrixOf([w, x, y, z]) {
   ];
 }
 
-/** A vector turned by a matrix. @param {number[]} R @param {Vector} v @returns {Vector} */
-export function turned(R, v) {
+/** Rotate a vector by a matrix. @param {number[]} R @param {Vector} v @returns {Vector} */
+export function rotate(R, v) {
   return [
     R[0] * v[0] + R[1] * v[1] + R[2] * v[2],
     R[3] * v[0] + R[4] * v[1] + R[5] * v[2],

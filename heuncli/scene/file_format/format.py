@@ -58,7 +58,7 @@ from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry,
 from heuncli.scene.file_format.format_joints import JOINTS, JointEntry
 from heuncli.scene.file_format.format_loads import LOADS, LoadEntry
 from heuncli.scene.file_format.format_shapes import Frame, Orientation, ShapeEntry
-from heuncli.scene.file_format.segments import DriveSegmentEntry
+from heuncli.scene.file_format.segment_entries import DriveSegmentEntry
 
 Report = Literal[
     "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"

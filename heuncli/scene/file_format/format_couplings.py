@@ -27,7 +27,7 @@ from heuncli.scene.file_format.fields import (
     TextOrMapping,
 )
 from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
-from heuncli.scene.file_format.segments import CamSegmentEntry
+from heuncli.scene.file_format.segment_entries import CamSegmentEntry
 
 # Format couplings
 

@@ -33,7 +33,7 @@ from heuncli.scene.file_format.fields import TEXT_SCHEMA
 from heuncli.scene.file_format.foreign_words import TYPE_ALIASES, list_aliases, replace_type_aliases
 from heuncli.scene.file_format.format_couplings import RollingEntry
 from heuncli.scene.file_format.labels import EVENTS, POINTS, VALUE_KEYS
-from heuncli.scene.file_format.segments import CamSegmentEntry, DriveSegmentEntry
+from heuncli.scene.file_format.segment_entries import CamSegmentEntry, DriveSegmentEntry
 from heuncli.scene.file_format.source import read_source
 
 # Chapters

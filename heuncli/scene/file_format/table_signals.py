@@ -1,7 +1,9 @@
 """Apply the keys of a table that treat its points as a measured signal: smooth, derivative, integral, drift.
 
-The points are smoothed, then differentiated or integrated; the table interpolates what comes out. Notes on it say the
-cut-off, the error of a derivative, and the drift that was taken out.
+The points (x, y) are smoothed by a spline with a cut-off, then differentiated or integrated; the table interpolates
+the result. Smoothing and differentiation are approximations: notes state the cut-off, what smoothing removed, and an
+estimate of the derivative's error. The integral is that of the interpolating curve, exact at the points; points are
+added until the new table is right between them, too. The mathematics stands in expressions/measured_signals.py.
 """
 
 from __future__ import annotations
@@ -31,17 +33,17 @@ from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format.format import TableEntry
 
 INTEGRAL_ERROR = 1e-9  # of the range of an integral, between its points
-MAX_ADDED_PIECES = 20_000  # of finer points at which an integral is compared; larger tables are fine enough
-MAX_CUT_OFF_STEPS = 1e5  # beyond, the smoothed values lose more than eight digits to rounding
-TIMES = {1: "once", 2: "twice"}
+MAX_ADDED_PIECES = 20_000  # pieces between points at which an integral is compared; larger tables are fine enough
+MAX_CUT_OFF_STEPS = 1e5  # median steps of x; beyond, the smoothed values lose more than eight digits to rounding
+ORDER_WORDS = {1: "once", 2: "twice"}
 FINE_HINT = "give a longer period (a lower frequency), or leave smooth out"
 NOISE_HINT = "give smooth: a lower cut-off frequency; or measure more finely"
 
-KeyedFinding = tuple[str, Finding]
+KeyedFinding = tuple[str, Finding]  # the key of the entry, and its problem
 
 
 class SignalKeyError(Exception):
-    """A problem of one key of an entry."""
+    """A problem of one key of an entry that shows only when its points are read."""
 
     def __init__(self, key: str, message: str, hint: str, code: str = "table-form") -> None:
         super().__init__(message)
@@ -49,14 +51,14 @@ class SignalKeyError(Exception):
 
 
 def has_signal_keys(entry: TableEntry) -> bool:
-    """Return whether an entry treats its points as a signal."""
+    """Return whether an entry has keys that treat its points as a signal."""
     return any(key is not None for key in (entry.smooth, entry.derivative, entry.integral))
 
 
 def check_signal_keys(entry: TableEntry) -> Iterator[KeyedFinding]:
-    """Yield what is wrong with the keys of an entry that treat its points as a signal, with the key."""
+    """Yield the problems of the signal keys of an entry that do not depend on its points."""
     for key in ("derivative", "integral"):
-        if getattr(entry, key) not in (None, *TIMES):
+        if getattr(entry, key) not in (None, *ORDER_WORDS):
             yield key, Finding("table-form", f"{key} is {getattr(entry, key)}", "give 1 or 2")
     if entry.derivative is not None and entry.integral is not None:
         yield "integral", Finding("table-form", "both derivative and integral are given", "give one of them")
@@ -74,25 +76,46 @@ def check_signal_keys(entry: TableEntry) -> Iterator[KeyedFinding]:
 
 
 def prepare_signal(table: TableFunction, entry: TableEntry) -> tuple[TableFunction, list[KeyedFinding]]:
-    """Return the table of an entry after smoothing, and its derivative or integral, with notes; and warnings.
+    """Smooth a table, then differentiate or integrate it, as its entry says; its notes tell how. Also returns warnings.
 
-    Raises SignalKeyError.
+    Raises SignalKeyError if the points cannot be smoothed.
     """
-    x, y = np.frombuffer(table.x), np.frombuffer(table.y)
-    is_periodic, notes = entry.period is not None, []
+    measured, notes = table, []
     cut_off = None if entry.smooth is None else choose_cut_off(table, entry)
     if cut_off is not None:
-        smoothed = smooth_points(x, y, cut_off, is_periodic)
-        removed = format_amount(float(np.sqrt(np.mean((y - smoothed) ** 2))), table.dimensions[1])
-        notes.append(f"table {table.name}: smoothed, {describe_cut_off(cut_off, table)}; it takes out {removed} (rms)")
-        table = rebuild_table(table, entry, smoothed)
+        table, note = smooth_table(table, entry, cut_off)
+        notes.append(note)
+    warnings: list[KeyedFinding] = []
     if entry.integral is not None:
-        return integrate_entry(table, entry, notes), []
-    if entry.derivative is None:
-        return replace(table, notes=tuple(notes)), []
-    order, curve = entry.derivative, table.interpolation
+        table, note = integrate_entry(table, entry)
+        notes.append(note)
+    elif entry.derivative is not None:
+        table, note, warnings = differentiate_entry(table, entry, measured, cut_off)
+        notes.append(note)
+    return replace(table, notes=tuple(notes)), warnings
+
+
+def smooth_table(table: TableFunction, entry: TableEntry, cut_off: float) -> tuple[TableFunction, str]:
+    """Smooth a table by a cut-off [as x]; also returns a note on what this removed."""
+    x, y = np.frombuffer(table.x), np.frombuffer(table.y)
+    smoothed = smooth_points(x, y, cut_off, entry.period is not None)
+    removed = format_amount(float(np.sqrt(np.mean((y - smoothed) ** 2))), table.dimensions[1])
+    note = f"table {table.name}: smoothed, {describe_cut_off(cut_off, table)}; it takes out {removed} (rms)"
+    return rebuild_table(table, entry, smoothed), note
+
+
+def differentiate_entry(
+    table: TableFunction, entry: TableEntry, measured: TableFunction, cut_off: float | None
+) -> tuple[TableFunction, str, list[KeyedFinding]]:
+    """Differentiate a table; also returns a note on the error, and a warning if that is large.
+
+    measured: the table before smoothing, from which the error is estimated
+    cut_off: of the smoothing [as x], None without it
+    """
+    order, curve, is_periodic = entry.derivative or 1, table.interpolation, entry.period is not None
+    x = np.frombuffer(table.x)
     derivative = differentiate_points(x, np.frombuffer(table.y), curve, is_periodic, order)
-    error = estimate_derivative_error(x, y, curve, is_periodic, order, cut_off)
+    error = estimate_derivative_error(x, np.frombuffer(measured.y), curve, is_periodic, order, cut_off)
     dimension = derive_dimension(table, -order)
     largest = float(np.abs(derivative).max())
     amount = "is not known: too few points" if error is None else f"up to {format_amount(error, dimension)}"
@@ -100,19 +123,22 @@ def prepare_signal(table: TableFunction, entry: TableEntry) -> tuple[TableFuncti
     warnings = []
     if error is None or error > tolerances.DERIVATIVE_ERROR * largest:
         warnings.append(("derivative", Finding("table-derivative", f"table {table.name}: {size}", NOISE_HINT)))
-    notes.append(f"table {table.name}: differentiated {TIMES[order]}; {size}")
-    made = rebuild_table(table, entry, derivative)
-    return replace(made, dimensions=(table.dimensions[0], dimension), notes=tuple(notes)), warnings
+    made = replace(rebuild_table(table, entry, derivative), dimensions=(table.dimensions[0], dimension))
+    return made, f"table {table.name}: differentiated {ORDER_WORDS[order]}; {size}", warnings
 
 
-def integrate_entry(table: TableFunction, entry: TableEntry, notes: list[str]) -> TableFunction:
-    """Return the integral of a table, with points added until it is right between them, too."""
+def integrate_entry(table: TableFunction, entry: TableEntry) -> tuple[TableFunction, str]:
+    """Integrate a table, and add points until the result is right between them, too; also returns a note on the drift.
+
+    The pieces of the table are halved until the interpolated integral agrees with the exact one at the points of a
+    table four times finer.
+    """
     order, drift = entry.integral or 1, entry.drift or "keep"
     found, dimension = integrate_table(table, order, drift), derive_dimension(table, order)
     taken = f"offset {format_amount(found.offset, table.dimensions[1])} taken out (drift: {drift})"
     moved = f"it would have moved the end by {format_amount(found.displacement, dimension)}"
     what = "no drift taken out" if drift == "keep" else f"{taken}, {moved}"
-    note = f"table {table.name}: integrated {TIMES[order]}; {what}"
+    note = f"table {table.name}: integrated {ORDER_WORDS[order]}; {what}"
     made, finest = rebuild_integral(table, entry, found), halve_pieces(halve_pieces(table))
     while 4 * table.pieces == finest.pieces <= MAX_ADDED_PIECES:
         exact = integrate_table(finest, order, drift).values
@@ -120,12 +146,14 @@ def integrate_entry(table: TableFunction, entry: TableEntry, notes: list[str]) -
             break
         table, finest = halve_pieces(table), halve_pieces(finest)
         made = rebuild_integral(table, entry, integrate_table(table, order, drift))
-    return replace(made, dimensions=(table.dimensions[0], dimension), notes=(*notes, note))
+    return replace(made, dimensions=(table.dimensions[0], dimension)), note
 
 
 def rebuild_integral(table: TableFunction, entry: TableEntry, integrals: Integrals) -> TableFunction:
-    """Return the table through the exact values of an integral: of a spline a not-a-knot one, because the integral of a
-    natural one is not straight at its ends; of other curves with the exact slopes.
+    """Make the table through the exact values of an integral.
+
+    The integral of a spline is a not-a-knot spline, because that of a natural one is not straight at its ends; other
+    curves get the exact slopes.
     """
     if entry.period is not None:
         integrals.values[-1] = integrals.values[0]
@@ -135,14 +163,14 @@ def rebuild_integral(table: TableFunction, entry: TableEntry, integrals: Integra
 
 
 def rebuild_table(table: TableFunction, entry: TableEntry, y: Array, slopes: Array | None = None) -> TableFunction:
-    """Return the table through the same x and other values."""
+    """Make the table through the same x and other values y (n,), with given slopes (n,) or those of its curve."""
     values, curve = array("d", y.tobytes()), table.interpolation
     made = interpolate_points(table.name, table.x, values, curve, entry.outside, entry.period, slopes)
     return replace(made, dimensions=table.dimensions)
 
 
 def choose_cut_off(table: TableFunction, entry: TableEntry) -> float:
-    """Return the period at the cut-off [as x]. Raises SignalKeyError if the points cannot be smoothed by it."""
+    """Return the period of the cut-off [as x]. Raises SignalKeyError if the points cannot be smoothed by it."""
     assert entry.smooth is not None and entry.smooth.constant is not None
     cut_off, own, expected = entry.smooth.constant, entry.smooth.dimension, table.dimensions[0]
     if own is not None and expected is not None and own != expected:
@@ -176,7 +204,7 @@ def describe_cut_off(cut_off: float, table: TableFunction) -> str:
 
 
 def derive_dimension(table: TableFunction, order: int) -> Dimension | None:
-    """Return the dimension of y times a power of x; None if one of them is not known."""
+    """Return the dimension of y times x to the power `order`; None if one of them is unknown."""
     x, y = table.dimensions
     if x is None or y is None:
         return None
@@ -184,6 +212,6 @@ def derive_dimension(table: TableFunction, order: int) -> Dimension | None:
 
 
 def format_amount(value: float, dimension: Dimension | None) -> str:
-    """Format a number in SI with its unit; without one if it is not known."""
+    """Format a number in SI with its unit, or without one if the dimension is unknown."""
     unit = si_unit(dimension) if dimension is not None and any(dimension) else ""
     return f"{value:.3g} {unit}".strip()

@@ -36,7 +36,7 @@ class Extreme(NamedTuple):
     time: float
 
 
-BarExtremes = Mapping[str, tuple[Extreme, Extreme]]  # lowest and highest, by the six loads
+BarExtremes = Mapping[str, tuple[Extreme, Extreme]]  # lowest and highest, by quantities
 
 
 class BarLine(NamedTuple):

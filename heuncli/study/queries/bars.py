@@ -19,7 +19,7 @@ from heuncli.loads.kinetostatics.stretch import Stretch, make_cuts_at
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, Block, Results
-from heuncli.results.results_schema import RESULTANT_UNITS, RESULTANTS
+from heuncli.results.results_schema import DEFLECTIONS, RESULTANT_UNITS, RESULTANTS
 from heuncli.scene.file_format.couplings import Rope
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.channels import Channel, make_section_channels
@@ -44,6 +44,7 @@ from heuncli.study.search.columns import ChannelSearch, StudyColumns
 from heuncli.study.search.cuts import find_cut_extremes, find_stretch
 
 SECTIONS = frozenset({"sections"})
+DEFLECTION_PATHS = tuple(f"deflection.{name}" for name in DEFLECTIONS)
 MAX_HALVINGS, MAX_INSTANTS = 4, 16_000  # halvings of the time steps; maximum number of instants
 
 
@@ -87,8 +88,16 @@ class WholeBar:
         """The stated errors of its loads."""
         return find_stated_errors(self.study.results, make_labels(self.study.spec), self.study.magnitudes)
 
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The six section forces; and deflections and slopes, if they are computed."""
+        has_deflection = self.stretch.cuts.beam is not None and not self.has_impulses
+        return RESULTANTS + DEFLECTION_PATHS * has_deflection
+
     def find_unit(self, quantity: str) -> str:
         """Return the SI unit of a quantity."""
+        if quantity in DEFLECTION_PATHS:
+            return "rad" if "slope" in quantity else "m"
         unit = RESULTANT_UNITS[quantity]
         return IMPULSE_UNITS[unit] if self.has_impulses else unit
 
@@ -96,7 +105,8 @@ class WholeBar:
         """Return the stated error of a quantity, SI; not below the rounding error of the sums that it is computed
         from.
         """
-        return self.stated_errors.error_of("sections", self.find_unit(quantity))
+        kind = "deflections" if quantity in DEFLECTION_PATHS else "sections"
+        return self.stated_errors.error_of(kind, self.find_unit(quantity))
 
     @cached_property
     def attachments(self) -> list[BarAttachment]:
@@ -163,6 +173,8 @@ class WholeBar:
     def is_open_somewhere(self, quantity: str) -> bool:
         """Return whether a quantity is open (indeterminate for rigid bodies) at some cut and instant of the results."""
         results = self.study.results
+        if quantity in DEFLECTION_PATHS:
+            return bool(np.isnan(read_quantity(results.sections[self.name], quantity)).any())
         blocks = [impulse["sections"] for impulse in results.impulses] if self.has_impulses else [results.sections]
         return any(quantity in block[self.name]["open"] for block in blocks)
 
@@ -181,7 +193,8 @@ class WholeBar:
             section: Block = impulse["sections"][self.name]
             return {name: np.asarray(section[name]) for name in ("s", *RESULTANTS)}
         section = self._compute_section(np.array([time]), setup)
-        return {"s": np.asarray(section["s"]).reshape(-1)} | {name: section[name][0] for name in RESULTANTS}
+        values = {name: read_quantity(section, name)[0] for name in self.quantities}
+        return {"s": np.asarray(section["s"]).reshape(-1)} | values
 
     def _compute_section(self, times: Array, setup: Setup) -> Block:
         """Return its block at some instants; what does not depend on cuts stays for others, also of other bars."""
@@ -195,7 +208,7 @@ class WholeBar:
         s, side = make_places(find_corners(nodes["s"], self.corner_tolerance), self.corner_tolerance)
         loads = self.solve_cuts(make_cuts_at(self.stretch.cuts, s, side), time)
         lines = {}
-        for name in RESULTANTS:
+        for name in self.quantities:
             extremes_of_line = [find_line_extreme(s, side * loads[name], side, time) for side in (-1.0, 1.0)]
             if np.isfinite(nodes[name]).all():
                 summits = find_cut_extremes(self.stretch, nodes["s"], nodes[name])
@@ -209,7 +222,10 @@ class WholeBar:
         known_extremes: those, if they are searched already
         """
         times = choose_curve_instants(self.study)
-        searched_extremes = self._search_extremes() if known_extremes is None else known_extremes
+        searched_extremes = {**(known_extremes or {})}
+        for names in (RESULTANTS, self.quantities[len(RESULTANTS) :]):
+            if not searched_extremes.keys() >= {*names}:
+                searched_extremes |= self._search_extremes(names)
         all_extremes = [extreme for both in searched_extremes.values() for extreme in both]
         lines = {
             time: self.make_lines(time)
@@ -218,29 +234,31 @@ class WholeBar:
         s, low, high = self._find_bounds(times, [extreme.s for extreme in all_extremes])
         return {
             name: BarRange(s, low[i], high[i], *both, lines[both[0].time][name], lines[both[1].time][name])
-            for i, (name, both) in enumerate(searched_extremes.items())
+            for i, (name, both) in enumerate((name, searched_extremes[name]) for name in self.quantities)
         }
 
-    def _search_extremes(self) -> dict[str, tuple[Extreme, Extreme]]:
-        """Search the lowest and highest value of each quantity over the bar and the run, between places and samples."""
+    def _search_extremes(self, names: Sequence[str]) -> dict[str, tuple[Extreme, Extreme]]:
+        """Search the lowest and highest value of quantities over the bar and the run, between places and samples."""
+        name_of = {f"sections.{self.name}.{name}": name for name in names}
 
-        def collect(results: Results) -> tuple[Channel, ...]:
-            return make_section_channels(self.name, results.sections[self.name])[: len(RESULTANTS)]
+        def collect(results: Results) -> list[Channel]:
+            channels = make_section_channels(self.name, results.sections[self.name])
+            return [channel for channel in channels if channel.path in name_of]
 
         search = ChannelSearch(collect, self.stated_errors.find_error)
         columns = StudyColumns(self.study, search, SECTIONS, self.setup)
         times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]
         found = columns.finish(extremes.search_extremes(columns.sample, times, columns.groups, errors=columns.errors))
-        rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, strict=True)
+        rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, found.paths, strict=True)
         return {
-            name: (Extreme(float(a), low.s, float(a_at)), Extreme(float(b), high.s, float(b_at)))
-            for name, (a, a_at, b, b_at, (low, high)) in zip(RESULTANTS, rows, strict=True)
+            name_of[path]: (Extreme(float(a), low.s, float(a_at)), Extreme(float(b), high.s, float(b_at)))
+            for a, a_at, b, b_at, (low, high), path in rows
         }
 
     def _find_bounds(self, times: Array, extra_places: Sequence[float]) -> tuple[Array, Array, Array]:
-        """Return places along the bar (k,), including extra ones, and the lowest and highest values of all quantities
-        (6, k).
+        """Return places along the bar (k,), including extra ones, and the lowest and highest values of all quantities,
+        (n, k).
         """
         for _ in range(MAX_HALVINGS):
             nodes = self._compute_section(times, self.setup)
@@ -252,12 +270,13 @@ class WholeBar:
             smooth = np.broadcast_to(~jumps[:, None], (len(jumps), len(s)))
             if moving is None:
                 to_places = make_interpolation(nodes["s"], s, side)
-                values = {name: nodes[name] @ to_places for name in RESULTANTS}
+                values = {name: read_quantity(nodes, name) @ to_places for name in self.quantities}
             else:
                 cuts = make_cuts_at(self.stretch.cuts, s, side)
-                values = self._compute_section(times, replace(self.setup, cuts=(cuts,)))
+                section = self._compute_section(times, replace(self.setup, cuts=(cuts,)))
+                values = {name: read_quantity(section, name) for name in self.quantities}
                 smooth = smooth & ~moving.find_passes(s, self.corner_tolerance)
-            all_bounds = [find_bounds(times, values[name], smooth, self.find_error(name)) for name in RESULTANTS]
+            all_bounds = [find_bounds(times, values[name], smooth, self.find_error(name)) for name in self.quantities]
             if all(quantity_bounds.is_fine for quantity_bounds in all_bounds) or len(times) > MAX_INSTANTS:
                 break
             times = halve_steps(times, jumps)
@@ -266,5 +285,11 @@ class WholeBar:
             np.stack([quantity_bounds.high for quantity_bounds in all_bounds]),
         )
         if moving is not None:
-            moving.widen_bounds(s, side, low, high)
+            moving.widen_bounds(s, side, low[: len(RESULTANTS)], high[: len(RESULTANTS)])  # deflections do not jump
         return s, low, high
+
+
+def read_quantity(section: Block, quantity: str) -> Array:
+    """Read a quantity of a section's block by its path, such as M1 or deflection.w2."""
+    part, _, name = quantity.rpartition(".")
+    return np.asarray(section[part][name] if part else section[name])

@@ -96,6 +96,7 @@ def _iter_problems(kind: str, request: PlotRequest) -> Iterator[Problem]:
 
 SPECS, SWEEPS = (".yaml", ".yml"), (".sqlite", ".csv", ".db")
 USAGE = "for example heun plot engine.yaml joints.main.force, or heun plot engine.yaml scene"
+DEFLECTION_WORDS = 2  # of deflection.w1; a third is the number of a cut
 PATH_KINDS, SWEEP_KIND = ("history", "sections"), "sweep"  # kinds that follow from the paths or files
 NAMED_KINDS = tuple(kind for kind in KINDS if kind not in (*PATH_KINDS, SWEEP_KIND))
 
@@ -123,7 +124,7 @@ def parse_words(words: Sequence[str]) -> PlotTarget:
 
 def _choose_path_kind(paths: Sequence[str]) -> str:
     """Return the kind for paths: diagrams for whole sections, histories for numbers over time. Raises UsageError."""
-    entries = [path for path in paths if path.startswith("sections.") and path.count(".") == 1]
+    entries = [path for path in paths if path.startswith("sections.") and _is_along_bar(path.split(".")[2:])]
     if entries and len(entries) < len(paths):
         other = next(path for path in paths if path not in entries)
         message = f"{entries[0]} is a diagram along a bar, {other} a number over time: one kind of plot at a time"
@@ -132,6 +133,11 @@ def _choose_path_kind(paths: Sequence[str]) -> str:
     if suggestion is not None:
         raise _make_error(f"'{paths[0]}' is not a kind of plot", f"did you mean {suggestion}?")
     return "sections" if entries else "history"
+
+
+def _is_along_bar(words: Sequence[str]) -> bool:
+    """Return whether the words of a path behind sections.NAME name curves along a bar: all, or of its deflection."""
+    return not words or (words[0] == "deflection" and len(words) <= DEFLECTION_WORDS)
 
 
 def _is_file(word: str, *, first: bool) -> bool:

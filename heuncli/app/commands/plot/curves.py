@@ -29,7 +29,7 @@ from heuncli.output.figures.polar import make_polar_figure
 from heuncli.output.figures.tips import AXIS_LETTERS, list_firing_paths, list_rotation_paths
 from heuncli.output.tables import measure
 from heuncli.results.path_words import split_path
-from heuncli.results.results_schema import EVENTS, IMPULSES, SPACE
+from heuncli.results.results_schema import DEFLECTIONS, EVENTS, IMPULSES, SPACE
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import collect_scene_names
 from heuncli.scene.file_format.rules.outcome import NumberKind, resolve_path
@@ -84,7 +84,7 @@ def draw_sections(target: PlotTarget, request: PlotRequest) -> Figure:
 def _require_cut_series(names: Sequence[str], spec: Spec) -> None:
     """Raise SpecError for a name that is no section, UsageError for one that is a single cut."""
     known = [name for name, section in spec.sections.items() if section.from_ is not None]
-    for name in names:
+    for name, _, quantity in (entry.partition(".") for entry in names):
         section = spec.sections.get(name)
         if section is None:
             listed = ", ".join(known[:MAX_NAMES]) + (", ..." if len(known) > MAX_NAMES else "")
@@ -97,6 +97,13 @@ def _require_cut_series(names: Sequence[str], spec: Spec) -> None:
             message = f"plot: sections.{name} is a single cut, not a series of cuts along a bar"
             hint = f"give the section from, to and count; or its loads over time: sections.{name}.M1"
             raise UsageError(Problem("bad-option", message, hint=hint))
+        known = [f"deflection{tail}" for tail in ("", *(f".{component}" for component in DEFLECTIONS))]
+        if quantity and (section.beam_theory is None or spec.analysis.type == "impulse" or quantity not in known):
+            message = f"plot: sections.{name} has no {quantity}"
+            hint = "give the section `deflection: true`: heun explain stresses"
+            if section.beam_theory is not None:
+                hint = f"it has {', '.join(known)}; none of an impulse"
+            raise UsageError(Problem("bad-option", message, hint=hint))
 
 
 def _require_one_kind(specs: Sequence[Spec]) -> None:
@@ -108,7 +115,8 @@ def _require_one_kind(specs: Sequence[Spec]) -> None:
 
 def _list_paths(names: Sequence[str], spec: Spec) -> list[str]:
     """List the paths of the results that the diagrams need."""
-    return [f"impulses.0.sections.{name}" if spec.analysis.type == "impulse" else f"sections.{name}" for name in names]
+    prefix = "impulses.0.sections" if spec.analysis.type == "impulse" else "sections"
+    return list(dict.fromkeys(f"{prefix}.{name.partition('.')[0]}" for name in names))
 
 
 def _parse_common_instants(sources: Sequence[FigureSource], words: str | None) -> list[float] | None:
