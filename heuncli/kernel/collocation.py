@@ -133,7 +133,7 @@ def solve_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], r
     previous_size: cython.double = 0.0
     best: cython.double = 1.0
     ratio: cython.double
-    begin_stages(method, run)
+    begin_stages(scene, method, run)
     for k in range(MAX_NEWTON_ITERATIONS):
         evaluate_stages(scene, method, run)
         size = correct_stages(method, run)
@@ -167,7 +167,9 @@ def is_noise(
     return size <= scene.limits.newton_part * run.control.tolerance or size <= scene.limits.newton_rounding
 
 
-def begin_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+def begin_stages(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.void:
     """Start W and Z with the solution of the linear equations at the start, and find the sizes that corrections are
     compared with.
     """
@@ -186,7 +188,7 @@ def begin_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> cy
             newton.step[k][i] = run.h * row_sum * run.K[0][i]
     solve_blocks(formula, run)
     add_correction(formula, run)
-    newton.rate = newton.reach = 0.0
+    newton.rate, newton.reach = scene.limits.slow_rate * run.control.imposed_rate, 0.0
     update_reference_sizes(run, run.y)
     for k in range(formula.stages):
         update_reference_sizes(run, newton.Z[k])
