@@ -419,8 +419,9 @@ KERNEL: dict[str, float] = {
     "slow_rate": 0.01,
     # relative to sqrt(acceleration / size): a tenth of the fall time, after which a released body is in motion
     "held_rate": 0.1,
-    # relative to the rates w that drives and loads impose: what rests between them accelerates by roundings of w^2, in a
-    # step h by roundings of h w^2, so that h w up to some tens is not judged by them
+    # relative to the rate w that drives and loads impose: as a hundredth of `held_rate`, which other scenes begin with
+    "balanced_rate": 1e-3,
+    # what rests between them accelerates by roundings of w^2, so that a step of h w = 10 rad changes rates by this
     "imposed_rounding": 100.0 * EPS,
     # relative to a given step: the ends of 10 million steps are known to 1e-8 of one, typed durations to 1e-9
     "given_end": 1e-6,

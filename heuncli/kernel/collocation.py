@@ -188,7 +188,9 @@ def begin_stages(
             newton.step[k][i] = run.h * row_sum * run.K[0][i]
     solve_blocks(formula, run)
     add_correction(formula, run)
-    newton.rate, newton.reach = scene.limits.slow_rate * run.control.imposed_rate, 0.0
+    newton.rate = newton.reach = 0.0
+    if run.control.is_balanced:
+        newton.rate = scene.limits.slow_rate * run.control.imposed_rate
     update_reference_sizes(run, run.y)
     for k in range(formula.stages):
         update_reference_sizes(run, newton.Z[k])

@@ -67,13 +67,15 @@ def group_error(
         rate = group.rate
     group.trial = rate
     floor: cython.double = scene.limits.slow_rate * run.control.rate
-    least: cython.double = scene.limits.imposed_rounding * run.control.imposed_rate / run.control.tolerance
     if b == run.energy_group:
         # energy, relative to the largest work so far or a fraction of the bodies' possible energy
         floor = scene.limits.slow_rate * run.control.energy_scale * run.control.rate * run.control.rate
-        least *= run.control.energy_scale * run.control.imposed_rate
-    if floor < least:
-        floor = least
+    if run.control.is_balanced:
+        least: cython.double = scene.limits.imposed_rounding * run.control.imposed_rate / run.control.tolerance
+        if b == run.energy_group:
+            least *= run.control.energy_scale * run.control.imposed_rate
+        if floor < least:
+            floor = least
     scale: cython.double = 1.0 / run.control.tolerance
     for i in range(group.coordinates, group.end):
         if i == group.rates:
@@ -90,10 +92,11 @@ def group_error(
 
 
 def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
-    """Update the largest rate so far that drives and single loads impose, at the instant evaluated last.
+    """Update the largest rate so far that drives and single loads impose, at the instant evaluated last, and whether
+    all moves so much slower that its rates may be rounding.
 
-    Where they balance, what they act on rests but for their rounding: two springs that pull against each other, a
-    pendulum that hangs still in a rotor. Its own rates are that rounding, so that its errors are not relative to them.
+    Where they balance, all that they act on rests but for rounding: two springs that pull against each other, a
+    pendulum that hangs still in a rotor.
     """
     i: cython.Py_ssize_t
     u: cython.double
@@ -118,6 +121,7 @@ def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
         rate = sqrt(square)
     if rate > run.control.imposed_rate:
         run.control.imposed_rate = rate
+    run.control.is_balanced = run.control.rate < scene.limits.balanced_rate * run.control.imposed_rate
 
 
 def least_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], a: cython.int, b: cython.int) -> cython.double:

@@ -404,7 +404,8 @@ class Limits(Record):
     jump_of_given: float  # and the same at most of what a given step turns the scene by
     slow_rate: float  # relative to the model's largest rate: slower bodies are judged as if this fast
     held_rate: float  # relative to the rate that loads could cause: bodies held at rest are judged as if this fast
-    imposed_rounding: float  # relative to the rates that drives and loads impose: rounding of what rests between them
+    balanced_rate: float  # relative to the rate that drives and loads impose: what is slower may rest between them
+    imposed_rounding: float  # and the rounding of its rates
     least_step: float  # relative to the time: rounding
     given_end: float  # relative to a given step: a shorter remainder of a piece is merged into its last step
     retry_ratio: float  # ratio of the lengths tried

@@ -75,7 +75,6 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         return ROPE_SLACK
     clear_accelerations(scene, method, run.K[0], True)
     measure_inertia(scene, run)
-    update_imposed_rate(scene, run)
     if run.determined:
         run.control.proposed = run.end - run.t
         if not is_determined(scene):
@@ -85,6 +84,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         h = find_first_step(scene, method, run)
         if run.control.proposed <= 0.0 or h < run.control.proposed:
             run.control.proposed = h
+    update_imposed_rate(scene, run)
     run.begins_piece = 0
     run.control.grid = run.t
     run.control.on_grid = 0
