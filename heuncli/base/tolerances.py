@@ -446,6 +446,7 @@ KERNEL: dict[str, float] = {
     # relative to the size, and to places and limits: residual of a gap after projection (nearly_closed)
     "touching": 1e-14,
     "friction_rounding": 1e-12,  # thousands of roundings, which loads and factors leave in a multiplier
+    "still_rate": CONTACT_RATE,  # what is slower is at rest, by which its state is decided
     "unseen": 1e-4,  # relative to a load's largest value in a step: change that the stages did not see
     # -- branches that are followed
     # rows of J turn threefold with what moves, so the least pivot keeps five eighths, Newton's method contracts by 3/5

@@ -422,6 +422,7 @@ class Limits(Record):
     least_load: float  # smaller loads are none, in any unit
     touching: float  # relative to the size, and to its places and limits: accuracy of a contact's gap
     friction_rounding: float  # relative to a friction and to what it can hold: rounding of their difference
+    still_rate: float  # relative to the terms of a row's rate: rounding
     unseen: float  # relative to a load's largest value: change unseen by the stages before a step is repeated
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
     branch_step: float  # relative to the least pivot: motion of the coordinates in a step along a branch
