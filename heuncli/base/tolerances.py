@@ -419,6 +419,10 @@ KERNEL: dict[str, float] = {
     "slow_rate": 0.01,
     # relative to sqrt(acceleration / size): a tenth of the fall time, after which a released body is in motion
     "held_rate": 0.1,
+    # relative to the rate w that drives and loads impose: as a hundredth of `held_rate`, which other scenes begin with
+    "balanced_rate": 1e-3,
+    # what rests between them accelerates by roundings of w^2, so that a step of h w = 10 rad changes rates by this
+    "imposed_rounding": 100.0 * EPS,
     # relative to a given step: the ends of 10 million steps are known to 1e-8 of one, typed durations to 1e-9
     "given_end": 1e-6,
     "least_step": 1e-14,  # relative to the time: fewer than 50 roundings of t; closer times are one instant
@@ -442,6 +446,7 @@ KERNEL: dict[str, float] = {
     # relative to the size, and to places and limits: residual of a gap after projection (nearly_closed)
     "touching": 1e-14,
     "friction_rounding": 1e-12,  # thousands of roundings, which loads and factors leave in a multiplier
+    "still_rate": CONTACT_RATE,  # what is slower is at rest, by which its state is decided
     "unseen": 1e-4,  # relative to a load's largest value in a step: change that the stages did not see
     # -- branches that are followed
     # rows of J turn threefold with what moves, so the least pivot keeps five eighths, Newton's method contracts by 3/5

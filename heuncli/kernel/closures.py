@@ -183,10 +183,31 @@ def size_of_condition_motion(scene: cython.pointer[Scene], row: cython.pointer[C
     return total
 
 
+def size_of_row_rate(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return the size of the terms of the rate of a row."""
+    i: cython.Py_ssize_t
+    total: cython.double = 0.0
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
+        if part.b >= 0:
+            b: cython.pointer[Body] = cython.address(scene.bodies[part.b])
+            total += fabs(part.factor) * size_of_power(b, part, norm(b.v), norm(b.omega))
+        if part.a >= 0:
+            a: cython.pointer[Body] = cython.address(scene.bodies[part.a])
+            total += fabs(part.factor) * size_of_power(a, part, norm(a.v), norm(a.omega))
+    return total
+
+
 def size_of_terms(body: cython.pointer[Body], row: cython.pointer[Closure], a: Vec3, alpha: Vec3) -> cython.double:
     """|f| (|a| + (|alpha| + omega^2) |Q - r|) + |m| (|alpha| + omega^2)."""
-    turn: cython.double = norm(alpha) + dot(body.omega, body.omega)
-    return norm(row.f) * (norm(a) + turn * norm(sub(row.Q, body.r))) + norm(row.m) * turn
+    return size_of_power(body, row, norm(a), norm(alpha) + dot(body.omega, body.omega))
+
+
+def size_of_power(
+    body: cython.pointer[Body], row: cython.pointer[Closure], shift: cython.double, turn: cython.double
+) -> cython.double:
+    """|f| (shift + turn |Q - r|) + |m| turn."""
+    return norm(row.f) * (shift + turn * norm(sub(row.Q, body.r))) + norm(row.m) * turn
 
 
 def add_unit_load(

@@ -70,6 +70,12 @@ def group_error(
     if b == run.energy_group:
         # energy, relative to the largest work so far or a fraction of the bodies' possible energy
         floor = scene.limits.slow_rate * run.control.energy_scale * run.control.rate * run.control.rate
+    if run.control.is_balanced:
+        least: cython.double = scene.limits.imposed_rounding * run.control.imposed_rate / run.control.tolerance
+        if b == run.energy_group:
+            least *= run.control.energy_scale * run.control.imposed_rate
+        if floor < least:
+            floor = least
     scale: cython.double = 1.0 / run.control.tolerance
     for i in range(group.coordinates, group.end):
         if i == group.rates:
@@ -83,6 +89,58 @@ def group_error(
     if fine > 0.0:
         return run.h * fine / sqrt(fine + COARSE_SHARE * coarse)
     return fine  # 0, or not a number
+
+
+def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
+    """Update the largest rate so far that drives and single loads impose, at the instant evaluated last, and whether
+    all moves so much slower that its rates may be rounding.
+
+    Where they balance, all that they act on rests but for rounding: two springs that pull against each other, a
+    pendulum that hangs still in a rotor.
+    """
+    i: cython.Py_ssize_t
+    u: cython.double
+    rate: cython.double = 0.0
+    square: cython.double = 0.0
+    inertia: cython.double
+    for i in range(scene.freedom_count):
+        freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
+        if freedom.driven:
+            u = fabs(freedom.u) * norm(freedom.s)
+            if freedom.kind == SHIFT:
+                u /= scene.size
+            if u > rate:
+                rate = u
+    for i in range(scene.load_count):
+        load: cython.pointer[Load] = cython.address(scene.loads[i])
+        inertia = least_inertia(scene, run, load.a, load.b)
+        u = sum_magnitudes(load.force) + sum_magnitudes(load.moment) / scene.size
+        if inertia > 0.0 and u > square * inertia:
+            square = u / inertia
+    if square > rate * rate:
+        rate = sqrt(square)
+    if rate > run.control.imposed_rate:
+        run.control.imposed_rate = rate
+    run.control.is_balanced = run.control.rate < scene.limits.balanced_rate * run.control.imposed_rate
+
+
+def least_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], a: cython.int, b: cython.int) -> cython.double:
+    """Return the lesser mass of two bodies by the size; -1: the ground. One without mass counts as the least of all."""
+    first: cython.double = body_inertia(scene, run, a)
+    second: cython.double = body_inertia(scene, run, b)
+    return first if first < second else second
+
+
+def body_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], k: cython.int) -> cython.double:
+    """Return the mass of a body by the size; of the ground 1e300, of one without mass the least of all."""
+    if k < 0:
+        return 1e300
+    return scene.bodies[k].mass * scene.size if scene.bodies[k].mass > 0.0 else run.control.least_inertia
+
+
+def sum_magnitudes(a: Vec3) -> cython.double:
+    """|x| + |y| + |z|."""
+    return fabs(a.x) + fabs(a.y) + fabs(a.z)
 
 
 def exceeds_chart(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:

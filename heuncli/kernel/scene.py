@@ -404,6 +404,8 @@ class Limits(Record):
     jump_of_given: float  # and the same at most of what a given step turns the scene by
     slow_rate: float  # relative to the model's largest rate: slower bodies are judged as if this fast
     held_rate: float  # relative to the rate that loads could cause: bodies held at rest are judged as if this fast
+    balanced_rate: float  # relative to the rate that drives and loads impose: what is slower may rest between them
+    imposed_rounding: float  # and the rounding of its rates
     least_step: float  # relative to the time: rounding
     given_end: float  # relative to a given step: a shorter remainder of a piece is merged into its last step
     retry_ratio: float  # ratio of the lengths tried
@@ -420,6 +422,7 @@ class Limits(Record):
     least_load: float  # smaller loads are none, in any unit
     touching: float  # relative to the size, and to its places and limits: accuracy of a contact's gap
     friction_rounding: float  # relative to a friction and to what it can hold: rounding of their difference
+    still_rate: float  # relative to the terms of a row's rate: rounding
     unseen: float  # relative to a load's largest value: change unseen by the stages before a step is repeated
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
     branch_step: float  # relative to the least pivot: motion of the coordinates in a step along a branch

@@ -14,7 +14,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate, record_course
 from heuncli.kernel.events import follow_angles, hold_branches
 from heuncli.kernel.following import prepare_step, project_sample
-from heuncli.kernel.judging import growth_factor, weighted_norm
+from heuncli.kernel.judging import growth_factor, update_imposed_rate, weighted_norm
 from heuncli.kernel.points import evaluate_variables
 from heuncli.kernel.response import (
     evaluate,
@@ -109,6 +109,8 @@ def accept_step(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     i: cython.Py_ssize_t
     code: cython.int = REACHED
     run.control.retries = 0
+    if method.implicit or not (run.following or run.determined or method.fixed):
+        update_imposed_rate(scene, run)
     sample_step(scene, method, run)
     if run.track.has_courses:
         record_course(method, run)

@@ -16,7 +16,7 @@ from heuncli.kernel.dense import clip_time, combine_stages, store_chart_slopes
 from heuncli.kernel.evaluator import evaluate_program
 from heuncli.kernel.events import hold_branches
 from heuncli.kernel.following import follow_drives, is_determined, prepare_step
-from heuncli.kernel.judging import assess_step, weighted_norm
+from heuncli.kernel.judging import assess_step, sum_magnitudes, update_imposed_rate, weighted_norm
 from heuncli.kernel.landing import (
     begin_step_extremes,
     count_flurry_event,
@@ -74,6 +74,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     if run.watches_contacts and find_pushing_rope(scene, run):
         return ROPE_SLACK
     clear_accelerations(scene, method, run.K[0], True)
+    measure_inertia(scene, run)
     if run.determined:
         run.control.proposed = run.end - run.t
         if not is_determined(scene):
@@ -83,6 +84,7 @@ def begin_piece(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         h = find_first_step(scene, method, run)
         if run.control.proposed <= 0.0 or h < run.control.proposed:
             run.control.proposed = h
+    update_imposed_rate(scene, run)
     run.begins_piece = 0
     run.control.grid = run.t
     run.control.on_grid = 0
@@ -125,6 +127,18 @@ def find_first_step(
     return run.end - run.t
 
 
+def measure_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
+    """Set sum m size^2, and the least m size of the bodies that have mass."""
+    i: cython.Py_ssize_t
+    g: cython.double
+    run.control.energy_scale = run.control.least_inertia = 0.0
+    for i in range(scene.body_count):
+        g = scene.bodies[i].mass * scene.size
+        if g > 0.0 and (run.control.least_inertia == 0.0 or g < run.control.least_inertia):
+            run.control.least_inertia = g
+        run.control.energy_scale += g * scene.size
+
+
 def find_load_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
     """Return a fraction of the rate that the applied loads could cause, for parts that are held at rest [1/s].
 
@@ -133,28 +147,16 @@ def find_load_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cy
     i: cython.Py_ssize_t
     u: cython.double
     g: cython.double
-    lightest: cython.double = 0.0
     largest: cython.double = norm(scene.gravity) / scene.size
-    run.control.energy_scale = 0.0
-    for i in range(scene.body_count):
-        g = scene.bodies[i].mass * scene.size
-        if g > 0.0 and (lightest == 0.0 or g < lightest):
-            lightest = g
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         g = body.mass * scene.size
-        run.control.energy_scale += g * scene.size
         if g == 0.0:
-            g = lightest
+            g = run.control.least_inertia
         u = (sum_magnitudes(body.f_applied) + sum_magnitudes(body.M_applied) / scene.size) / g
         if u > largest:
             largest = u
     return scene.limits.held_rate * sqrt(largest)
-
-
-def sum_magnitudes(a: Vec3) -> cython.double:
-    """|x| + |y| + |z|."""
-    return fabs(a.x) + fabs(a.y) + fabs(a.z)
 
 
 def set_step_end(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:

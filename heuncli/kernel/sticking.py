@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from math import fabs
 
+from heuncli.kernel.closures import size_of_row_rate
 from heuncli.kernel.declarations import *
 
 # Relative to the largest rate of a step: what began at rest and is slower has not stopped again, but not left its start
@@ -85,15 +86,37 @@ def sticking_limit(scene: cython.pointer[Scene], contact: cython.pointer[Contact
     return total
 
 
-def friction_threshold(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
-    """Return the margin above which the state changes, from its rounding over a step whose extremes are known."""
+def friction_threshold(
+    scene: cython.pointer[Scene], contact: cython.pointer[Contact], last: cython.double
+) -> cython.double:
+    """Return the margin above which the state changes, from its rounding over a step whose extremes are known.
+
+    last: the end of the piece [s]
+
+    What begins at rest may begin with the rounding of its rate against its slip: in the shortest steps that is more
+    than all that it gains.
+    """
+    rounding: cython.double
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     largest: cython.double = fabs(contact.least) if fabs(contact.least) > fabs(contact.most) else fabs(contact.most)
     if row.mode != APART:
         return scene.limits.friction_rounding * (largest + sticking_limit(scene, contact))
-    if contact.start >= -BEGINS_TO_SLIP * largest:
-        return BEGINS_TO_SLIP * largest
+    rounding = find_rate_rounding(scene, row, last)
+    if contact.start >= -BEGINS_TO_SLIP * largest or contact.start >= -rounding:
+        return BEGINS_TO_SLIP * largest if BEGINS_TO_SLIP * largest > rounding else rounding
     return scene.limits.rounding * largest
+
+
+def find_rate_rounding(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], last: cython.double
+) -> cython.double:
+    """Return the rate below which a row is at rest: rounding of the terms of its rate, or of its gap up to the end.
+
+    The same as `measure_coordinate_rate` (motion/integration/contacts/latches.py), by which its state is decided.
+    """
+    rounding: cython.double = scene.limits.still_rate * size_of_row_rate(scene, row)
+    drift: cython.double = scene.limits.touching * ((scene.size + norm(row.Q)) / row.weight + fabs(row.length))
+    return rounding if rounding * last > drift else drift / last
 
 
 def record_sticking(scene: cython.pointer[Scene]) -> cython.void:

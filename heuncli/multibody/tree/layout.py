@@ -185,11 +185,22 @@ class Layout(LayoutFrame):
         places = self.tables["closures"]["length"][[self.contacts[i].row for i in self.latches]]
         return np.concatenate([np.zeros(len(self.contacts)), places, np.zeros(3 * len(self.friction_contacts))])
 
+    @property
+    def friction_slice(self) -> slice:
+        """Where contact states hold the coordinates or signs of the frictions that may stick."""
+        begin = len(self.contacts) + len(self.latches)
+        return slice(begin, begin + len(self.friction_contacts))
+
+    @property
+    def group_slice(self) -> slice:
+        """Where contact states hold, after these, the leaders and transmissions of the frictions that may stick."""
+        return slice(self.friction_slice.stop, self.friction_slice.stop + 2 * len(self.friction_contacts))
+
     def read_groups(self, holding: Array) -> tuple[Indices, Array]:
         """Return of each friction that may stick the contact that leads its group and its rate per unit rate of that,
         from contact states (n_t, n); (n_t, k) both, -1 and 0 where it does not stick with others.
         """
-        numbers = holding[:, holding.shape[1] - 2 * len(self.friction_contacts) :]
+        numbers = holding[:, self.group_slice]
         return numbers[:, ::2].astype(int) - 1, numbers[:, 1::2]
 
     def open_followers(self, holding: Array) -> Array:

@@ -34,6 +34,7 @@ PART = Part(
         Row("KERNEL.touching", low_hop, "none", "flies"),
     ),
     exempt={
+        "KERNEL.still_rate": "the same as CONTACT_RATE, by which the state is decided that the kernel then follows",
         "KERNEL.friction_rounding": "how exactly breaking away is met: what sticks as much longer moves nothing",
         "KERNEL.one_instant": "to what an event is landed on, in roundings of its instant",
         "KERNEL.window": "where the end of a step is looked at for an event; else all of the step is",

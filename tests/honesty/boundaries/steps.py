@@ -26,6 +26,8 @@ PART = Part(
         "KERNEL.pivot_rounding": "lengths of steps that are tried: the estimate says what was reached",
         "KERNEL.pivot_noise": "lengths of steps that are tried: the estimate says what was reached",
         "KERNEL.slow_rate": "lengths of steps of what is slow beside others: the estimate says what they are worth",
+        "KERNEL.balanced_rate": "lengths of steps of what rests: the estimate says what they are worth",
+        "KERNEL.imposed_rounding": "lengths of steps of what rests: the estimate says what they are worth",
         "KERNEL.held_rate": "lengths of the first steps from rest: the estimate says what they are worth",
     },
     wanted={

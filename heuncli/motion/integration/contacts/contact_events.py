@@ -172,7 +172,7 @@ class Contacts:
             self.holding = self.friction.add_to(self.latches.holding())
             self.holding[problem.touching.indices] = outcome.holding
             self.holding[unwatched] = UNWATCHED
-            if not self.friction.indices:
+            if not self.friction.places.indices:
                 return outcome
             before, is_struck = self.holding.copy(), bool(sides.loads) or bool(outcome.impulses.impulses.any())
             sentences = self.friction.decide(given_impulse.after_time, outcome.after_state, before, row, is_struck)
@@ -243,7 +243,7 @@ class Contacts:
             if not is_short.any():
                 break
             at_rest = at_rest | is_short
-        if self.layout.mechanism.joint_friction or self.friction.indices:
+        if self.layout.mechanism.joint_friction or self.friction.places.indices:
             self.require_decided(given_impulse.after_time, after_state, problem, holding, impulses.rate)
         if impulses.impulses.any():
             bearing = np.flatnonzero(impulses.impulses)

@@ -1,4 +1,4 @@
-"""Find which frictions at rest can only stick together: those of one freedom, as in all pins of a four-bar.
+"""The places where friction may stick; at rest those of one freedom stick together, as in all pins of a four-bar.
 
     q_i' = t_i q_L'     rates on one freedom, t_i the transmission from the leader L
     |sum of t_i value_i|  <=  sum of |t_i| limit_i            they stick
@@ -18,6 +18,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.touching import find_free_response, unit_load
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import solve_impulses
@@ -77,6 +78,51 @@ class PlaceResponse(NamedTuple):
     def find_transmission(self, k: int, leader: int) -> float:
         """Return the rate of a place per unit rate of another one that moves only with it."""
         return float(self.response[k, leader] / self.response[leader, leader])
+
+
+class FrictionPlaces:
+    """The places of a scene where friction may stick, and what is given of them.
+
+    presses (k,): whether the joint's own load tells its size; has_one_size: static friction is kinetic everywhere
+    is_given: no friction depends on a load; is_convex: so that one choice of states agrees at most
+    """
+
+    def __init__(self, evaluator: Evaluator) -> None:
+        self.evaluator, self.layout = evaluator, evaluator.layout
+        self.indices = list(self.layout.friction_contacts)
+        self.contacts = [self.layout.contacts[i] for i in self.indices]
+        self.rows = [contact.row for contact in self.contacts]
+        self.load_rows = [contact.load_row for contact in self.contacts]
+        self.names = [contact.name for contact in self.contacts]
+        loads = self.layout.tables["loads"][self.load_rows]
+        self.presses = loads["normal_force_kind"] != kernel.GIVEN
+        self.has_one_size = bool((loads["breakaway"] == loads["coefficient"]).all())
+        self.is_given = not self.layout.mechanism.joint_friction
+        self.is_convex = self.is_given and self.has_one_size
+
+    def set_states(
+        self, contact_states: Array, sticks: Array, coordinate_or_sign: Array, groups: Sequence[FrictionGroup] = ()
+    ) -> Array:
+        """Return contact states in which friction sticks at a coordinate, in groups, or slips with a sign."""
+        contact_states = contact_states.copy()
+        if self.indices:
+            contact_states[self.indices] = sticks
+            contact_states[self.layout.friction_slice] = coordinate_or_sign
+            contact_states[self.layout.group_slice] = list_group_numbers(groups, self.indices)
+        return contact_states
+
+    def release_all(self, contact_states: Array) -> Array:
+        """Return contact states in which no friction sticks or acts."""
+        none = np.zeros(len(self.indices))
+        return self.set_states(contact_states, none, none)
+
+    def has_row(self, group: FrictionGroup, row: int | None) -> bool:
+        """Return whether a closure row is that of a member of a group."""
+        return any(self.rows[k] == row for k in group.members)
+
+    def evaluate(self, t: float, state: Array, contact_states: Array) -> Evaluation:
+        """Evaluate a state with given contact states."""
+        return self.evaluator.evaluate(np.array([t]), state[None, :], holding=contact_states)
 
 
 def measure_response(
