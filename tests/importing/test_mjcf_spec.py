@@ -112,9 +112,26 @@ LEFT = {  # what is left out, and what the warning says of it
         "contacts are left out: 2 of 2",
     ),
     "mocap": (scene('<body name="hand" mocap="true"/>'), "mocap.*body hand"),
-    "fixed tendon": (
-        scene(rest='<tendon><fixed name="t" stiffness="3"><joint joint="elbow" coef="1"/></fixed></tendon>'),
-        "tendons are left out unless they run straight.*tendon t",
+    "bent tendon": (
+        scene('<site name="w" pos="0 1 0"/><site name="v" pos="0 2 0"/>', '<tendon><spatial name="t" stiffness="3">'
+              '<site site="tip"/><site site="w"/><site site="v"/></spatial></tendon>'),
+        "tendons are left out unless they are fixed, or run straight.*tendon t",
+    ),
+    "yielding tendon": (
+        scene(rest='<tendon><fixed name="t" stiffness="3 2"><joint joint="elbow" coef="1"/></fixed></tendon>'),
+        "nonlinear parts.*springs and dampers are in the spec: tendon t",
+    ),
+    "rotor": (
+        scene(rest='<actuator><motor name="m" joint="elbow" armature="1"/></actuator>'), "rotor inertia of actuators.*m"
+    ),
+    "curved damping": (
+        scene(rest='<actuator><motor name="m" joint="elbow" damping="1 2"/></actuator>'), "damping of actuators.*m"
+    ),
+    "curved coupling": (
+        scene('<body><joint name="b"/><geom size=".1"/></body>', '<tendon><fixed name="f"><joint joint="elbow" coef="1"'
+              '/></fixed><fixed name="g"><joint joint="b" coef="1"/></fixed></tendon>'
+              '<equality><tendon name="q" tendon1="f" tendon2="g" polycoef="0 1 2 0 0"/></equality>'),
+        "equality 'q': a spec can couple fixed tendons only, and in a fixed ratio",
     ),
     "limited tendon": (
         scene('<site name="w" pos="0 1 0"/>', '<tendon><spatial name="t" stiffness="3" range="0 2"><site site="tip"/>'
@@ -128,11 +145,6 @@ LEFT = {  # what is left out, and what the warning says of it
         scene(rest='<equality><joint joint1="elbow"/><joint name="s" joint1="elbow" polycoef="1 0 0 0 0"/></equality>'),
         "equality 's': elbow follows two joints",
     ),
-    "turned weld": (
-        scene('<body name="lid" pos="0 1 0"><freejoint/><geom size=".1"/></body>',
-              '<equality><weld name="w" body1="lid" body2="arm" relpose="0 0 0 .7 .7 0 0"/></equality>'),
-        "equality 'w': a spec has no weld that rotates its bodies by 90 degrees",
-    ),
 }  # fmt: skip
 
 
@@ -145,6 +157,13 @@ def test_what_has_no_counterpart_is_told(name):
     assert re.search(said, problem.message), problem.message
     assert problem.location is None or problem.location.line >= 1
     assert f"# - {problem.message}" in imported(text)
+
+
+def test_soft_limits_are_told_where_they_become_stops():
+    soft = LEG.replace('limited="true"', 'limited="true" solreflimit="-100 -5"')
+    assert not described(soft, free=True).left_out
+    (problem,) = described(soft, free=True, limits=True).left_out
+    assert "softness of limits" in problem.message and "joint hip-x" in problem.message
 
 
 def test_a_motor_is_no_loss():

@@ -28,11 +28,11 @@ from heuncli.scene.importers.mjcf.loads import (
     iter_gravity_compensation,
     iter_joint_loads,
     iter_stops,
-    iter_tendon_springs,
 )
 from heuncli.scene.importers.mjcf.loop_closures import ClosureBuilder, LoopClosures
 from heuncli.scene.importers.mjcf.no_counterpart import find_unsupported
 from heuncli.scene.importers.mjcf.starts import StartKeys, choose_held_joints, find_starts, joint_places
+from heuncli.scene.importers.mjcf.tendons import iter_tendon_springs
 from heuncli.scene.importers.mjcf.tree import (
     CARRIER_MASS_RATIO,
     FREE,
@@ -93,7 +93,7 @@ class _MachineBuilder:
         gravity = ZERO if c.is_disabled("GRAVITY") else to_vec(model.opt.gravity)
         forces = (
             *iter_joint_loads(c, self.tree, self.names.assign),
-            *iter_tendon_springs(c, self.closure_builder, self.names.assign),
+            *iter_tendon_springs(c, self.closure_builder, self.tree, self.names.assign),
             *iter_gravity_compensation(
                 c, self.frames, self.tree, self.points, gravity, self.names.assign, self.options.free
             ),
@@ -117,8 +117,8 @@ class _MachineBuilder:
             ground=self.points.get_points(GROUND),
             parameters=self.laws.parameters,
             joints=tuple(self.add_initial(joint) for joint in (*self.joints, *self.closures.joints)),
-            drives=self.laws.drives,
-            couplings=self.laws.couplings,
+            drives=(*self.laws.drives, *self.closures.drives),
+            couplings=(*self.laws.couplings, *self.closures.ratios),
             forces=forces,
             stops=limits,
             header_lines=tuple(self.iter_header_lines()),
@@ -213,8 +213,8 @@ class _MachineBuilder:
         ground = sum(float(model.body_mass[body]) for body, owner in enumerate(self.frames.owners) if owner == 0)
         if ground > 0.0:
             yield f"Fixed bodies belong to the ground; their {ground:.6g} kg are not in the load on the foundation."
-        if self.closures.joints:
-            yield "Equalities are soft in MuJoCo and rigid joints here."
+        if self.closures.imported_equalities:
+            yield "Equalities are soft in MuJoCo and exact here."
         yield from self.closures.header_lines
         yield from (f"MuJoCo warns: {text}" for text in c.warning_texts)
 
