@@ -166,6 +166,13 @@ def test_soft_limits_are_told_where_they_become_stops():
     assert "softness of limits" in problem.message and "joint hip-x" in problem.message
 
 
+def test_controls_of_a_keyframe_are_told_where_they_would_move_joints():
+    text = LEG.replace('qpos="0 0 0"', 'qpos="0 0 0" ctrl="2"')
+    assert not described(text, keyframe="1").left_out and not described(text, free=True, keyframe="bent").left_out
+    (problem,) = described(text, free=True, keyframe="1").left_out
+    assert "controls (ctrl)" in problem.message
+
+
 def test_a_motor_is_no_loss():
     assert not described(scene(rest='<actuator><motor joint="elbow"/></actuator>')).left_out
     assert not described(scene(rest='<sensor><jointpos joint="elbow"/></sensor>')).left_out
@@ -211,6 +218,25 @@ def test_files_are_named_from_the_models_folder(heun, folder):
     (folder / "parts" / "a.xml").write_text('<!DOCTYPE a [<!ENTITY b "c">]><mujocoinclude/>')
     done = heun("import", "m.xml", "-q")
     assert done.returncode == 2 and "a.xml:1" in done.stderr and "xml-entities" in done.stderr
+
+
+def test_two_included_files_of_one_name_are_not_taken_for_one(folder):
+    body = "<body><joint/><geom size='.1' mass='{}' contype='0'/></body>"
+    for place, mass in (("one", 3), ("two", 4)):
+        (folder / place).mkdir()
+        (folder / place / "b.xml").write_text('<mujocoinclude><include file="c.xml"/></mujocoinclude>')
+        (folder / place / "c.xml").write_text(
+            f"<mujocoinclude><worldbody>{body.format(mass)}</worldbody></mujocoinclude>"
+        )
+    text = '<mujoco><include file="one/b.xml"/><include file="two/b.xml"/></mujoco>'
+    with pytest.raises(SpecError, match=r"c\.xml is the name of two files") as refused:
+        described(text, str(folder / "m.xml"))
+    assert refused.value.problems[0].code == "import-file"
+    (machine,) = described('<mujoco><include file="two/b.xml"/></mujoco>', str(folder / "m.xml")).bodies
+    assert machine.mass == 4.0
+    hidden = '<mujoco><compiler meshdir="two"/><include file="c.xml"/></mujoco>'  # no place of models
+    with pytest.raises(SpecError, match=r"c\.xml"):
+        described(hidden, str(folder / "m.xml"))
 
 
 def test_strict_writes_nothing_where_something_is_left_out(heun, folder):

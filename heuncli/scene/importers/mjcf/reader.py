@@ -14,6 +14,7 @@ from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.loads import Matrix
 from heuncli.scene.file_format.models import ZERO
 from heuncli.scene.importers.description import (
+    LEFT_OUT_CODE,
     DescribedBody,
     DescribedEntry,
     DescribedMachine,
@@ -106,6 +107,7 @@ class _MachineBuilder:
             *self.laws.left_out,
             *self.closures.left_out,
             *find_unsupported(c, self.closures.rods, self.options.limits, self.options.free),
+            *_find_left_out_controls(c, self.options),
         )
         return DescribedMachine(
             title=_read_title(c),
@@ -234,6 +236,17 @@ def _find_start_values(c: CompiledModel, keyframe: str | None) -> tuple[Any, Any
     hint = suggest(keyframe, [name for name in names if name], "keyframes") if any(names) else "leave out --keyframe"
     message = f"there is no keyframe {keyframe!r}; number of keyframes: {len(names)}"
     raise SpecError(Problem("import-keyframe", message, SourceLocation(c.file, 1, 1), hint))
+
+
+def _find_left_out_controls(c: CompiledModel, options: ImportOptions) -> Iterator[Problem]:
+    """Yield a problem if a keyframe's controls would move joints that are left free."""
+    names = [
+        options.keyframe == c.name("keyframe", k) or options.keyframe == str(k) for k in range(c.count("keyframe"))
+    ]
+    if options.free and any(names) and np.any(c.model.key_ctrl[names.index(True)]):
+        message = f"the controls (ctrl) of the keyframe {options.keyframe!r} are left out"
+        hint = "write what the motors exert as torques, or leave out --free"
+        yield Problem(LEFT_OUT_CODE, message, SourceLocation(c.file, 1, 1), hint)
 
 
 def _require_finite(c: CompiledModel) -> None:
