@@ -7,7 +7,7 @@ the parent has the opposite axis, so its values stay.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import count
 
 import numpy as np
@@ -133,9 +133,11 @@ def is_linear_damper(load: object) -> bool:
 # Notes
 
 
-def list_notes(spec: Spec, mechanism: Mechanism, written_forces: Collection[str]) -> list[str]:
-    """Say in sentences which entries the file does not hold. written_forces: names of those that it holds"""
-    stops = {stop.name for stop in find_limits(mechanism).values()}
+def list_notes(
+    spec: Spec, mechanism: Mechanism, written_forces: Collection[str], limits: Mapping[LimitKey, Stop[int]]
+) -> list[str]:
+    """Say in sentences which entries the file does not hold. written_forces, limits: names and stops that it holds"""
+    stops = {stop.name for stop in limits.values()}
     notes = []
     if mechanism.planar:
         notes.append("the model is planar: of each inertia the moments about x and y have no meaning")

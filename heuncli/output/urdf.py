@@ -106,8 +106,8 @@ def list_urdf_notes(spec: Spec, mechanism: Mechanism, tree: Sequence[PlacedJoint
     gravity = " ".join(f"{component:g}" for component in spec.gravity)
     if gravity != STANDARD_GRAVITY_TEXT:
         yield f"gravity is {gravity} m/s^2; URDF has none"
-    yield from list_notes(spec, mechanism, {load.name for load in mechanism.loads if is_linear_damper(load)})
     limits = find_limits(mechanism)
+    yield from list_notes(spec, mechanism, {load.name for load in mechanism.loads if is_linear_damper(load)}, limits)
     endless = [
         placed.joint.name
         for placed in tree
