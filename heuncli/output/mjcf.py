@@ -17,11 +17,13 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from heuncli.base.errors import Problem, SpecError
+from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import list_words
 from heuncli.multibody.mechanism.loads import GROUND, JointLoad, PairLoad
-from heuncli.multibody.mechanism.model import Body, Joint
+from heuncli.multibody.mechanism.model import Body, Joint, scene_size
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.multibody.tree.starts import body_state, compute_joint_start
+from heuncli.multibody.tree.starts import body_state, compute_joint_start, joint_direction
 from heuncli.output.mjcf_parts import JointElement, MjcfConnections, format_inertial, format_place, iter_geom
 from heuncli.output.robot_tree import (
     PIN_KINDS,
@@ -53,11 +55,13 @@ SCALAR_PARTS = {  # elements of a joint, nearest to the parent first: its type i
     "ball": (("ball", ""),),
     "weld": (),
 }
+LOOSE_KINDS = ("line", "plane", "flat line", "flat plane")  # slides and a rotation, counted from the start
 # of the joints that can close a loop, how late they go into the tree; None: never
 CLOSING_RANKS = {"weld": 1, **dict.fromkeys(PIN_KINDS, 1), "ball": 2, "rod": None}
-MIN_INERTIA = 1e-15  # MuJoCo's own mjMINVAL: masses [kg] and moments [kg m^2] of moving bodies are above it
+MIN_MASS = 1e-15  # [kg] MuJoCo's own mjMINVAL, which also moments of inertia have to exceed
 NEGLIGIBLE_MASS = 1e-15  # of a body between two joints, to that of the body beyond
-JOINT_HINT = "MJCF knows pin, slide, cylinder, universal, ball and weld; others at the ends of loops only"
+SMALL_MOMENT = 1e-12  # least moment of inertia, to mass times size squared: MuJoCo refuses 0
+JOINT_HINT = "MJCF has no cv, curve, rope or driven rod, and closes loops by rod, ball, weld and pin"
 
 
 class MjcfText(NamedTuple):
@@ -151,6 +155,9 @@ class _MjcfWriter:
         """Say in sentences what the file does not hold, or holds otherwise."""
         written = {load.name for load in (*self.joint_loads, *self.springs)}
         notes = list_notes(self.spec, self.mechanism, written, self.limits)
+        thin = self.list_small_moments()
+        if thin:
+            notes.append(f"moments of inertia of 0 are small ones in the file, as MuJoCo refuses 0: {list_words(thin)}")
         if self.limits:
             notes.append("MuJoCo's limits are soft, without the restitution of stops")
         if self.connections.equalities:
@@ -164,7 +171,7 @@ class _MjcfWriter:
     def require_words(self) -> None:
         """Raise SpecError [export-mjcf] for all that MJCF cannot say."""
         spec, mechanism = self.spec, self.mechanism
-        unknown = [placed.joint for placed in self.tree if placed.joint.kind not in SCALAR_PARTS]
+        unknown = [placed.joint for placed in self.tree if placed.joint.kind not in (*SCALAR_PARTS, *LOOSE_KINDS)]
         unknown += [joint for joint in self.closures if joint.kind not in CLOSING_RANKS or joint.can_open]
         driven = [joint for joint in self.closures if joint.drive is not None and joint.kind == "rod"]
         closed = {joint.name for joint in self.closures}
@@ -184,19 +191,17 @@ class _MjcfWriter:
             raise SpecError(*problems)
 
     def iter_mass_problems(self) -> Iterator[Problem]:
-        """Yield a problem for each moving body without mass or moments that is not between two joints."""
+        """Yield a problem for each moving body without mass that is not between two joints."""
         for i, body in enumerate(self.mechanism.bodies):
-            smallest = np.linalg.eigvalsh(self.get_inertia(body))[0] if body.mass > 0.0 else 0.0
-            if self.is_carrier(i) or (body.mass > MIN_INERTIA and smallest > MIN_INERTIA):
-                continue
-            message = f"body {body.name}: MuJoCo refuses moving bodies without mass or with a moment of inertia of 0"
-            hint = f"give it a mass and moments above {MIN_INERTIA:g}"
-            yield Problem(CODE, message, self.spec.location(f"bodies.{body.name}"), hint)
+            if body.mass <= MIN_MASS and not self.is_carrier(i):
+                message = f"body {body.name} has no mass, which MuJoCo refuses for moving bodies"
+                location = self.spec.location(f"bodies.{body.name}")
+                yield Problem(CODE, message, location, f"give it a mass above {MIN_MASS:g} kg")
 
     def is_carrier(self, i: int) -> bool:
         """Return whether a body is only between two joints of the tree, without mass beside the body beyond."""
         body, beyond = self.mechanism.bodies[i], self.children.get(i, [])
-        if i in self.roots or len(beyond) != 1 or not SCALAR_PARTS.get(beyond[0].joint.kind):
+        if i in self.roots or len(beyond) != 1 or beyond[0].joint.kind == "weld":
             return False
         end = beyond[0].child
         while self.mechanism.bodies[end].mass <= body.mass and len(self.children.get(end, ())) == 1:
@@ -209,10 +214,30 @@ class _MjcfWriter:
     # Bodies
 
     def get_inertia(self, body: Body) -> Array:
-        """Return the inertia of a body (3, 3); of a planar one the moments in the plane are made equal to that about
-        its normal.
+        """Return the inertia of a body (3, 3), without moments of 0; of a planar one the moments in the plane are made
+        equal to that about its normal.
         """
-        return body.inertia[2, 2] * np.eye(3) if self.mechanism.planar else body.inertia
+        inertia = body.inertia[2, 2] * np.eye(3) if self.mechanism.planar else body.inertia
+        least = self.find_least_moment(body)
+        moments, axes = np.linalg.eigh(inertia)
+        if moments[0] >= least:
+            return inertia
+        return np.asarray((axes * np.maximum(moments, least)) @ axes.T)
+
+    def find_least_moment(self, body: Body) -> float:
+        """Return the least moment of inertia of a body in the file [kg m^2]."""
+        size = scene_size(self.mechanism, self.scene.start)
+        return max(2.0 * MIN_MASS, SMALL_MOMENT * body.mass * size * size)
+
+    def list_small_moments(self) -> list[str]:
+        """Return the names of the bodies with a moment of inertia that the file has otherwise."""
+        bodies = (body for i, body in enumerate(self.mechanism.bodies) if not self.is_carrier(i))
+        index = slice(2, 3) if self.mechanism.planar else slice(0, 3)
+        return [
+            body.name
+            for body in bodies
+            if np.linalg.eigvalsh(body.inertia[index, index])[0] < self.find_least_moment(body)
+        ]
 
     def iter_children(self, parent: int, depth: int) -> Iterator[str]:
         """Yield the bodies on the joints of a body."""
@@ -227,20 +252,15 @@ class _MjcfWriter:
         R, p = np.eye(3), np.zeros(3)  # of a body of the chain in the parent, with all joints at 0
         places: list[tuple[PlacedJoint, Array, Array]] = []  # joint, point in the parent, attitude after it
         for placed in chain:
-            point = p + R @ placed.parent_point
+            point = p + R @ (placed.parent_point + self.find_offset(placed))
             R = R @ find_attitude(placed, self.scene)
             p = point - R @ placed.child_point
             places.append((placed, point, R))
-        elements = [
-            element
-            for placed, point, attitude in places
-            for element in self.make_elements(
-                placed,
-                placed.child_point if placed is chain[-1] else R.T @ (point - p),
-                R.T @ attitude,
-                chain[-1].child,
-            )
-        ]
+        elements: list[JointElement] = []
+        for placed, point, attitude in places:
+            pos = placed.child_point if placed is chain[-1] else R.T @ (point - p)
+            make = self.make_loose_elements if placed.joint.kind in LOOSE_KINDS else self.make_elements
+            elements += make(placed, pos, R.T @ attitude, chain[-1].child)
         for element in elements:
             self.q += element.q
             self.v += element.v
@@ -298,6 +318,43 @@ class _MjcfWriter:
             for name, (kind, quantity) in zip(reversed(names), parts, strict=False):
                 q, v = coordinates[quantity]
                 yield JointElement(name, kind, joint, quantity, pos, axis, (q,), (v,))
+
+    def find_offset(self, placed: PlacedJoint) -> Array:
+        """Return the vector from the parent's point of a joint to the child's, with all joints at 0, in the axes of the
+        parent: as at the start, where the joint has no coordinates.
+        """
+        if placed.joint.kind not in LOOSE_KINDS:
+            return np.zeros(3)
+        start = self.scene.start
+        (xp, Rp, _, _), (xc, Rc, _, _) = body_state(start, placed.parent), body_state(start, placed.child)
+        return np.asarray(Rp.T @ (xc + Rc @ placed.child_point - xp) - placed.parent_point)
+
+    def make_loose_elements(self, placed: PlacedJoint, pos: Array, turn: Array, end: int) -> list[JointElement]:
+        """Return the slides and the rotation of a joint that holds a point on a line or in a plane of `from`.
+
+        The rotation is about that point, so it comes after the slides if the parent is `from`, else before them.
+        """
+        joint, start, kind = placed.joint, self.scene.start, JOINTS[placed.joint.kind]
+        attitude = find_attitude(placed, self.scene)
+        (xa, Ra, va, wa), (xb, Rb, vb, wb) = body_state(start, joint.a), body_state(start, joint.b)
+        arm = Rb @ joint.q
+        velocity = Ra.T @ (vb + np.cross(wb, arm) - va - np.cross(wa, arm + xb - xa))
+        spin = -(wb - wa) if placed.is_reversed else wb - wa
+        slides = []
+        for shift in kind.hold.shifts:
+            direction = joint_direction(joint, shift)
+            axis = turn @ (-direction if placed.is_reversed else attitude.T @ direction)
+            name = choose_name(f"{joint.name}_2", self.joint_names)
+            self.joint_names.add(name)
+            slides.append(JointElement(name, "slide", joint, "", pos, axis, (0.0,), (float(direction @ velocity),)))
+        pivot = pos - turn @ attitude.T @ self.find_offset(placed) if placed.is_reversed else pos
+        if kind.turn.ball and not self.mechanism.planar:
+            rates = tuple(map(float, start.rotation[end].T @ spin))
+            rotation = JointElement(joint.name, "ball", joint, "", pivot, np.zeros(3), (1.0, 0.0, 0.0, 0.0), rates)
+        else:
+            axis = np.array([0.0, 0.0, 1.0])
+            rotation = JointElement(joint.name, "hinge", joint, "", pivot, axis, (0.0,), (float(spin[2]),))
+        return [rotation, *slides] if placed.is_reversed else [*slides, rotation]
 
     def format_joint(self, element: JointElement) -> str:
         """Format a joint with its springs, dampers and limits."""
