@@ -93,7 +93,12 @@ def name_before_letter(text: str) -> str:
     """
     for joint in SEPARATOR.finditer(text):
         name, word = text[: joint.start()].strip(), text[joint.end() :].strip()
-        if joint[0].strip() in ("/", ",", "in") and len(word) == 1 and name and parse_heading_unit(text.strip()) is None:
+        if (
+            joint[0].strip() in ("/", ",", "in")
+            and len(word) == 1
+            and name
+            and parse_heading_unit(text.strip()) is None
+        ):
             unit = parse_heading_unit(word)
             return name if unit is not None and unit[0] == 1.0 else text.strip()
     return text.strip()
