@@ -103,7 +103,11 @@ def test_a_machine_with_joints_either_way_and_turned_bodies_moves_as_before() ->
 
 def test_shapes_points_and_what_is_left_out_stand_in_the_file() -> None:
     made = exported(load("m.yaml", MACHINE))
-    assert made.notes == ("forces left out: push", "start coordinates left out: hinge, foot, rail")
+    assert made.notes == (
+        "forces left out: push",
+        "URDF needs limits of slides: 1e+16 m stands for none: rail",
+        "start coordinates left out: hinge, foot, rail",
+    )
     assert made.text.count("<visual>") == 3 and '<box size="0.2 0.3 0.1"/>' in made.text
     assert '<link name="swing.mark"/>' in made.text and '<link name="swing.top"/>' not in made.text
     machine = described(made.text)
@@ -147,22 +151,33 @@ def test_a_body_called_world_stays_a_body() -> None:
     assert [body.name for body in described(exported(load("m.yaml", text)).text).bodies].count("world") == 1
 
 
+def test_slides_without_stops_get_none_when_read_again() -> None:
+    stops = described(exported(load("m.yaml", MACHINE)).text, free=True, limits=True).stops
+    assert [(stop.keys["joint"], stop.keys["travel"]) for stop in stops] == [("foot", (-3.0, 2.0))]
+
+
+def test_a_damper_with_a_law_is_left_out_and_said() -> None:
+    made = exported(load("m.yaml", MACHINE.replace("coefficient: 0.4", 'torque: "-2*rate*abs(rate)"')))
+    assert "forces left out: drag, push" in made.notes and made.text.count("damping=") == 1
+
+
 def test_start_values_and_names_that_are_taken_are_not_lost() -> None:
     text = MACHINE.replace("axis: [1, 0.2, 0]}", "axis: [1, 0.2, 0], initial: {rate: 2}}", 1)
     text = text.replace("[0, 5, 0],", "[0, 5, 0], velocity: [1, 0, 0],").replace("  glue:", "  free_free:")
     for old, new in (("tilted", "world"), ("sled", "world_"), ("fan", "world__")):
         text = text.replace(old, new)
     made = exported(load("m.yaml", text))
-    assert made.notes[1:] == (
+    assert made.notes[2:] == (
         "start coordinates left out: hinge, foot, rail",
         "start velocities left out: swing, world, world_, world__, free",
     )
     assert '<link name="world___"/>' in made.text and '<joint name="free_free_" type="floating">' in made.text
     assert len(described(made.text).bodies) == 6
+    endless = "URDF needs limits of slides: 1e+16 m stands for none: one"
     still = "bodies:{}joints: {{one: {{type: slide, from: ground.o, to: b.p, axis: [1, 0, 0]}}}}\n".format(
         " {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}\n"
     )
-    for place, notes in (("0", ()), ("2", ("start coordinates left out: one",))):
+    for place, notes in (("0", (endless,)), ("2", (endless, "start coordinates left out: one"))):
         ground = f"ground: {{points: {{o: [{place}, 0, 0]}}}}\n"
         assert exported(load("m.yaml", f"heun: 1\ngravity: [0, 0, -9.81]\n{ground}{still}")).notes == notes
 

@@ -219,6 +219,7 @@ LINES: Mapping[str, Sequence[str]] = {
     ),
     "export": (
         "urdf {spec} -o {out}/r.urdf --set {setting} --title T",
+        "mjcf {spec} -o {out}/r.xml",
         "loads {spec} --body {body} --at first --format csv --title T --label {path}=Words",
         "loads {spec} --body {body} --at first,last --format json",
         "loads {spec} --body {body} --at first --format ansys -o {out}/a.dat",

@@ -39,6 +39,25 @@ MODELS = {
         <spatial name="t" stiffness="7" damping="1" springlength="0.4"><site site="wall"/><site site="end"/></spatial>
         </tendon>"""
     ),
+    "damping of motors": arm(
+        'damping="0.5"',
+        rest='<actuator><motor joint="turn" damping="3" gear="2"/></actuator>',
+        flags='spring="disable"',
+    ),
+    "fixed tendon": arm(
+        'ref="0.1"',
+        rest="""<tendon><fixed name="f" stiffness="3" damping="2"><joint joint="turn" coef="2"/>
+        <joint joint="way" coef="-0.7"/></fixed></tendon>""",
+    ),
+    "slack ranges": arm(
+        rest="""<tendon><fixed stiffness="3" springlength="-1 0.1"><joint joint="turn" coef="2"/></fixed>
+        <fixed stiffness="3" springlength="1 2"><joint joint="way" coef="-.5"/></fixed>
+        <fixed stiffness="-30" springlength="0 9"><joint joint="way" coef="1"/></fixed>
+        <spatial stiffness="7" springlength="0 0.4"><site site="wall"/><site site="end"/></spatial>
+        <spatial stiffness="7" springlength="4 5"><site site="wall2"/><site site="end"/></spatial>
+        <spatial stiffness="-7" damping="-2" springlength="4"><site site="wall2"/><site site="end"/></spatial></tendon>
+        <actuator><motor tendon="g" damping="2" gear="3"/></actuator>""".replace("<fixed st", '<fixed name="g" st', 1),
+    ),
 }
 
 

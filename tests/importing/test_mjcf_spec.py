@@ -112,9 +112,26 @@ LEFT = {  # what is left out, and what the warning says of it
         "contacts are left out: 2 of 2",
     ),
     "mocap": (scene('<body name="hand" mocap="true"/>'), "mocap.*body hand"),
-    "fixed tendon": (
-        scene(rest='<tendon><fixed name="t" stiffness="3"><joint joint="elbow" coef="1"/></fixed></tendon>'),
-        "tendons are left out unless they run straight.*tendon t",
+    "bent tendon": (
+        scene('<site name="w" pos="0 1 0"/><site name="v" pos="0 2 0"/>', '<tendon><spatial name="t" stiffness="3">'
+              '<site site="tip"/><site site="w"/><site site="v"/></spatial></tendon>'),
+        "tendons are left out unless they are fixed, or run straight.*tendon t",
+    ),
+    "yielding tendon": (
+        scene(rest='<tendon><fixed name="t" stiffness="3 2"><joint joint="elbow" coef="1"/></fixed></tendon>'),
+        "nonlinear parts.*springs and dampers are in the spec: tendon t",
+    ),
+    "rotor": (
+        scene(rest='<actuator><motor name="m" joint="elbow" armature="1"/></actuator>'), "rotor inertia of actuators.*m"
+    ),
+    "curved damping": (
+        scene(rest='<actuator><motor name="m" joint="elbow" damping="1 2"/></actuator>'), "damping of actuators.*m"
+    ),
+    "curved coupling": (
+        scene('<body><joint name="b"/><geom size=".1"/></body>', '<tendon><fixed name="f"><joint joint="elbow" coef="1"'
+              '/></fixed><fixed name="g"><joint joint="b" coef="1"/></fixed></tendon>'
+              '<equality><tendon name="q" tendon1="f" tendon2="g" polycoef="0 1 2 0 0"/></equality>'),
+        "equality 'q': a spec can couple fixed tendons only, and in a fixed ratio",
     ),
     "limited tendon": (
         scene('<site name="w" pos="0 1 0"/>', '<tendon><spatial name="t" stiffness="3" range="0 2"><site site="tip"/>'
@@ -128,11 +145,6 @@ LEFT = {  # what is left out, and what the warning says of it
         scene(rest='<equality><joint joint1="elbow"/><joint name="s" joint1="elbow" polycoef="1 0 0 0 0"/></equality>'),
         "equality 's': elbow follows two joints",
     ),
-    "turned weld": (
-        scene('<body name="lid" pos="0 1 0"><freejoint/><geom size=".1"/></body>',
-              '<equality><weld name="w" body1="lid" body2="arm" relpose="0 0 0 .7 .7 0 0"/></equality>'),
-        "equality 'w': a spec has no weld that rotates its bodies by 90 degrees",
-    ),
 }  # fmt: skip
 
 
@@ -145,6 +157,20 @@ def test_what_has_no_counterpart_is_told(name):
     assert re.search(said, problem.message), problem.message
     assert problem.location is None or problem.location.line >= 1
     assert f"# - {problem.message}" in imported(text)
+
+
+def test_soft_limits_are_told_where_they_become_stops():
+    soft = LEG.replace('limited="true"', 'limited="true" solreflimit="-100 -5"')
+    assert not described(soft, free=True).left_out
+    (problem,) = described(soft, free=True, limits=True).left_out
+    assert "softness of limits" in problem.message and "joint hip-x" in problem.message
+
+
+def test_controls_of_a_keyframe_are_told_where_they_would_move_joints():
+    text = LEG.replace('qpos="0 0 0"', 'qpos="0 0 0" ctrl="2"')
+    assert not described(text, keyframe="1").left_out and not described(text, free=True, keyframe="bent").left_out
+    (problem,) = described(text, free=True, keyframe="1").left_out
+    assert "controls (ctrl)" in problem.message
 
 
 def test_a_motor_is_no_loss():
@@ -192,6 +218,25 @@ def test_files_are_named_from_the_models_folder(heun, folder):
     (folder / "parts" / "a.xml").write_text('<!DOCTYPE a [<!ENTITY b "c">]><mujocoinclude/>')
     done = heun("import", "m.xml", "-q")
     assert done.returncode == 2 and "a.xml:1" in done.stderr and "xml-entities" in done.stderr
+
+
+def test_two_included_files_of_one_name_are_not_taken_for_one(folder):
+    body = "<body><joint/><geom size='.1' mass='{}' contype='0'/></body>"
+    for place, mass in (("one", 3), ("two", 4)):
+        (folder / place).mkdir()
+        (folder / place / "b.xml").write_text('<mujocoinclude><include file="c.xml"/></mujocoinclude>')
+        (folder / place / "c.xml").write_text(
+            f"<mujocoinclude><worldbody>{body.format(mass)}</worldbody></mujocoinclude>"
+        )
+    text = '<mujoco><include file="one/b.xml"/><include file="two/b.xml"/></mujoco>'
+    with pytest.raises(SpecError, match=r"c\.xml is the name of two files") as refused:
+        described(text, str(folder / "m.xml"))
+    assert refused.value.problems[0].code == "import-file"
+    (machine,) = described('<mujoco><include file="two/b.xml"/></mujoco>', str(folder / "m.xml")).bodies
+    assert machine.mass == 4.0
+    hidden = '<mujoco><compiler meshdir="two"/><include file="c.xml"/></mujoco>'  # no place of models
+    with pytest.raises(SpecError, match=r"c\.xml"):
+        described(hidden, str(folder / "m.xml"))
 
 
 def test_strict_writes_nothing_where_something_is_left_out(heun, folder):

@@ -141,7 +141,9 @@ COMMANDS = (
         request_module="report.request",
         page="pictures",
     ),
-    Command("export", "Write load cases of a body for a stress analysis, or the scene as URDF.", page="exporting"),
+    Command(
+        "export", "Write load cases of a body for a stress analysis, or the scene as URDF or MJCF.", page="exporting"
+    ),
     Command(
         "check",
         "Check specs, and folders of specs, against their `expect` values and golden files.\n\n"

@@ -1,4 +1,4 @@
-"""`heun export`: solve a scene, and write the load cases of a body; or write the scene as URDF."""
+"""`heun export`: solve a scene, and write the load cases of a body; or write the scene as URDF or MJCF."""
 
 from __future__ import annotations
 
@@ -35,14 +35,15 @@ if TYPE_CHECKING:
     from heuncli.analyses.load_cases.solid_mesh import SolidMesh
     from heuncli.study.queries.measure import MeasureRequest
 
-WHAT = ("loads", "urdf")
+LOADS = "loads"
+WHAT = (LOADS, "urdf", "mjcf")  # loads, and the formats of scenes
 FORMATS = ("csv", "json", "ansys", "nastran", "calculix", "abaqus")
 
 
 class ExportRequest(NamedTuple):
     """The options and arguments of `heun export`."""
 
-    what: Annotated[str, Option((), "What to export: loads of a body, or the scene as urdf.", "loads|urdf")]
+    what: Annotated[str, Option((), "What to export: loads of a body, or the scene as urdf or mjcf.", "|".join(WHAT))]
     spec: Annotated[str, SPEC]
     body: Annotated[
         str | None, Option(("--body",), "Body to export. Default: the only one.", "NAME", completes="body")
@@ -109,8 +110,8 @@ DEFAULT_SET = "BODY"
 
 def main(request: ExportRequest) -> int:
     """Run the command; returns the exit code."""
-    if require_choice("export", request.what, WHAT) == "urdf":
-        return export_urdf(request)
+    if require_choice("export", request.what, WHAT) != LOADS:
+        return export_scene(request)
     require_other_file(request.output, [request.spec])
     form = choose_form(request)
     system = _parse_units(request.units)
@@ -138,26 +139,27 @@ def main(request: ExportRequest) -> int:
     return 0
 
 
-def export_urdf(request: ExportRequest) -> int:
-    """Write the scene as URDF, as it is assembled; returns the exit code."""
-    from heuncli.output.urdf import write_urdf  # of few exports
-    from heuncli.study.model.setup import set_up
+def export_scene(request: ExportRequest) -> int:
+    """Write the scene, as it is assembled, in a format of robot programs; returns the exit code."""
+    from importlib import import_module
+
+    from heuncli.study.model.setup import set_up  # of few exports
 
     for name in ("body", "at", "format", "units", "first_node", "elements", "mesh", "blow_over"):
         if getattr(request, name) is not None:
             option = f"--{name.replace('_', '-')}"
             message = f"{option}: it is an option of heun export loads"
-            raise UsageError(Problem("bad-option", message, hint="leave it out; a URDF is in m, kg and rad"))
+            raise UsageError(Problem("bad-option", message, hint=f"leave it out; {request.what} is in m, kg and rad"))
     require_other_file(request.output, [request.spec])
     if request.output is not None and request.output != STDOUT:
         require_writable(request.output)
-    _require_one_case(request.case, "a URDF")
+    _require_one_case(request.case, f"a file of {request.what.upper()}")
     spec = load_spec(request)
     spec = apply_captions(spec, request.captions)
     require_other_file(request.output, [request.spec])
     with attach_locations(spec):
         scene = set_up(spec, reduce=False, find_rest=False).scene
-    made = write_urdf(spec, scene)
+    made = getattr(import_module(f"heuncli.output.{request.what}"), f"write_{request.what}")(spec, scene)
     emit([made.text], request.output)
     for note in () if request.quiet else made.notes:
         print_stderr(f"heun: {note}")

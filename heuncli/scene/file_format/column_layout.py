@@ -18,7 +18,7 @@ from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import MAX_WORD_LENGTH, find_similar, list_words
 from heuncli.results.results_schema import parse_index
-from heuncli.scene.file_format.headings import name_in_heading
+from heuncli.scene.file_format.headings import name_before_letter, name_in_heading
 
 PIECE = 1 << 20  # characters: large enough to make NumPy's overhead negligible, small enough to save memory
 MAX_EXAMINED_ROWS = 1000  # rows examined before a message may quote a file's headings
@@ -277,8 +277,9 @@ def find_column(number: int, key: object, layout: ColumnLayout, text: str) -> in
     """
     column_number = parse_index(str(key)) if isinstance(key, int | str) else None
     if isinstance(key, str) and column_number is None:
-        matches = [i for i, name in enumerate(layout.names) if name == key.strip()]
-        matches = matches or [i for i, name in enumerate(layout.names) if name_in_heading(name) == key.strip()]
+        matches: list[int] = []
+        for find_name in (str, name_in_heading, name_before_letter):
+            matches = matches or [i for i, name in enumerate(layout.names) if find_name(name) == key.strip()]
         if len(matches) == 1:
             return matches[0]
         if matches:

@@ -146,6 +146,10 @@ def read_mesh(file: str, files: NamedFiles) -> tuple[TriangleMesh | None, list[T
 
 def check_mesh_mass(shape: MeshShape, surface: TriangleMesh) -> Iterator[TableProblem]:
     """Yield a problem if mass or inertia of a mesh are outside the range of computation."""
+    if surface.moments is not None and shape.scale is not None:
+        message = "a STEP file states its own unit of length, and scale is another"
+        yield TableProblem(("scale",), Finding("mesh-file", message, "leave scale out"))
+        return
     scale = 1.0 if shape.scale is None else shape.scale
     mass_or_density = shape.density if shape.mass is None else shape.mass
     if scale <= 0.0 or mass_or_density is None or mass_or_density <= 0.0:  # reported by the rules
@@ -171,7 +175,7 @@ def iter_mesh_warnings(shape: MeshShape, surface: TriangleMesh | None, files: Na
     for note in surface.notes:
         yield Finding("mesh-mended", f"the mesh '{shape.file}': {note}", "export it again if this is not intended")
     size = float((surface.high - surface.low).max())
-    if shape.scale is None and size > LARGE_SIZE:
+    if shape.scale is None and surface.moments is None and size > LARGE_SIZE:
         message = f"the mesh '{shape.file}' is {size:.4g} m long: without a scale its unit is the metre"
         yield Finding("mesh-size", message, "give scale: 1 mm if it was drawn in millimetres, otherwise scale: 1 m")
 

@@ -86,6 +86,24 @@ def name_in_heading(text: str) -> str:
     return unit.name if unit is not None else text.strip()
 
 
+def name_before_letter(text: str) -> str:
+    """Return the name of a column before an SI unit of one letter: t of `t / s`, which may also be a ratio.
+
+    A heading that is a unit itself, as m/s, is its own name.
+    """
+    for joint in SEPARATOR.finditer(text):
+        name, word = text[: joint.start()].strip(), text[joint.end() :].strip()
+        if (
+            joint[0].strip() in ("/", ",", "in")
+            and len(word) == 1
+            and name
+            and parse_heading_unit(text.strip()) is None
+        ):
+            unit = parse_heading_unit(word)
+            return name if unit is not None and unit[0] == 1.0 else text.strip()
+    return text.strip()
+
+
 @lru_cache(maxsize=1000)
 def find_heading_unit(text: str) -> HeadingUnit | None:
     """Return the unit that a heading states, or None."""

@@ -15,12 +15,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.results.results import Array, Mask
 
 # Model
 
 IndexArray = NDArray[np.intp]
+
+
+class SolidMoments(NamedTuple):
+    """volume [m^3], center (3,) [m], second: moments about the centre (3, 3) [m^5], of unit density"""
+
+    volume: float
+    center: Array
+    second: Array
 
 
 @record
@@ -33,6 +42,8 @@ class TriangleMesh:
     volume: the enclosed volume
     low, high: (3,) its extent
     notes: what was corrected, in sentences
+    facts: what the file does not show, in sentences
+    moments: of the solid itself, whose surface the triangles approximate; None: they are the solid
     """
 
     corners: Array
@@ -42,6 +53,8 @@ class TriangleMesh:
     low: Array
     high: Array
     notes: tuple[str, ...] = ()
+    facts: tuple[str, ...] = ()
+    moments: SolidMoments | None = None
 
 
 @record

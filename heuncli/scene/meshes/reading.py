@@ -1,8 +1,9 @@
-"""Read surface files into closed meshes: STL, OBJ, PLY, distinguished by their contents. No file is opened here."""
+"""Read STL, OBJ, PLY and STEP into closed meshes, distinguished by their contents. No file is opened here."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -19,21 +20,98 @@ from heuncli.scene.meshes.closure import (
 )
 from heuncli.scene.meshes.crossings import require_no_crossing
 from heuncli.scene.meshes.formats import mesh_file_finding, read_obj, read_stl
-from heuncli.scene.meshes.model import TriangleMesh, TriangleSoup, make_tetrahedra, middle_of_extent, separate_fans
+from heuncli.scene.meshes.model import (
+    SolidMoments,
+    TriangleMesh,
+    TriangleSoup,
+    make_tetrahedra,
+    middle_of_extent,
+    separate_fans,
+)
 from heuncli.scene.meshes.ply import read_ply
 
 MAX_TRIANGLES = 2_000_000
+MAX_VOLUME_DEFECT = 0.05  # of the triangles of a solid; beyond, they do not bound it
 MESH_READERS: dict[str, Callable[[bytes], TriangleSoup]] = {"stl": read_stl, "obj": read_obj, "ply": read_ply}
+STEP_START = b"ISO-10303-21"
+STEP_ENDINGS = ("step", "stp", "p21")
 UNREAD_FORMATS = {
-    "step": "STEP", "stp": "STEP", "iges": "IGES", "igs": "IGES", "dae": "COLLADA", "3mf": "3MF", "glb": "glTF",
+    "iges": "IGES", "igs": "IGES", "dae": "COLLADA", "3mf": "3MF", "glb": "glTF",
     "gltf": "glTF", "off": "OFF", "amf": "AMF",
 }  # fmt: skip
-FORMAT_HINT = "STL, OBJ or PLY, with that file name extension: rod.stl"
+FORMAT_HINT = "STL, OBJ, PLY or STEP, with that file name extension: rod.stl"
 
 
 def read_closed_mesh(content: bytes | bytearray, name: str) -> TriangleMesh:
     """Read the closed mesh in a file of this name. Raises Finding: mesh-file, open-mesh and the like."""
-    soup = weld_equal_corners(read_soup(bytes(content), name))
+    if is_step(content, name):
+        return read_step_mesh(bytes(content))
+    return close_soup(read_soup(bytes(content), name))
+
+
+def is_step(content: bytes | bytearray, name: str) -> bool:
+    """Return whether a file of this name is STEP."""
+    return content[:100].lstrip().startswith(STEP_START) or name.rpartition(".")[2].lower() in STEP_ENDINGS
+
+
+def read_step_mesh(content: bytes) -> TriangleMesh:
+    """Read the solids of a STEP file as one mesh, with their exact moments. Raises Finding."""
+    from heuncli.scene.meshes.step import read_step_solids  # imports an optional package
+
+    solids = read_step_solids(content)
+    if sum(len(solid.soup.triangles) for solid in solids) > MAX_TRIANGLES:
+        raise Finding("too-large", f"its solids take more than {MAX_TRIANGLES:,} triangles", "give fewer of them")
+    meshes = [close_soup(solid.soup) for solid in solids]
+    moments = add_moments([solid.moments for solid in solids])
+    volumes = [mesh.volume for mesh in meshes]
+    defects = [abs(volume / solid.moments.volume - 1.0) for volume, solid in zip(volumes, solids, strict=True)]
+    if max(defects) > MAX_VOLUME_DEFECT:
+        number = 1 + int(np.argmax(defects))
+        message = f"the volume of solid {number} and of its surface differ by {100.0 * max(defects):.2g} %"
+        raise mesh_file_finding(message, "repair the solid in the CAD program: it may be open or cross itself")
+    starts = np.cumsum([0, *(len(mesh.corners) for mesh in meshes)])
+    return TriangleMesh(
+        np.concatenate([mesh.corners for mesh in meshes]),
+        np.concatenate([start + mesh.triangles for start, mesh in zip(starts, meshes, strict=False)]),
+        sum(mesh.shells for mesh in meshes),
+        moments.volume,
+        np.min([mesh.low for mesh in meshes], axis=0),
+        np.max([mesh.high for mesh in meshes], axis=0),
+        tuple(note for mesh in meshes for note in mesh.notes if "inward" not in note),
+        describe_moments(moments, len(solids), math.fsum(volumes)),
+        moments,
+    )
+
+
+def describe_moments(moments: SolidMoments, count: int, volume: float) -> tuple[str, ...]:
+    """Say in sentences what solids are in a STEP file. volume: of their triangles [m^3]"""
+    inertia = (np.trace(moments.second) * np.eye(3) - moments.second) / moments.volume
+    squares, axes = np.linalg.eigh(inertia)
+    axes = axes * np.where(axes[np.argmax(np.abs(axes), axis=0), range(3)] < 0.0, -1.0, 1.0)
+    radii = ", ".join(
+        f"{math.sqrt(max(square, 0.0)):.6g} about ({', '.join(f'{x + 0.0:.4g}' for x in np.round(axis, 12))})"
+        for square, axis in zip(squares, axes.T, strict=True)
+    )
+    center = ", ".join(f"{x + 0.0:.6g}" for x in np.where(np.abs(moments.center) < 1e-12, 0.0, moments.center))
+    solids = "1 solid" if count == 1 else f"{count} solids"
+    return (
+        f"{solids}, {moments.volume:.6g} m3, centre ({center}) m; principal radii of gyration [m] {radii}",
+        f"cuts use triangles, whose volume differs by {abs(volume / moments.volume - 1.0):.1e}",
+    )
+
+
+def add_moments(parts: Sequence[SolidMoments]) -> SolidMoments:
+    """Add the moments of solids."""
+    volume = math.fsum(part.volume for part in parts)
+    center = np.sum([part.volume * part.center for part in parts], axis=0) / volume
+    arms = [part.center - center for part in parts]
+    second = sum(part.second + part.volume * np.outer(arm, arm) for part, arm in zip(parts, arms, strict=True))
+    return SolidMoments(volume, center, np.asarray(second))
+
+
+def close_soup(soup: TriangleSoup) -> TriangleMesh:
+    """Make the closed mesh of triangles. Raises Finding: open-mesh and the like."""
+    soup = weld_equal_corners(soup)
     notes: list[str] = []
     edges = find_edges(soup.triangles)
     open_corners = find_open_corners(edges)

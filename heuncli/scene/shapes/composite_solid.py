@@ -71,12 +71,22 @@ def make_point_mass(shape: Shape, density: float) -> Solid:
 
 def make_polyhedron(shape: Shape, density: float) -> Solid:
     from heuncli.scene.meshes.closure import coordinate_resolution  # few scenes have meshes
-    from heuncli.scene.shapes.polyhedron import Polyhedron
+    from heuncli.scene.meshes.model import volume_moments
+    from heuncli.scene.shapes.inertia import assemble_pseudo_inertia
+    from heuncli.scene.shapes.polyhedron import ApproximatedSolid, Polyhedron
 
     surface, scale = require_value(shape.mesh), require_value(shape.scale)
     axes = np.array(require_value(shape.rotation), dtype=np.float64)
     places = to_vector(shape.at) + (scale * surface.corners) @ axes.T
-    return Polyhedron(places, surface.triangles, density, scale * coordinate_resolution(surface.corners))
+    resolution = scale * coordinate_resolution(surface.corners)
+    if surface.moments is None:
+        return Polyhedron(places, surface.triangles, density, resolution)
+    volume, center, second = surface.moments
+    G = np.eye(4)
+    G[:3, :3], G[:3, 3] = axes, to_vector(shape.at) + axes @ center
+    whole = density * (G @ assemble_pseudo_inertia(np.array(volume), np.zeros(3), second) @ G.T)
+    cut_density = density * volume / volume_moments(surface.corners, surface.triangles)[0]
+    return ApproximatedSolid(places, surface.triangles, cut_density, resolution, whole)
 
 
 def make_member(shape: Shape, density: float) -> Solid:

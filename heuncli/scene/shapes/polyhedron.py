@@ -306,6 +306,20 @@ class Polyhedron(ThickSolid):
         return np.asarray(self.middle + np.stack([u, v, w], axis=-1) @ surface.axes.T)
 
 
+@record
+class ApproximatedSolid(Polyhedron):
+    """A solid whose surface triangles approximate; cuts are those of the triangles.
+
+    density: that with which the triangles have the mass of the solid [kg/m3]
+    whole: the pseudo-inertia of the solid about the origin of the body (4, 4)
+    """
+
+    whole: Array
+
+    def whole_inertia(self) -> Array:
+        return self.whole
+
+
 def separate_values(values: Array, tolerance: float) -> Array:
     """Sort values, and keep only the first of those within the tolerance of each other."""
     found = np.sort(values)

@@ -115,9 +115,13 @@ def describe_reductions(left_out: Sequence[str], scene: PreparedScene, reduction
     return {key: value for key, value in found.items() if value}
 
 
-def describe_tables(spec: Spec) -> list[str]:
-    """Say in sentences what was done to the points of tables: smoothing, derivatives, integrals."""
-    return [note for table in spec.tables.values() for note in table.notes]
+def describe_files(spec: Spec) -> list[str]:
+    """Say in sentences what was done to the points of tables, and which solids the bodies are."""
+    shapes = [(name, shape) for name, body in spec.bodies.items() for shape in body.shapes or ()]
+    return [
+        *(note for table in spec.tables.values() for note in table.notes),
+        *(f"{name}: {fact}" for name, shape in shapes if shape.mesh is not None for fact in shape.mesh.facts),
+    ]
 
 
 def add_rest_sentences(block: Block, sentences: Sequence[str]) -> Block:

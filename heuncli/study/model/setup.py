@@ -33,9 +33,9 @@ from heuncli.study.model.model_note import (
     add_rest_sentences,
     choose_first_method,
     describe_attitudes,
+    describe_files,
     describe_members,
     describe_reductions,
-    describe_tables,
     explain_method,
     make_model_block,
 )
@@ -149,7 +149,7 @@ def set_up(
         reductions_block = follows.add_to_block(reductions_block)
     redundancies = count_redundancy(scene, runner, stages)
     note = make_model_block(scene, runner, chosen.name if chosen else "none", redundancies) | reductions_block
-    note["notes"] += describe_tables(spec)
+    note["notes"] += describe_files(spec)
     if chosen is not None:
         note["reasons"] += explain_choice(chosen, runner.integrated_scene.layout, spec, is_auto=auto)
     step = spec.analysis.step if chosen is not None and chosen.has_fixed_step else None
@@ -210,7 +210,7 @@ def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], find_rest: bool) -> 
         scene, runner, rest = start_at_rest(scene, runner)
     redundancies = count_redundancy(scene, runner)
     note = make_model_block(scene, runner, "rest", redundancies) | describe_reductions(left_out, scene, None)
-    note["notes"] += describe_tables(setup.spec)
+    note["notes"] += describe_files(setup.spec)
     note |= describe_members(setup.cuts)
     model = add_rest_sentences(note, rest.sentences if rest else ())
     return replace(setup, scene=scene, runner=runner, rest=rest, model=model, self_stress=redundancies.start_stress)

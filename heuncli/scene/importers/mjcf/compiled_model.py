@@ -56,22 +56,24 @@ def collect_model_files(root: XmlElement, file: str) -> ModelFiles:
     """
     folder = Path() if file == STANDARD_INPUT else Path(file).parent
     included: dict[str, bytes] = {}
+    paths: dict[str, Path] = {}
     queue = [(root, file, folder)]
     for element, current_file, current_folder in queue:  # the list grows during the loop
-        folders = [
-            folder,
-            current_folder,
-            *(place / name for place in (folder, current_folder) for name in _iter_folders(element)),
-        ]
+        model_folders = [folder, current_folder]  # in MuJoCo's order
+        asset_folders = [place / name for place in model_folders for name in _iter_folders(element)]
         for inner, count in _iter_elements(element):
             _require_countable(inner, count, current_file)
             name = inner.attributes.get("file")
             if not name:
                 continue
+            folders = model_folders if inner.tag in MODEL_ELEMENTS else [*model_folders, *asset_folders]
             found_path = next((path for place in folders if (path := place / name).exists()), None)
             if found_path is None:
                 continue  # MuJoCo reports a missing file, with the line
             _require_readable(found_path, inner, current_file)
+            if paths.setdefault(name, found_path).resolve() != found_path.resolve() and inner.tag in MODEL_ELEMENTS:
+                message = f"{escape(name)} is the name of two files: {paths[name]} and {found_path}"
+                raise _make_error("import-file", inner, current_file, message, "rename one of them, and its <include>")
             if inner.tag in MODEL_ELEMENTS and name not in included:
                 if len(included) >= MAX_FILES:
                     raise _make_error("too-large", inner, current_file, f"more than {MAX_FILES:,} files", COUNT_HINT)

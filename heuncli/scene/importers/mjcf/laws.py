@@ -99,7 +99,7 @@ class _LawBuilder:
     def follow_leader(self, coupling: JointEquality) -> None:
         """Make a joint follow another by the law of that one."""
         c, step = self.c, self.steps[coupling.follower]
-        if self.options.free:
+        if self.options.free and coupling.leader is not None:
             self.couple_free_joint(coupling)
             return
         argument = None if coupling in self.leaderless else self.format_argument(coupling)
@@ -125,7 +125,8 @@ class _LawBuilder:
         """
         c, step = self.c, self.steps[coupling.follower]
         start, slope, *higher_terms = (*coupling.polynomial, 0.0, 0.0)
-        if coupling.leader is None or slope == 0.0 or any(higher_terms) or coupling.follower in self.couplings:
+        assert coupling.leader is not None
+        if slope == 0.0 or any(higher_terms) or coupling.follower in self.couplings:
             message = (
                 f"joint {step.name} follows another by more than a fixed ratio, which is not possible with free joints"
             )

@@ -4,19 +4,19 @@ hinge      -k (q - springref) - d q'    a turn_spring, a damper
 slide      the same along its axis      a torque (thrust) by its travel, a damper
 negative   k or d, which drive          a torque by the coordinate or its rate
 ball       -d sigma, relative           a damper
-tendon     straight, k (length - lengthspring), d of its rate: a spring
 gravcomp   -gravcomp m g at the centre of mass: a force
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from heuncli.scene.importers.description import DescribedEntry
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
 from heuncli.scene.importers.mjcf.laws import drawn_coordinate
-from heuncli.scene.importers.mjcf.loop_closures import ClosureBuilder, find_straight_tendon_sites
+from heuncli.scene.importers.mjcf.loop_closures import AssignName
+from heuncli.scene.importers.mjcf.tendons import sum_joint_damping
 from heuncli.scene.importers.mjcf.tree import (
     COORDINATE_KEYS,
     RATE_KEYS,
@@ -28,8 +28,6 @@ from heuncli.scene.importers.mjcf.tree import (
 )
 from heuncli.scene.importers.spec_text import format_decimal, format_number
 
-AssignName = Callable[[str], str]
-
 
 def iter_joint_loads(c: CompiledModel, tree: JointTree, assign_name: AssignName) -> Iterator[DescribedEntry]:
     """Yield the springs and dampers in the joints of the tree."""
@@ -38,7 +36,7 @@ def iter_joint_loads(c: CompiledModel, tree: JointTree, assign_name: AssignName)
         if step.joint is None:
             continue
         stiffness = float(c.model.jnt_stiffness[step.joint]) if springs else 0.0
-        damping = float(c.model.dof_damping[c.model.jnt_dofadr[step.joint]]) if dampers else 0.0
+        damping = sum_joint_damping(c, step.joint) if dampers else 0.0
         if stiffness and step.kind in COORDINATE_KEYS:
             reference = float(c.model.qpos_spring[c.model.jnt_qposadr[step.joint]])
             yield _make_spring(step, stiffness, reference - drawn_coordinate(c, step.joint), assign_name)
@@ -69,38 +67,6 @@ def _make_spring(step: TreeJoint, stiffness: float, free_position: float, assign
     keys = {"type": "torque", "joint": step.name, "value": f"{format_number(-stiffness)}*{displacement}"}
     remark = "a spring along the slide" if stiffness > 0.0 else "negative stiffness"
     return DescribedEntry(assign_name(f"spring_{step.name}"), keys, remark)
-
-
-def is_tendon_spring(c: CompiledModel, tendon: int) -> bool:
-    """Return whether a tendon acts as a spring, a damper, or both, between two sites. Negative coefficients do not
-    count.
-    """
-    low, high = (float(length) for length in c.model.tendon_lengthspring[tendon])
-    both = float(c.model.tendon_stiffness[tendon]), float(c.model.tendon_damping[tendon])
-    return max(both) > 0.0 <= min(both) and find_straight_tendon_sites(c, tendon) is not None and low == high
-
-
-def iter_tendon_springs(c: CompiledModel, closer: ClosureBuilder, assign_name: AssignName) -> Iterator[DescribedEntry]:
-    """Yield the springs between two sites."""
-    springs, dampers = not c.is_disabled("PASSIVE", "SPRING"), not c.is_disabled("PASSIVE", "DAMPER")
-    for tendon in range(c.count("tendon")):
-        sites = find_straight_tendon_sites(c, tendon)
-        if sites is None or not is_tendon_spring(c, tendon):
-            continue
-        stiffness = float(c.model.tendon_stiffness[tendon]) if springs else 0.0
-        damping = float(c.model.tendon_damping[tendon]) if dampers else 0.0
-        if not (stiffness or damping):
-            continue
-        site_ends = [closer.find_site_end(site) for site in sites]
-        if closer.body_name(site_ends[0]) == closer.body_name(site_ends[1]):
-            continue  # its length is constant: both ends are on one body
-        entry_name = assign_name(c.name("tendon", tendon) or f"tendon_{tendon + 1}")
-        ends = [closer.add_point(end, entry_name) for end in site_ends]
-        keys: dict[str, Any] = {"type": "spring", "from": ends[0], "to": ends[1], "stiffness": stiffness}
-        keys["length"] = float(c.model.tendon_lengthspring[tendon][0])
-        if damping:
-            keys["damping"] = damping
-        yield DescribedEntry(entry_name, keys, c.describe_part("tendon", tendon))
 
 
 def iter_gravity_compensation(

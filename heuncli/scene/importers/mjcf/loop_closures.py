@@ -5,8 +5,9 @@ They are soft in MuJoCo, by the nature of its solver; in a spec they hold exactl
 sites.
 
     connect   the two points coincide: a ball
-    weld      the same, and R_W2 = R_W1 R(relquat): a weld, where that is so at the zero of all joints
-    tendon    its length stays: a rod, where it runs straight from a site to a site
+    weld      the same, and R_W2 = R_W1 R(relquat): a weld, where that is so at the zero of all joints; else a pin about
+              the axis of R(relquat), which a drive holds at its angle
+    tendon    its length stays: a rod, where it runs straight from a site to a site; of fixed tendons a coupling
     joint     q1 - q1(zero) = a0 + a1 x + a2 x^2 + ..., x = q2 - q2(zero): a drive's law, where joint 2 is driven
 """
 
@@ -21,14 +22,24 @@ from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.scene.file_format.loads import Matrix
 from heuncli.scene.file_format.models import Vec
-from heuncli.scene.importers.attitudes import compose_rotations
+from heuncli.scene.importers.attitudes import compose_rotations, round_vector
 from heuncli.scene.importers.description import LEFT_OUT_CODE, DescribedEntry
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.tree import GROUND, BodyFrames, BodyPoints, JointTree, exact_rotation_from_quaternion
+from heuncli.scene.importers.mjcf.tree import (
+    GROUND,
+    BodyFrames,
+    BodyPoints,
+    JointTree,
+    exact_rotation_from_quaternion,
+    to_vec,
+)
 from heuncli.scene.importers.spec_text import format_decimal
+from heuncli.scene.shapes.rotations import quaternion_from_matrix, vector_from_quaternion
 
 ROTATION_TOLERANCE = 1e-6  # deviation of a rotation matrix: people write quaternions to about six digits
 STRAIGHT_TENDON_SITES = 2  # of a tendon that runs straight
+
+AssignName = Callable[[str], str]
 
 
 class JointEquality(NamedTuple):
@@ -45,14 +56,19 @@ class JointEquality(NamedTuple):
 class LoopClosures(NamedTuple):
     """The loop closures of a model.
 
-    imported_equalities: numbers of the equalities that the spec holds
+    drives: those that hold the angle of a weld
+    ratios: linear relations of fixed tendons
+    imported_equalities: numbers of the equalities that the spec holds by joints and ratios
+    rods: the tendons whose length is constant
     left_out: why the others are not in the spec
     """
 
     joints: tuple[DescribedEntry, ...]
+    drives: tuple[DescribedEntry, ...]
+    ratios: tuple[DescribedEntry, ...]
     couplings: tuple[JointEquality, ...]
     imported_equalities: frozenset[int]
-    rods: frozenset[int]  # the tendons that are rods
+    rods: frozenset[int]
     left_out: tuple[Problem, ...]
     header_lines: tuple[str, ...]
 
@@ -76,10 +92,12 @@ class ClosureBuilder:
     """Builds the loop closures of one model; entries are added as they are found."""
 
     def __init__(
-        self, c: CompiledModel, frames: BodyFrames, tree: JointTree, points: BodyPoints, name: Callable[[str], str]
+        self, c: CompiledModel, frames: BodyFrames, tree: JointTree, points: BodyPoints, name: AssignName
     ) -> None:
         self.c, self.frames, self.tree, self.points, self.assign_name = c, frames, tree, points, name
         self.joints: list[DescribedEntry] = []
+        self.drives: list[DescribedEntry] = []
+        self.ratios: list[DescribedEntry] = []
         self.couplings: list[JointEquality] = []
         self.imported_equalities: set[int] = set()
         self.rods: set[int] = set()
@@ -107,9 +125,9 @@ class ClosureBuilder:
                 self.leave_out(number, f"a spec has no equality of type {names[kind]}")
             else:
                 handler_by_type[kind](number)
-        joints, couplings = tuple(self.joints), tuple(self.couplings)
+        entries = tuple(self.joints), tuple(self.drives), tuple(self.ratios), tuple(self.couplings)
         sets = frozenset(self.imported_equalities), frozenset(self.rods)
-        return LoopClosures(joints, couplings, *sets, tuple(self.left_out), tuple(self.header_lines))
+        return LoopClosures(*entries, *sets, tuple(self.left_out), tuple(self.header_lines))
 
     def leave_out(
         self, number: int, reason: str, hint: str = "what it constrains is free in the spec: add a constraint there"
@@ -117,25 +135,26 @@ class ClosureBuilder:
         """Report that an equality is left out."""
         self.left_out.append(make_left_out_problem(self.c, "equality", number, reason, hint))
 
-    def add_equality(self, number: int, kind: str, ends: tuple[ClosureEnd, ClosureEnd], **keys: Any) -> None:
-        """Add an equality as a joint between two ends."""
+    def add_equality(self, number: int, kind: str, ends: tuple[ClosureEnd, ClosureEnd], **keys: Any) -> str:
+        """Add an equality as a joint between two ends. Returns its name."""
         original = self.c.name("equality", number) or f"{kind}_{number + 1}"
         self.imported_equalities.add(number)
-        self.add_joint(original, self.c.describe_part("equality", number), kind, ends, **keys)
+        return self.add_joint(original, self.c.describe_part("equality", number), kind, ends, **keys)
 
-    def add_joint(
-        self, original: str, remark: str, kind: str, ends: tuple[ClosureEnd, ClosureEnd], **keys: Any
-    ) -> None:
-        """Add a joint between two ends, unless both are on the same body."""
+    def add_joint(self, original: str, remark: str, kind: str, ends: tuple[ClosureEnd, ClosureEnd], **keys: Any) -> str:
+        """Add a joint between two ends, unless both are on the same body. Returns its name, or an empty text."""
         bodies = [self.body_name(end) for end in ends]
         if bodies[0] == bodies[1]:
             self.header_lines.append(f"{remark} connects {bodies[0]} to itself and is left out")
-            return
+            return ""
         name = self.assign_name(original)
         points = [self.add_point(end, name) for end in ends]
         if bodies[1] == GROUND:  # the load is reported ON `to`, which should be the moving body
             points.reverse()
+            if "axis" in keys:  # the angle is counted from the other body
+                keys["axis"] = tuple(-component for component in keys["axis"])
         self.joints.append(DescribedEntry(name, {"type": kind, "from": points[0], "to": points[1], **keys}, remark))
+        return name
 
     def find_ends(self, number: int, points: tuple[Any, Any]) -> tuple[ClosureEnd, ClosureEnd]:
         """Find the ends of an equality of two bodies with these points, or of two sites."""
@@ -181,14 +200,20 @@ class ClosureBuilder:
         if float(data[10]) == 0.0:  # torquescale: it holds no rotation
             self.add_equality(number, "ball", (one, other))
         elif np.abs(np.array(attitude) - np.array(other.attitude)).max() > ROTATION_TOLERANCE:
-            cosine = (np.trace(np.array(attitude).T @ np.array(other.attitude)) - 1.0) / 2.0
-            angle = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
-            reason = f"a spec has no weld that rotates its bodies by {angle:.3g} degrees from their given start"
-            self.leave_out(
-                number, reason, "in the model, give the bodies their welded orientation with all joints at zero"
-            )
+            self.add_turned_weld(number, (one, other), np.array(attitude) @ np.array(other.attitude).T)
         else:
             self.add_equality(number, "weld", (one, other))
+
+    def add_turned_weld(self, number: int, ends: tuple[ClosureEnd, ClosureEnd], R: Any) -> None:
+        """Add a weld that turns its second body by R (3, 3): a pin about the axis of R, held at its angle."""
+        vector = vector_from_quaternion(quaternion_from_matrix(R))
+        angle = float(np.linalg.norm(vector))
+        axis = round_vector(to_vec(vector / angle))
+        name = self.add_equality(number, "pin", ends, axis=axis)
+        if name:
+            remark = f"a weld turned by {np.degrees(angle):.6g} degrees against the drawn pose"
+            entry = DescribedEntry(self.assign_name(f"hold_{name}"), {"joint": name, "angle": angle}, remark)
+            self.drives.append(entry)
 
     def add_coupling(self, number: int) -> None:
         model = self.c.model
@@ -200,8 +225,11 @@ class ClosureBuilder:
         model = self.c.model
         tendon, other = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         sites = find_straight_tendon_sites(self.c, tendon)
-        if other >= 0:
-            self.leave_out(number, "a spec cannot couple the lengths of two tendons")
+        terms = find_fixed_tendon_terms(self.c, tendon)
+        if terms is not None:
+            self.add_fixed_tendon(number, terms)
+        elif other >= 0:
+            self.leave_out(number, "a spec can couple the lengths of fixed tendons only")
         elif sites is None:
             self.leave_out(
                 number, f"{self.c.describe_part('tendon', tendon)} does not run straight from one site to another"
@@ -213,6 +241,46 @@ class ClosureBuilder:
             original = self.c.name("tendon", tendon) or f"tendon_{tendon + 1}"
             ends = self.find_site_end(sites[0]), self.find_site_end(sites[1])
             self.add_joint(original, self.c.describe_part("tendon", tendon), "rod", ends, length=length)
+
+    def add_fixed_tendon(self, number: int, terms: dict[int, float]) -> None:
+        """Add the relation sum of c_j (q_j - q_j(zero)) = a0 + a1 (the same of the second tendon)."""
+        model = self.c.model
+        tendon, other = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
+        start, slope, *higher_terms = (float(x) for x in model.eq_data[number][:5])
+        if other >= 0:
+            other_terms = find_fixed_tendon_terms(self.c, other)
+            if other_terms is None or any(higher_terms):
+                reason = "a spec can couple fixed tendons only, and in a fixed ratio"
+                self.leave_out(number, reason, "couple the joints by a ratio, or make one a drive's law of time")
+                return
+            for joint, factor in other_terms.items():
+                terms[joint] = terms.get(joint, 0.0) - slope * factor
+            terms = {joint: factor for joint, factor in terms.items() if factor}
+        else:
+            self.rods.add(tendon)
+        if len(terms) <= 1:  # it holds one joint
+            self.couplings += [JointEquality(number, joint, None, (start / terms[joint],)) for joint in terms]
+            if not terms:
+                self.leave_out(number, "it constrains no joint")
+            return
+        self.imported_equalities.add(number)
+        original = self.c.name("equality", number) or self.c.name("tendon", tendon) or f"tendon_{tendon + 1}"
+        names = tuple(self.tree.step_by_joint[joint].name for joint in terms)
+        keys = {"type": "ratio", "of": names, "factors": tuple(terms.values()), **({"is": start} if start else {})}
+        self.ratios.append(DescribedEntry(self.assign_name(original), keys, self.c.describe_part("equality", number)))
+
+
+def find_fixed_tendon_terms(c: CompiledModel, tendon: int) -> dict[int, float] | None:
+    """Return the joints of a fixed tendon with their coefficients, or None for any other tendon."""
+    model = c.model
+    first, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
+    if int(model.wrap_type[first]) != int(c.mujoco.mjtWrap.mjWRAP_JOINT):
+        return None
+    terms: dict[int, float] = {}
+    for k in range(first, first + count):
+        joint = int(model.wrap_objid[k])
+        terms[joint] = terms.get(joint, 0.0) + float(model.wrap_prm[k])
+    return {joint: factor for joint, factor in terms.items() if factor}
 
 
 def find_straight_tendon_sites(c: CompiledModel, tendon: int) -> tuple[int, int] | None:

@@ -17,7 +17,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import list_words
 from heuncli.scene.importers.description import LEFT_OUT_CODE
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.loads import is_tendon_spring, motor_compensation
+from heuncli.scene.importers.mjcf.loads import motor_compensation
+from heuncli.scene.importers.mjcf.tendons import is_imported_tendon, sum_joint_damping
 
 MAX_NAMES = 6
 DEFAULT_SOLREF = (0.02, 1.0)
@@ -45,12 +46,15 @@ def find_unsupported(c: CompiledModel, rods: frozenset[int], limits: bool, free:
     for row in UNSUPPORTED_FEATURES:
         yield from _feature_problem(c, row, row.find(c))
     acting_tendons = [tendon for tendon in _acting_tendons(c) if tendon not in rods]
-    yield from _feature_problem(c, TENDONS, (tendon for tendon in acting_tendons if not is_tendon_spring(c, tendon)))
-    yield from _feature_problem(c, TENDON_SPRINGS, (tendon for tendon in acting_tendons if is_tendon_spring(c, tendon)))
+    yield from _feature_problem(c, TENDONS, (tendon for tendon in acting_tendons if not is_imported_tendon(c, tendon)))
+    yield from _feature_problem(
+        c, TENDON_SPRINGS, (tendon for tendon in acting_tendons if is_imported_tendon(c, tendon))
+    )
     if limits:
         yield from _feature_problem(
             c, BALL_LIMITS, _joints_where(c, c.model.jnt_limited, _joint_type_mask(c, "mjJNT_BALL"))
         )
+        yield from _feature_problem(c, SOFT_LIMITS, _softened_limits(c))
     if not free:
         yield from _feature_problem(c, SHARED_WEIGHTS, _partly_compensated_bodies(c))
     yield from _model_problems(c)
@@ -120,10 +124,8 @@ def _nonlinear_joints(c: CompiledModel) -> list[int]:
 def _unsupported_damping(c: CompiledModel) -> list[int]:
     """Return the free joints with damping, and the balls with negative damping."""
     free, balls = np.flatnonzero(_joint_type_mask(c, "mjJNT_FREE")), np.flatnonzero(_joint_type_mask(c, "mjJNT_BALL"))
-    negatively_damped = [
-        joint for joint in _joints_with_nonzero_rates(c, np.minimum(c.model.dof_damping, 0.0)) if joint in balls
-    ]
-    return negatively_damped + [joint for joint in _joints_with_nonzero_rates(c, c.model.dof_damping) if joint in free]
+    negatively_damped = [int(joint) for joint in balls if sum_joint_damping(c, int(joint)) < 0.0]
+    return negatively_damped + [int(joint) for joint in free if sum_joint_damping(c, int(joint))]
 
 
 def _partly_compensated_bodies(c: CompiledModel) -> Iterator[int]:
@@ -146,25 +148,42 @@ def _unsupported_actuators(c: CompiledModel) -> list[int]:
 
 
 def _acting_tendons(c: CompiledModel) -> Iterator[int]:
-    """Yield the tendons that pull or hold, and are no spring between two sites."""
+    """Yield the tendons that pull or hold by more than a linear spring and damper that can be imported."""
+    names = ["limited", "frictionloss", "armature", "stiffnesspoly", "dampingpoly", "springyield"]
     for tendon in range(c.count("tendon")):
-        names = ("stiffness", "damping", "limited", "frictionloss", "armature", "stiffnesspoly", "dampingpoly")
-        has = {name: bool(np.any(getattr(c.model, f"tendon_{name}", np.zeros(tendon + 1))[tendon])) for name in names}
-        spring = is_tendon_spring(c, tendon) and not (has.pop("stiffnesspoly") or has.pop("dampingpoly"))
-        if spring:
-            del has["stiffness"], has["damping"]
-        if any(has.values()):
+        acting = names if is_imported_tendon(c, tendon) else [*names, "stiffness", "damping"]
+        if any(np.any(getattr(c.model, f"tendon_{name}", np.zeros(tendon + 1))[tendon]) for name in acting):
             yield tendon
+
+
+def _nonlinear_actuator_damping(c: CompiledModel) -> list[int]:
+    """Return the actuators whose damping is not that of a joint, or a fixed or straight tendon, and linear."""
+    model, kinds = c.model, c.mujoco.mjtTrn.__members__
+    nonlinear = _nonzero_rows(getattr(model, "actuator_dampingpoly", None), int(model.nu))
+    tendons = [
+        k
+        for k in _nonzero_rows(getattr(model, "actuator_damping", None), int(model.nu))
+        if int(model.actuator_trntype[k]) == int(kinds["mjTRN_TENDON"])
+        and not is_imported_tendon(c, int(model.actuator_trnid[k][0]))
+    ]
+    return nonlinear + tendons
+
+
+def _softened_limits(c: CompiledModel) -> list[int]:
+    """Return the limited joints whose softness, or distance of action, was set by hand."""
+    return [k for k in _joints_where(c, c.model.jnt_limited) if _is_soft(c, "jnt", k) or float(c.model.jnt_margin[k])]
+
+
+def _is_soft(c: CompiledModel, prefix: str, number: int) -> bool:
+    """Return whether the constraint of a part has a softness other than MuJoCo's default."""
+    solref = np.asarray(getattr(c.model, f"{prefix}_solref"))[number][:2]
+    solimp = np.asarray(getattr(c.model, f"{prefix}_solimp"))[number][:5]
+    return not (np.allclose(solref, DEFAULT_SOLREF) and np.allclose(solimp, DEFAULT_SOLIMP))
 
 
 def _softened_equalities(c: CompiledModel) -> list[int]:
     """Return the equalities whose softness was set by hand."""
-    n = c.count("equality")
-    if not n:
-        return []
-    hard = np.isclose(np.asarray(c.model.eq_solref).reshape(n, -1)[:, :2], DEFAULT_SOLREF).all(axis=1)
-    stiff = np.isclose(np.asarray(c.model.eq_solimp).reshape(n, -1)[:, :5], DEFAULT_SOLIMP).all(axis=1)
-    return [int(k) for k in np.flatnonzero(~(hard & stiff))]
+    return [k for k in range(c.count("equality")) if _is_soft(c, "eq", k)]
 
 
 def _count_touching_geoms(c: CompiledModel) -> int:
@@ -210,6 +229,18 @@ UNSUPPORTED_FEATURES = (
         lambda c: _joints_with_nonzero_rates(c, c.model.dof_armature),
         "the rotor inertia of motors (armature) is left out: it has no effect at rest",
         "in motion, add armature * acceleration to the reported drive torque",
+    ),
+    UnsupportedFeature(
+        "actuator",
+        lambda c: _nonzero_rows(getattr(c.model, "actuator_armature", None), int(c.model.nu)),
+        "the rotor inertia of actuators (armature) is left out: it has no effect at rest",
+        "in motion, add armature * gear^2 * acceleration to the reported drive torque",
+    ),
+    UnsupportedFeature(
+        "actuator",
+        _nonlinear_actuator_damping,
+        "damping of actuators that is not linear, or acts on a tendon that bends, is left out",
+        "use a torque with any law in the joint's rate",
     ),
     UnsupportedFeature(
         "joint",
@@ -261,8 +292,7 @@ UNSUPPORTED_FEATURES = (
     ),
 )
 TENDONS = UnsupportedFeature(
-    "tendon", lambda c: (), "tendons are left out unless they run straight between two sites, as springs or rods of "
-    "given length",
+    "tendon", lambda c: (), "tendons are left out unless they are fixed, or run straight between two sites",
     "use rods, springs or actuators between points",
 )  # fmt: skip
 TENDON_SPRINGS = UnsupportedFeature(
@@ -274,6 +304,10 @@ SHARED_WEIGHTS = UnsupportedFeature(
     "body", lambda c: (), "gravity compensation by motors (actuatorgravcomp) in only some of the supporting joints: "
     "in the spec no joint carries this weight",
     "the motor of such a joint takes the reported drive torque plus the torque of the weight",
+)  # fmt: skip
+SOFT_LIMITS = UnsupportedFeature(
+    "joint", lambda c: (), "softness of limits (solreflimit, solimplimit, margin) is left out: stops are rigid",
+    "for an elastic stop use a torque: -k*max(elbow.angle - 1.2, 0)",
 )  # fmt: skip
 BALL_LIMITS = UnsupportedFeature(
     "joint", lambda c: (), "rotation limits of ball joints are left out", "use stops on pins"

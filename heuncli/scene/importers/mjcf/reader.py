@@ -14,6 +14,7 @@ from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.loads import Matrix
 from heuncli.scene.file_format.models import ZERO
 from heuncli.scene.importers.description import (
+    LEFT_OUT_CODE,
     DescribedBody,
     DescribedEntry,
     DescribedMachine,
@@ -28,11 +29,11 @@ from heuncli.scene.importers.mjcf.loads import (
     iter_gravity_compensation,
     iter_joint_loads,
     iter_stops,
-    iter_tendon_springs,
 )
 from heuncli.scene.importers.mjcf.loop_closures import ClosureBuilder, LoopClosures
 from heuncli.scene.importers.mjcf.no_counterpart import find_unsupported
 from heuncli.scene.importers.mjcf.starts import StartKeys, choose_held_joints, find_starts, joint_places
+from heuncli.scene.importers.mjcf.tendons import iter_tendon_springs
 from heuncli.scene.importers.mjcf.tree import (
     CARRIER_MASS_RATIO,
     FREE,
@@ -93,7 +94,7 @@ class _MachineBuilder:
         gravity = ZERO if c.is_disabled("GRAVITY") else to_vec(model.opt.gravity)
         forces = (
             *iter_joint_loads(c, self.tree, self.names.assign),
-            *iter_tendon_springs(c, self.closure_builder, self.names.assign),
+            *iter_tendon_springs(c, self.closure_builder, self.tree, self.names.assign),
             *iter_gravity_compensation(
                 c, self.frames, self.tree, self.points, gravity, self.names.assign, self.options.free
             ),
@@ -106,6 +107,7 @@ class _MachineBuilder:
             *self.laws.left_out,
             *self.closures.left_out,
             *find_unsupported(c, self.closures.rods, self.options.limits, self.options.free),
+            *_find_left_out_controls(c, self.options),
         )
         return DescribedMachine(
             title=_read_title(c),
@@ -117,8 +119,8 @@ class _MachineBuilder:
             ground=self.points.get_points(GROUND),
             parameters=self.laws.parameters,
             joints=tuple(self.add_initial(joint) for joint in (*self.joints, *self.closures.joints)),
-            drives=self.laws.drives,
-            couplings=self.laws.couplings,
+            drives=(*self.laws.drives, *self.closures.drives),
+            couplings=(*self.laws.couplings, *self.closures.ratios),
             forces=forces,
             stops=limits,
             header_lines=tuple(self.iter_header_lines()),
@@ -213,8 +215,8 @@ class _MachineBuilder:
         ground = sum(float(model.body_mass[body]) for body, owner in enumerate(self.frames.owners) if owner == 0)
         if ground > 0.0:
             yield f"Fixed bodies belong to the ground; their {ground:.6g} kg are not in the load on the foundation."
-        if self.closures.joints:
-            yield "Equalities are soft in MuJoCo and rigid joints here."
+        if self.closures.imported_equalities:
+            yield "Equalities are soft in MuJoCo and exact here."
         yield from self.closures.header_lines
         yield from (f"MuJoCo warns: {text}" for text in c.warning_texts)
 
@@ -234,6 +236,17 @@ def _find_start_values(c: CompiledModel, keyframe: str | None) -> tuple[Any, Any
     hint = suggest(keyframe, [name for name in names if name], "keyframes") if any(names) else "leave out --keyframe"
     message = f"there is no keyframe {keyframe!r}; number of keyframes: {len(names)}"
     raise SpecError(Problem("import-keyframe", message, SourceLocation(c.file, 1, 1), hint))
+
+
+def _find_left_out_controls(c: CompiledModel, options: ImportOptions) -> Iterator[Problem]:
+    """Yield a problem if a keyframe's controls would move joints that are left free."""
+    names = [
+        options.keyframe == c.name("keyframe", k) or options.keyframe == str(k) for k in range(c.count("keyframe"))
+    ]
+    if options.free and any(names) and np.any(c.model.key_ctrl[names.index(True)]):
+        message = f"the controls (ctrl) of the keyframe {options.keyframe!r} are left out"
+        hint = "write what the motors exert as torques, or leave out --free"
+        yield Problem(LEFT_OUT_CODE, message, SourceLocation(c.file, 1, 1), hint)
 
 
 def _require_finite(c: CompiledModel) -> None:

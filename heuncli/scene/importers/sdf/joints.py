@@ -17,7 +17,7 @@ from heuncli.scene.importers.sdf.frames import (
     invert_pose,
 )
 from heuncli.scene.importers.sdf.values import read_child_flag, read_child_number, read_child_word, read_values
-from heuncli.scene.importers.urdf.document import X_AXIS, Mimic, UrdfJoint, UrdfLink
+from heuncli.scene.importers.urdf.document import NO_LIMIT, X_AXIS, Mimic, UrdfJoint, UrdfLink
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
@@ -33,7 +33,6 @@ JOINT_PARTS = ("pose", "parent", "child", "axis")
 AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
 LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
 DYNAMICS_PARTS = ("damping", "friction", "spring_stiffness", "spring_reference")
-NO_LIMIT = 1e15  # SDF writes 1e16 for a limit that is none
 UNLIMITED_WORDS = ("inf", "+inf", "-inf", "infinity", "-infinity")
 
 

@@ -22,6 +22,7 @@ MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 LINK_PARTS = ("inertial", "visual", "collision")
 PLACES_IN_LINKS = ("origin", "pose", "frame", "axis")  # a link has none: its joint places it
 INERTIAL_PARTS = ("origin", "mass", "inertia")
+NO_LIMIT = 1e15  # [m, rad] SDF writes 1e16 for a limit that is none, and so does heun in a URDF, whose slides need one
 JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration")
 OLD_DYNAMICS = "joint_properties"  # the name of <dynamics> before ROS Fuerte
 JOINT_TYPE_HINT = (
@@ -305,6 +306,8 @@ def _read_limits(element: XmlElement, path: str, fields: UrdfFields) -> tuple[tu
     if "lower" not in part.attributes and "upper" not in part.attributes:
         return None, effort
     lower, upper = (fields.read_number(part, name, path, 0.0) for name in ("lower", "upper"))
+    if lower is not None and upper is not None and min(-lower, upper) >= NO_LIMIT:
+        return None, effort
     return (None if lower is None or upper is None else (lower, upper)), effort
 
 
