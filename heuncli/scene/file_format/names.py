@@ -22,7 +22,7 @@ from heuncli.scene.file_format.semantics import rotor_name
 GROUND = "ground"
 NAMED_BLOCKS = (
     "parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "rolling",
-    "sections", "tables", "cases",
+    "sections", "sensors", "tables", "cases",
 )  # fmt: skip
 ALL_CASES = "all"  # the value of --case that selects all cases
 UNTIL = "until"  # name of the condition that ends a motion; events have names of their own
@@ -111,7 +111,8 @@ def is_name(text: str) -> bool:
 # Planar
 
 VECTOR_BLOCKS = (
-    "gravity", "ground", "bodies", "joints", "couplings", "rolling", "forces", "impulses", "sections", "foundation",
+    "gravity", "ground", "bodies", "joints", "couplings", "rolling", "forces", "impulses", "sections", "sensors",
+    "foundation",
 )  # fmt: skip
 ENTRY_LISTS = ("shapes", "through")  # lists whose items hold vectors
 VECTOR_KEYS = frozenset({  # keys of vectors that lie in the plane; named points are found under `points`

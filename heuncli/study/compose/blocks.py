@@ -49,7 +49,8 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             mechanism, states, recovery.ground_actions, recovery.setup.moment_point, recovery.inner_forces
         )
     if "joints" in reports:
-        blocks_by_name["joints"] = {j.joint.name: make_joint_block(j) for j in recovery.requested_joints}
+        planar = mechanism.planar
+        blocks_by_name["joints"] = {j.joint.name: make_joint_block(j, planar) for j in recovery.requested_joints}
         blocks_by_name["stops"] = make_stop_blocks(recovery.requested_joints)
         blocks_by_name["couplings"] = {
             own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings
@@ -68,6 +69,10 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
 
             elements = blocks_by_name["foundation"].get("elements", {})
             mark_elements(layout, solutions, elements, make_element_keys(mechanism))
+    if "joints" in reports and recovery.setup.sensors:
+        from heuncli.study.compose.sensors import make_sensor_blocks  # few scenes have them
+
+        blocks_by_name["sensors"] = make_sensor_blocks(recovery, SHARES in reports)
     if "energy" in reports:
         blocks_by_name["energy"] = recovery.energy
     if "motion" in reports:
@@ -120,8 +125,11 @@ def make_body_block(states: BodyStates, quaternions: Array, vectors: Array, mome
     }
 
 
-def make_joint_block(load: JointLoads) -> JointBlock:
-    """Make the block of one joint's reaction, with its components along and across the axis."""
+def make_joint_block(load: JointLoads, planar: bool = False) -> JointBlock:
+    """Make the block of one joint's reaction, with its components along and across the axis.
+
+    planar: whether the scene is declared planar
+    """
     block: JointBlock = {"point": load.point, "force": load.force, "moment": load.moment, "open": []}
     if load.drive is not None:
         block["drive"] = load.drive
@@ -139,6 +147,10 @@ def make_joint_block(load: JointLoads) -> JointBlock:
     if load.joint.bearing is not None:
         carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
         block["pressure"] = carried / load.joint.bearing
+    if load.joint.bearings is not None:
+        from heuncli.loads.kinetostatics.sensors import make_bearing_blocks  # few joints have them
+
+        block["bearings"], block["open"] = make_bearing_blocks(load, planar)
     if load.joint.path is not None and load.joint.path.radius:
         block["contact_point"] = load.points.contact_point(load.joint, load.point)
     return block
