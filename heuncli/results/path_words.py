@@ -59,8 +59,8 @@ LOAD_ERROR_KINDS = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.f
 
 
 NAMES = (
-    "BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "SENSOR", "CORNER", "FORCE", "CAUSE", "EVENT",
-    "NUMBER",
+    "BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "SENSOR", "CORNER", "FORCE", "CAUSE",
+    "EVENT", "NUMBER",
 )  # fmt: skip
 
 

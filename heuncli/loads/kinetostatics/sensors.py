@@ -16,6 +16,7 @@ that of causes, are kept.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
@@ -27,6 +28,9 @@ from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.models import BearingPair, Spec
 from heuncli.scene.shapes.rotations import cross_rows
+
+# origin (n_t, 3), force and moment about it (..., n_t, 3), world axes
+Reaction: TypeAlias = tuple[Array, Array, Array]
 
 
 @record
@@ -49,12 +53,11 @@ class Sensor:
         """Return the point that its moment is about, (n_t, 3), world axes; origin: that of the reaction."""
         return origin if self.point is None else np.asarray(states.point_position(self.owner, self.point))
 
-    def read(
-        self, states: BodyStates, origin: Array, force: Array, moment: Array, planar: bool = False
-    ) -> tuple[Array, Array]:
-        """Return what it reads of a reaction about `origin` (n_t, 3), all (..., n_t, 3); in a scene declared planar
-        without what does not exist there.
+    def read(self, states: BodyStates, reaction: Reaction, planar: bool) -> tuple[Array, Array]:
+        """Return the force and moment that it reads of a reaction; in a scene declared planar without what does not
+        exist there.
         """
+        origin, force, moment = reaction
         moment = moment + cross_rows(origin - self.find_point(states, origin), force)
         R = None if self.axes == GROUND else states.R[:, self.axes]
         force, moment = rotate_to_axes(force, R), rotate_to_axes(moment, R)
@@ -74,7 +77,8 @@ def make_sensors(spec: Spec, mechanism: Mechanism) -> tuple[Sensor, ...]:
 
 def move_shares(sensor: Sensor, states: BodyStates, origin: Array, shares: Array, planar: bool) -> Array:
     """Return what a sensor reads of shares of self-stresses about `origin`, force and moment, (n_t, 6, k)."""
-    parts = sensor.read(states, origin, *(np.moveaxis(part, 2, 0) for part in np.split(shares, 2, axis=1)), planar)
+    F, M = np.moveaxis(shares[:, :3], 2, 0), np.moveaxis(shares[:, 3:], 2, 0)
+    parts = sensor.read(states, (origin, F, M), planar)
     return np.moveaxis(np.concatenate(parts, axis=2), 0, 2)
 
 

@@ -229,7 +229,7 @@ def find_ending_error(results: Results) -> float | None:
 
 def _find_open_components(results: Results, reports: frozenset[str]) -> Iterator[str]:
     """Yield the paths of the components that are open at some instant."""
-    blocks = {"joints": results.joints, "sections": results.sections}
+    blocks = {"joints": results.joints, "sensors": results.sensors, "sections": results.sections}
     blocks["foundation.supports"] = results.foundation.get("supports", {})
     for kind, block in blocks.items():
         for name, part in block.items():

@@ -19,6 +19,7 @@ from heuncli.study.solve.load_errors import find_sensor_reaction
 if TYPE_CHECKING:
     from heuncli.loads.redundancy.self_stress import SelfStress
 
+
 def make_sensor_blocks(recovery: Recovery, by_cause: bool) -> Block:
     """Make the blocks of all sensors; by_cause: with their shares."""
     return {sensor.name: make_sensor_block(recovery, sensor, by_cause) for sensor in recovery.setup.sensors}
@@ -28,14 +29,15 @@ def make_sensor_block(recovery: Recovery, sensor: Sensor, by_cause: bool) -> Blo
     """Make the block of one sensor; nan where the reaction is indeterminate."""
     states, planar = recovery.states, recovery.setup.scene.mechanism.planar
     acting = [*recovery.applied_actions, *list_coupling_actions(recovery.couplings)]
-    origin, *wrench = find_sensor_reaction(recovery.setup, sensor, states, recovery.joints, acting)
-    force, moment = sensor.read(states, origin, *wrench, planar)
+    reaction = find_sensor_reaction(recovery.setup, sensor, states, recovery.joints, acting)
+    origin = reaction[0]
+    force, moment = sensor.read(states, reaction, planar)
     block: Block = {"point": sensor.find_point(states, origin), "force": force, "moment": moment, "open": []}
     if by_cause:
         from heuncli.study.solve.cause_shares import find_sensor_shares  # few runs ask for shares
 
         shares = recovery.shares
-        F, M = sensor.read(states, *find_sensor_shares(recovery.setup, sensor, states, shares), planar)
+        F, M = sensor.read(states, find_sensor_shares(recovery.setup, sensor, states, shares), planar)
         block["shares"] = shares.to_blocks({"force": F, "moment": M})
     stress = recovery.indeterminate
     if stress is not None:

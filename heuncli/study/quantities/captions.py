@@ -28,6 +28,9 @@ WORDS: dict[str, str | tuple[str, str]] = {
     "direct_force": ("direct part of the force", "direct part of F{}"),
     "direct_moment": ("direct part of the moment", "direct part of M{}"), "torque": "torque", "power": "power",
     "axial": "axial force", "radial": "radial force", "tilting": "tilting moment", "tension": "tension",
+    "bearings.axial": "axial force of bearing", "bearings.radial": "radial force of bearing",
+    "bearings.radial_force": ("radial force of bearing", "radial force {} of bearing"),
+    "bearings.point": "point of bearing",
     "pressure": "mean pressure", "drive": "drive", "value": "load", "open": "indeterminate components",
     "chosen": "components by a chosen distribution", "point": "point", "direction": "direction", "time": "time",
     "position": "position", "velocity": ("velocity", "v {}"), "acceleration": ("acceleration", "a {}"),
@@ -102,6 +105,7 @@ LABELLED_BLOCKS = {
 # One thing of a block of the spec -> the block, as sentences name it: "the body crank", "joints.main"
 THINGS = {
     "body": "bodies", "joint": "joints", "rod": "joints", "drive": "drives", "force": "forces", "section": "sections",
+    "sensor": "sensors",
     "stop": "stops", "latch": "stops", "coupling": "couplings", "rope": "couplings", "cam": "couplings",
     "impulse": "impulses", "case": "cases",
 }  # fmt: skip
@@ -167,6 +171,9 @@ def describe_object(kind: str, name: str, labels: Labels) -> str:
     if kind == "couplings" and ".on." in name:
         coupling, _, end = name.partition(".on.")
         return f"{describe_object(kind, coupling, labels)} on {describe_object('bodies', end, labels)}"
+    if kind == "joints" and ".bearings." in name:
+        joint, _, number = name.partition(".bearings.")
+        return f"{describe_object(kind, joint, labels)} {number}"
     label = find_label(kind, name, labels)
     if label:
         return label

@@ -17,7 +17,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.loads.kinetostatics.reactions import JointLoads, rotate_joint_loads
-from heuncli.loads.kinetostatics.sensors import Sensor
+from heuncli.loads.kinetostatics.sensors import Reaction, Sensor
 from heuncli.loads.kinetostatics.shares import (
     CauseResults,
     Shares,
@@ -128,19 +128,14 @@ def list_moved_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindV
     if any(load.joint.bearings is not None for load in shares.joints):
         from heuncli.loads.kinetostatics.sensors import iter_bearing_terms  # few joints have them
 
-        found += [
-            ("bearings", "force", np.moveaxis(values, 0, 1)) for values, *_ in iter_bearing_terms(shares.joints)
-        ]
+        found += [("bearings", "force", np.moveaxis(values, 0, 1)) for values, *_ in iter_bearing_terms(shares.joints)]
     for sensor in setup.sensors:
-        origin, force, moment = find_sensor_shares(setup, sensor, states, shares)
-        read = sensor.read(states, origin, force, moment, setup.scene.mechanism.planar)
+        read = sensor.read(states, find_sensor_shares(setup, sensor, states, shares), setup.scene.mechanism.planar)
         found += [("sensors", name, np.moveaxis(values, 0, 1)) for name, values in zip(WRENCH, read, strict=True)]
     return found
 
 
-def find_sensor_shares(
-    setup: Setup, sensor: Sensor, states: BodyStates, shares: Shares
-) -> tuple[Array, Array, Array]:
+def find_sensor_shares(setup: Setup, sensor: Sensor, states: BodyStates, shares: Shares) -> Reaction:
     """Return the shares by cause in a sensor's reaction: origin (n_t, 3), force and moment, (n_c, n_t, 3) each."""
     if sensor.joint is not None:
         load = next(load for load in shares.joints if load.joint.name == sensor.joint)

@@ -38,7 +38,7 @@ from heuncli.loads.kinetostatics.couplings import (
 )
 from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
-from heuncli.loads.kinetostatics.sensors import Sensor
+from heuncli.loads.kinetostatics.sensors import Reaction, Sensor
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Joint, extent_points
@@ -109,7 +109,7 @@ Quantity = tuple[str, Array]  # of couplings: name, a key of error_estimates.UNI
 
 def find_sensor_reaction(
     setup: Setup, sensor: Sensor, states: BodyStates, joints: Sequence[JointLoads], acting: Sequence[Action]
-) -> tuple[Array, Array, Array]:
+) -> Reaction:
     """Return the reaction that a sensor reads: origin, force and moment, (n_t, 3) each, world axes.
 
     Of a joint it is what its constraint exerts ON `to`, of a section the load of the far side ON the near side.
@@ -336,9 +336,9 @@ class LoadErrors(ErrorEstimates):
                 largest_term = by_force * terms.force + by_moment * terms.moment
                 self.add_values(("bearings", "force"), values, by_force * F + by_moment * M, largest_term)
         for sensor in self.setup.sensors:
-            origin, *wrench = find_sensor_reaction(self.setup, sensor, states, joints, acting)
-            force, moment = sensor.read(states, origin, *wrench, self.setup.scene.mechanism.planar)
-            lever = np.abs(origin - sensor.find_point(states, origin)).max(axis=1)
+            reaction = find_sensor_reaction(self.setup, sensor, states, joints, acting)
+            force, moment = sensor.read(states, reaction, self.setup.scene.mechanism.planar)
+            lever = np.abs(reaction[0] - sensor.find_point(states, reaction[0])).max(axis=1)
             self.add_values(("sensors", "force"), force, F, terms.force)
             self.add_values(("sensors", "moment"), moment, M + lever * F, terms.moment + lever * terms.force)
 
