@@ -119,7 +119,7 @@ VECTOR_KEYS = frozenset({  # keys of vectors that lie in the plane; named points
     "gravity", "center", "position", "from", "to", "at", "velocity", "vector", "to_vector", "axis", "to_axis", "normal",
     "first_axis", "about",
 })  # fmt: skip
-KEYS_ABOUT_Z = ("orientation", "angular_velocity")  # their values are about z already
+KEYS_ABOUT_Z = ("orientation", "angular_velocity", "bearings")  # their values are about z, or along it, already
 
 
 def complete_planar_scene(data: dict[str, Any]) -> dict[str, Any]:
