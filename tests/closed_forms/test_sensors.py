@@ -109,7 +109,7 @@ def test_their_axes_turn_with_the_rotor() -> None:
 def test_a_bearing_that_nobody_named_leaves_the_thrust_open() -> None:
     results = solved(OVERHUNG.replace(", axial: second", ""))
     joint = results.joints["main"]
-    assert joint["open"] == ["bearings.0.axial", "bearings.1.axial"]
+    assert [bearing["open"] for bearing in joint["bearings"].values()] == [["axial"], ["axial"]]
     assert all(np.isnan(bearing["axial"]).all() for bearing in joint["bearings"].values())
     near(joint["bearings"]["0"]["radial"], [50.0], PULL, 1e-14)
     near(joint["axial"], [-WEIGHT], PULL, 1e-14)
@@ -146,7 +146,7 @@ analysis: {type: state}
     one = solved(text).joints["one"]
     assert np.isfinite(one["bearings"]["0"]["radial"]).all()
     free = solved(text.replace(", stiffness: {moment: 0, force: [0, 1e8, 1e8]}", "")).joints["one"]
-    assert {"bearings.0.radial", "bearings.1.radial", "bearings.0.radial_force.z"} <= {*free["open"]}
+    assert all({"radial", "radial_force.z"} <= {*bearing["open"]} for bearing in free["bearings"].values())
     assert np.isnan(free["bearings"]["0"]["radial"]).all()
 
 
@@ -166,7 +166,7 @@ analysis: {type: state}
     force = joint["force"]
     near(joint["bearings"]["0"]["radial_force"], 0.75 * force, 20.0, 1e-14)
     near(joint["bearings"]["1"]["radial_force"], 0.25 * force, 20.0, 1e-14)
-    assert joint["open"] == []
+    assert joint["bearings"]["0"]["open"] == []
     assert not joint["bearings"]["0"]["axial"].any()
     near(results.sensors["cell"]["moment"], [[0.0, 0.0, -force[0, 1]]], 20.0, 1e-14)
 

@@ -118,17 +118,18 @@ def make_bearing_loads(load: JointLoads, planar: bool = False) -> Block:
     }
 
 
-def make_bearing_blocks(load: JointLoads, planar: bool) -> tuple[Block, list[str]]:
-    """Make the blocks of a joint's bearings, and list which of their components no rule decides."""
+def make_bearing_blocks(load: JointLoads, planar: bool) -> Block:
+    """Make the blocks of a joint's bearings; the axial load is open where it is not stated which carries it."""
     pair = load.joint.bearings
     assert pair is not None
     assert load.axis is not None
     block: Block = {}
     for (key, own), place in zip(make_bearing_loads(load, planar).items(), pair.at, strict=True):
         radial = np.sqrt(np.sum(own["radial_force"] ** 2, axis=-1))
-        block[key] = {"point": load.point + place * load.axis, "radial": radial} | own
-    is_unstated = pair.axial is None and not planar and not load.slides
-    return block, [f"bearings.{key}.axial" for key in block] if is_unstated else []
+        is_open = "axial" in own and bool(np.isnan(own["axial"]).any())
+        names = ["axial"] if is_open else []
+        block[key] = {"point": load.point + place * load.axis, "radial": radial, "open": names} | own
+    return block
 
 
 def iter_bearing_terms(joints: Sequence[JointLoads]) -> Iterator[tuple[Array, float, float]]:

@@ -104,10 +104,9 @@ def mark_joint(
         parts["drive"] = parts["tension"] = np.asarray(force.any(axis=1))
     parts["pressure"] = parts.get("radial", np.asarray(force.any(axis=1)))
     mask_parts(block, parts)
-    names = list_indeterminate_names({name: is_open for name, is_open in parts.items() if name in block})
+    block["open"] = list_indeterminate_names({name: is_open for name, is_open in parts.items() if name in block})
     if load.joint.bearings is not None:
-        names += mark_bearings(block["bearings"], load, share, stress, axes)
-    block["open"] = [*dict.fromkeys(names + block["open"])]
+        mark_bearings(block["bearings"], load, share, stress, axes)
 
 
 def mask_parts(block: Block, parts: Mapping[str, Mask]) -> None:
@@ -117,14 +116,13 @@ def mask_parts(block: Block, parts: Mapping[str, Mask]) -> None:
             entry[name] = mask_indeterminate(entry[name], parts[name])
 
 
-def mark_bearings(block: Block, load: JointLoads, share: Array, stress: SelfStress, axes: Array | None) -> list[str]:
-    """Mark the indeterminate components of a joint's bearings, in place, and list them; axes as of `mark_joint`."""
+def mark_bearings(block: Block, load: JointLoads, share: Array, stress: SelfStress, axes: Array | None) -> None:
+    """Mark the indeterminate components of a joint's bearings, in place; axes as of `mark_joint`."""
     from heuncli.loads.kinetostatics.sensors import find_bearing_factors, split_to_bearings  # few joints have them
 
     pair = load.joint.bearings
     assert pair is not None
     assert load.axis is not None
-    names: list[str] = []
     F, M = np.moveaxis(share[:, :3], 2, 0), np.moveaxis(share[:, 3:], 2, 0)
     axial = stress.has_share(np.einsum("ti,tik->tk", load.axis, share[:, :3])[:, None])[:, 0]
     by_force, by_moment = find_bearing_factors(pair)
@@ -135,8 +133,7 @@ def mark_bearings(block: Block, load: JointLoads, share: Array, stress: SelfStre
         if "axial" in bearing and pair.axial in (None, int(key)):
             parts["axial"] = axial
         mask_parts(bearing, parts)
-        names += [f"bearings.{key}.{name}" for name in list_indeterminate_names(parts)]
-    return names
+        bearing["open"] = [*dict.fromkeys([*list_indeterminate_names(parts), *bearing["open"]])]
 
 
 def is_coordinate_indeterminate(quantity: str, free_share: Array, stress: SelfStress) -> Mask:

@@ -234,6 +234,8 @@ def _find_open_components(results: Results, reports: frozenset[str]) -> Iterator
     for kind, block in blocks.items():
         for name, part in block.items():
             yield from (f"{kind}.{name}.{component}" for component in part.get("open", ()))
+            for number, bearing in part.get("bearings", {}).items():
+                yield from (f"{kind}.{name}.bearings.{number}.{component}" for component in bearing["open"])
 
 
 def _make_sums(view: ResultView, page: Page) -> dict[str, SumSnapshot]:

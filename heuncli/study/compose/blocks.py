@@ -49,12 +49,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             mechanism, states, recovery.ground_actions, recovery.setup.moment_point, recovery.inner_forces
         )
     if "joints" in reports:
-        planar = mechanism.planar
-        blocks_by_name["joints"] = {j.joint.name: make_joint_block(j, planar) for j in recovery.requested_joints}
-        blocks_by_name["stops"] = make_stop_blocks(recovery.requested_joints)
-        blocks_by_name["couplings"] = {
-            own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings
-        }
+        blocks_by_name |= make_reaction_blocks(recovery, SHARES in reports)
     if SHARES in reports:
         from heuncli.study.solve.cause_shares import add_shares  # few runs need them
 
@@ -69,10 +64,6 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
 
             elements = blocks_by_name["foundation"].get("elements", {})
             mark_elements(layout, solutions, elements, make_element_keys(mechanism))
-    if "joints" in reports and recovery.setup.sensors:
-        from heuncli.study.compose.sensors import make_sensor_blocks  # few scenes have them
-
-        blocks_by_name["sensors"] = make_sensor_blocks(recovery, SHARES in reports)
     if "energy" in reports:
         blocks_by_name["energy"] = recovery.energy
     if "motion" in reports:
@@ -100,6 +91,21 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             [own for own in recovery.loads if mechanism.spec_block(own.load) == "forces"], states
         )
     return blocks_by_name
+
+
+def make_reaction_blocks(recovery: Recovery, by_cause: bool) -> dict[str, Any]:
+    """Make the blocks of joints, sensors, stops and couplings; by_cause: those of sensors with their shares."""
+    planar = recovery.setup.scene.mechanism.planar
+    blocks: dict[str, Any] = {
+        "joints": {j.joint.name: make_joint_block(j, planar) for j in recovery.requested_joints},
+        "stops": make_stop_blocks(recovery.requested_joints),
+        "couplings": {own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings},
+    }
+    if recovery.setup.sensors:
+        from heuncli.study.compose.sensors import make_sensor_blocks  # few scenes have them
+
+        blocks["sensors"] = make_sensor_blocks(recovery, by_cause)
+    return blocks
 
 
 def make_requested_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
@@ -150,7 +156,7 @@ def make_joint_block(load: JointLoads, planar: bool = False) -> JointBlock:
     if load.joint.bearings is not None:
         from heuncli.loads.kinetostatics.sensors import make_bearing_blocks  # few joints have them
 
-        block["bearings"], block["open"] = make_bearing_blocks(load, planar)
+        block["bearings"] = make_bearing_blocks(load, planar)
     if load.joint.path is not None and load.joint.path.radius:
         block["contact_point"] = load.points.contact_point(load.joint, load.point)
     return block

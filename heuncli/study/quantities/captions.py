@@ -29,7 +29,7 @@ WORDS: dict[str, str | tuple[str, str]] = {
     "direct_moment": ("direct part of the moment", "direct part of M{}"), "torque": "torque", "power": "power",
     "axial": "axial force", "radial": "radial force", "tilting": "tilting moment", "tension": "tension",
     "bearings.axial": "axial force of bearing", "bearings.radial": "radial force of bearing",
-    "bearings.radial_force": ("radial force of bearing", "radial force {} of bearing"),
+    "radial_force": ("radial load of bearing", "radial load {} of bearing"),
     "bearings.point": "point of bearing",
     "pressure": "mean pressure", "drive": "drive", "value": "load", "open": "indeterminate components",
     "chosen": "components by a chosen distribution", "point": "point", "direction": "direction", "time": "time",
