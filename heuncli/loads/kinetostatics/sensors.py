@@ -34,7 +34,7 @@ Reaction: TypeAlias = tuple[Array, Array, Array]
 
 
 @record
-class Sensor:
+class PlacedSensor:
     """What reads the reaction of a joint, or the load of a cut.
 
     joint, section: the name of the one, None for the other
@@ -64,18 +64,18 @@ class Sensor:
         return project_to_plane(force, moment) if planar else (force, moment)
 
 
-def make_sensors(spec: Spec, mechanism: Mechanism) -> tuple[Sensor, ...]:
+def make_sensors(spec: Spec, mechanism: Mechanism) -> tuple[PlacedSensor, ...]:
     """Make the sensors of a spec."""
     bodies = {body.name: i for i, body in enumerate(mechanism.bodies)} | {"ground": GROUND}
     found = []
     for name, own in spec.sensors.items():
         end = own.point
         owner, point = (GROUND, None) if end is None else (bodies[end.body], np.array(end.point))
-        found.append(Sensor(name, own.joint, own.section, owner, point, bodies[own.body]))
+        found.append(PlacedSensor(name, own.joint, own.section, owner, point, bodies[own.body]))
     return tuple(found)
 
 
-def move_shares(sensor: Sensor, states: BodyStates, origin: Array, shares: Array, planar: bool) -> Array:
+def move_shares(sensor: PlacedSensor, states: BodyStates, origin: Array, shares: Array, planar: bool) -> Array:
     """Return what a sensor reads of shares of self-stresses about `origin`, force and moment, (n_t, 6, k)."""
     F, M = np.moveaxis(shares[:, :3], 2, 0), np.moveaxis(shares[:, 3:], 2, 0)
     parts = sensor.read(states, (origin, F, M), planar)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
-from heuncli.loads.kinetostatics.sensors import Sensor, move_shares
+from heuncli.loads.kinetostatics.sensors import PlacedSensor, move_shares
 from heuncli.results.results import Array, Block
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.solve.load_errors import find_sensor_reaction
@@ -25,7 +25,7 @@ def make_sensor_blocks(recovery: Recovery, by_cause: bool) -> Block:
     return {sensor.name: make_sensor_block(recovery, sensor, by_cause) for sensor in recovery.setup.sensors}
 
 
-def make_sensor_block(recovery: Recovery, sensor: Sensor, by_cause: bool) -> Block:
+def make_sensor_block(recovery: Recovery, sensor: PlacedSensor, by_cause: bool) -> Block:
     """Make the block of one sensor; nan where the reaction is indeterminate."""
     states, planar = recovery.states, recovery.setup.scene.mechanism.planar
     acting = [*recovery.applied_actions, *list_coupling_actions(recovery.couplings)]
@@ -54,7 +54,7 @@ def make_sensor_block(recovery: Recovery, sensor: Sensor, by_cause: bool) -> Blo
     return block
 
 
-def find_stress_shares(recovery: Recovery, sensor: Sensor, stress: SelfStress) -> Array:
+def find_stress_shares(recovery: Recovery, sensor: PlacedSensor, stress: SelfStress) -> Array:
     """Return the shares of the self-stresses in a sensor's reaction, (n_t, 6, k)."""
     from heuncli.loads.redundancy.indeterminate_components import iter_self_stress_components
 

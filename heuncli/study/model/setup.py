@@ -43,7 +43,7 @@ from heuncli.study.model.selection import EVERYTHING, Selection
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.cuts import Cuts
-    from heuncli.loads.kinetostatics.sensors import Sensor
+    from heuncli.loads.kinetostatics.sensors import PlacedSensor
     from heuncli.loads.redundancy.self_stress import CachedStress
     from heuncli.multibody.tree.layout import Layout
     from heuncli.study.model.rest_pose import Rest
@@ -87,7 +87,7 @@ class Setup:
         return np.array(point if point is not None else (0.0, 0.0, 0.0))
 
     @cached_property
-    def sensors(self) -> tuple[Sensor, ...]:
+    def sensors(self) -> tuple[PlacedSensor, ...]:
         """What reads reactions elsewhere."""
         if not self.spec.sensors:
             return ()

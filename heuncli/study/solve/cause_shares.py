@@ -17,7 +17,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.loads.kinetostatics.reactions import JointLoads, rotate_joint_loads
-from heuncli.loads.kinetostatics.sensors import Reaction, Sensor
+from heuncli.loads.kinetostatics.sensors import PlacedSensor, Reaction
 from heuncli.loads.kinetostatics.shares import (
     CauseResults,
     Shares,
@@ -135,7 +135,7 @@ def list_moved_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindV
     return found
 
 
-def find_sensor_shares(setup: Setup, sensor: Sensor, states: BodyStates, shares: Shares) -> Reaction:
+def find_sensor_shares(setup: Setup, sensor: PlacedSensor, states: BodyStates, shares: Shares) -> Reaction:
     """Return the shares by cause in a sensor's reaction: origin (n_t, 3), force and moment, (n_c, n_t, 3) each."""
     if sensor.joint is not None:
         load = next(load for load in shares.joints if load.joint.name == sensor.joint)

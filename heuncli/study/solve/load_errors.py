@@ -38,7 +38,7 @@ from heuncli.loads.kinetostatics.couplings import (
 )
 from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
-from heuncli.loads.kinetostatics.sensors import Reaction, Sensor
+from heuncli.loads.kinetostatics.sensors import PlacedSensor, Reaction
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Joint, extent_points
@@ -108,7 +108,7 @@ Quantity = tuple[str, Array]  # of couplings: name, a key of error_estimates.UNI
 
 
 def find_sensor_reaction(
-    setup: Setup, sensor: Sensor, states: BodyStates, joints: Sequence[JointLoads], acting: Sequence[Action]
+    setup: Setup, sensor: PlacedSensor, states: BodyStates, joints: Sequence[JointLoads], acting: Sequence[Action]
 ) -> Reaction:
     """Return the reaction that a sensor reads: origin, force and moment, (n_t, 3) each, world axes.
 
