@@ -60,7 +60,7 @@ LOAD_ERROR_KINDS = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.f
 
 NAMES = (
     "BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "SENSOR", "CORNER", "FORCE", "CAUSE",
-    "EVENT", "NUMBER",
+    "EVENT", "BEARING", "NUMBER",
 )  # fmt: skip
 
 

@@ -139,11 +139,11 @@ def describe_path(path: str, labels: Labels) -> str:
     parts = parse_path(path)
     if parts is None:
         return _describe_entry(path, labels)
-    number = parts.find_name("NUMBER")
+    number, bearing = parts.find_name("NUMBER"), parts.find_name("BEARING")
     if parts.words[0] == IMPULSES:
         parts = parts._replace(words=parts.words[1:])
     subject = _describe_subject(parts, labels)
-    text = _describe_quantity(parts, labels)
+    text = _describe_quantity(parts, labels) + f" {bearing}" * bool(bearing)
     text += f" at impulse {number}" if number and parts.words[0] != "certain_sums" else f" {number}" * bool(number)
     return f"{subject}, {text}" if subject else text
 
@@ -251,7 +251,7 @@ def _follow_words(node: Node | Quantity, words: Sequence[str], parts: PathParts)
 def _describe_subject(parts: PathParts, labels: Labels) -> str:
     """Describe what a quantity belongs to; empty if its words say so themselves."""
     kind = parts.words[0]
-    names = [name for word, name in parts.names if word not in ("CAUSE", "NUMBER", "END")]
+    names = [name for word, name in parts.names if word not in ("CAUSE", "NUMBER", "END", "BEARING")]
     if kind == "foundation":
         words = [*parts.words[1:2], *names] if names else []
         return describe_object(kind, ".".join(words), labels)
