@@ -196,6 +196,11 @@ class JointKind(NamedTuple):
         return self.axis_key == "axis" and self.to_axis != "required" and not self.is_constant_velocity
 
     @property
+    def carries_tilting(self) -> bool:
+        """Whether it holds its one axis against every tilting moment, as two bearings do."""
+        return self.has_one_axis and self.turn.condition in ("axis", "all")
+
+    @property
     def has_moving_contact(self) -> bool:
         """Whether the point where it loads its `from` body moves over that body."""
         return bool(self.shifts)

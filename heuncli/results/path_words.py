@@ -44,7 +44,7 @@ def is_cut_word(word: str) -> bool:
 
 
 ESTIMATE_OF_BLOCK = {
-    "foundation": "foundation", "joints": "reactions", "stops": "reactions",
+    "foundation": "foundation", "joints": "reactions", "sensors": "sensors", "stops": "reactions",
     "couplings": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
 
@@ -59,11 +59,12 @@ LOAD_ERROR_KINDS = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.f
 
 
 NAMES = (
-    "BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "CORNER", "FORCE", "CAUSE", "EVENT",
-    "NUMBER",
+    "BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "SENSOR", "CORNER", "FORCE", "CAUSE",
+    "EVENT", "BEARING", "NUMBER",
 )  # fmt: skip
 
 
+BEARINGS = "bearings"  # of a joint
 BY_CAUSE = "by cause"  # of kinds of errors
 
 
@@ -71,7 +72,7 @@ IMPULSE_UNITS = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impul
 
 
 # what a blow has besides its own quantities, as at one instant; of impulses no stresses, pressures, energies are told
-IMPULSE_BLOCKS = ("foundation", "joints", "stops", "couplings", "sections", "certain_sums")
+IMPULSE_BLOCKS = ("foundation", "joints", "sensors", "stops", "couplings", "sections", "certain_sums")
 
 
 NOT_IN_IMPULSES = ("joints.JOINT.pressure", "sections.SECTION.stress.", "sections.SECTION.energy",
@@ -158,7 +159,7 @@ def names_shares(words: list[str]) -> bool:
             if inner
             else words[1:2] == [SHARES]
         )
-    return words[2:3] == [SHARES]
+    return words[4:5] == [SHARES] if words[2:3] == [BEARINGS] else words[2:3] == [SHARES]
 
 
 def error_kind_of_path(kind: str, name: str, number: str) -> str:
@@ -171,10 +172,12 @@ def error_kind_of_path(kind: str, name: str, number: str) -> str:
         kind, _, name = name.partition(".")[2].partition(".")
     words = name.split(".")  # `shares.CAUSE` of the foundation, else `NAME.shares.CAUSE`: a NAME may be `shares`, too
     by_cause = words[-2:-1] == [SHARES] and (kind == "foundation" or len(words) > 2)
-    if by_cause and kind in SHARED_BLOCKS | {"couplings"}:
+    if by_cause and kind in SHARED_BLOCKS | {"couplings", "sensors"}:
         return f"{error_kind_of_path(kind, '.'.join(words[:-2]), number.removeprefix('direct_'))} {BY_CAUSE}"
     if kind == "joints" and number == "drive":
         return "drives"
+    if kind == "joints" and BEARINGS in words[1:]:
+        return BEARINGS
     if kind == "foundation" and name.startswith("supports."):
         return "reactions"
     if kind == "foundation" and name == "axis":

@@ -108,6 +108,7 @@ class JointBlock(TypedDict, total=False):
     torque: Array
     pressure: Array
     contact_point: Array
+    bearings: Block
     shares: Block
 
 
@@ -154,6 +155,7 @@ class Results:
     coordinates: Block = field(default_factory=dict)
     foundation: Block = field(default_factory=dict)
     joints: dict[str, JointBlock] = field(default_factory=dict)
+    sensors: Block = field(default_factory=dict)
     stops: Block = field(default_factory=dict)
     couplings: Block = field(default_factory=dict)
     sections: Block = field(default_factory=dict)

@@ -184,11 +184,21 @@ ROWS: tuple[Quantity, ...] = (
     *rows("joints.JOINT", "mean pressure in its `bearing`: force (`radial` if the joint has an axis) / "
         "(diameter · width)",
         scalar("pressure", "Pa")),
+    *rows("joints.JOINT.bearings.BEARING", "of its two [bearings](format.md#bearings), 0 the first: its point, its load "
+        "ON `to` across the axis, the magnitude of that, and its load along the axis",
+        vector("point", "m"), vector("radial_force", "N"), scalar("radial", "N"), scalar("axial", "N")),
+    *rows("joints.JOINT.bearings.BEARING", OPEN, words("open")),
+    *shares("joints.JOINT.bearings.BEARING", vector("radial_force", "N"), scalar("axial", "N")),
     *rows("joints.JOINT", "contact point of the roller, for a `curve` with a `radius`", vector("contact_point", "m")),
     *rows("joints.JOINT", "force of a rod, > 0 in tension", scalar("tension", "N")),
     *rows("joints.JOINT", "torque of a `cv` ON `to` about either shaft", scalar("torque", "N·m")),
     *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
         scalar("tension", "N"), scalar("torque", "N·m")),
+    *rows("sensors.SENSOR", "reaction that the [sensor](format.md#sensors) reads, in its axes; moment about `point`, "
+        "which is in world axes",
+        vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
+    *rows("sensors.SENSOR", OPEN, words("open")),
+    *shares("sensors.SENSOR"),
     *rows("stops.STOP", "load of the stop ON `to`, along or about the limited coordinate; 0 without contact",
         scalar("force", "N"), scalar("moment", "N·m")),
     *rows("couplings.COUPLING", "load transmitted by the coupling; `contact`: cam force along the flank "
@@ -314,6 +324,7 @@ REPORT_OF = {
     "coordinates": "motion",
     "foundation": "foundation",
     "joints": "joints",
+    "sensors": "joints",
     "stops": "joints",
     "couplings": "joints",
     "sections": "sections",
@@ -340,6 +351,8 @@ ESTIMATE_OF_ERROR_KIND = {
     "strains": "motion",
     "travels": "motion",
     "deflections": "sections",
+    "sensors": "reactions",
+    "bearings": "reactions",
 }
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from heuncli.base.errors import SpecError
 from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
 from tests.shared.scenes import solved
 
 G = 9.81
@@ -271,3 +272,74 @@ def test_what_a_rope_does_to_the_ground_is_its_own_share(analysis: str) -> None:
         assert not any(values.any() for cause, values in parts.items() if cause != "rope")
         whole = sum(own[name] for own in results.foundation["shares"].values())
         assert whole == pytest.approx(results.foundation[name], abs=1e-9)
+
+
+HOIST = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0], drum: [1, 0, 3], top: [0.2, 0, 3]}}
+bodies: {load: {mass: 10, center: [0, 0, 0], inertia: [1, 1, 1], points: {hook: [0, 0, 0]}}}
+joints: {guide: {type: slide, from: ground.O, to: load.hook, axis: [0, 0, 1]}}
+couplings:
+  rope:
+    type: rope
+    through: [load.hook, {sheave: ground.top, radius: 0.2, axis: [0, 1, 0], side: over}, ground.drum]
+    tension: 120 + 10*t
+analysis: {duration: 1, samples: 3}
+"""
+SWING = """\
+heun: 1
+gravity: [0.3, 0, -9.81]
+ground: {points: {O: [0, 0, 0], P: [0.4, 0.3, -0.2]}}
+bodies:
+  bob:
+    mass: 2
+    center: [0, 0, -0.5]
+    inertia: [0.1, 0.08, 0.05]
+    points: {top: [0, 0, 0], hook: [0.1, 0, -0.6]}
+    angular_velocity: [1, 2, 0.5]
+joints: {pivot: {type: ball, from: ground.O, to: bob.top}}
+PULL
+analysis: {duration: 1, samples: 5, tolerance: 1e-11}
+"""
+
+
+def test_a_weight_on_a_rope_of_given_tension() -> None:
+    """m v' = T(t) - m g; the work is the integral of T v."""
+    results = solved(HOIST)
+    v = (12.0 - 9.81) + 0.5
+    z = 0.5 * (12.0 - 9.81) + 1.0 / 6.0
+    assert results.coordinates["guide"]["speed"][-1] == pytest.approx(v, rel=1e-12)
+    assert results.couplings["rope"]["tension"] == pytest.approx([120.0, 125.0, 130.0], rel=1e-14)
+    assert results.couplings["rope"]["on"]["load"]["force"][-1] == pytest.approx([0.0, 0.0, 130.0], rel=1e-12)
+    assert results.energy["work"][-1] == pytest.approx(5.0 * v * v + 98.1 * z, rel=1e-12)
+    assert not results.energy["potential"][0]
+
+
+@pytest.mark.parametrize("kind", ["motion", "rest", "state"])
+def test_it_pulls_as_an_actuator_between_the_same_points(kind: str) -> None:
+    rope = "couplings: {pull: {type: rope, through: [ground.P, bob.hook], tension: 15}}"
+    actuator = "forces: {pull: {type: actuator, from: ground.P, to: bob.hook, value: -15}}"
+    text = SWING
+    if kind != "motion":
+        text = text.replace("{duration: 1, samples: 5, tolerance: 1e-11}", f"{{type: {kind}}}")
+        text = text.replace("    angular_velocity: [1, 2, 0.5]\n", "")
+    mine, its = (solved(text.replace("PULL", pull)) for pull in (rope, actuator))
+    for name in ("force", "point"):
+        assert mine.joints["pivot"][name] == pytest.approx(its.joints["pivot"][name], rel=1e-7, abs=1e-7)
+    assert mine.bodies["bob"]["rotation"] == pytest.approx(its.bodies["bob"]["rotation"], rel=1e-7, abs=1e-7)
+    assert mine.energy["work"] == pytest.approx(its.energy["work"], rel=1e-8, abs=1e-8)
+
+
+def test_its_tension_may_follow_a_coordinate() -> None:
+    """T = m g + k travel is an unstable spring: the travel grows as cosh."""
+    text = HOIST.replace("120 + 10*t", "98.1 + 40*guide.travel")
+    text = text.replace("axis: [0, 0, 1]", "axis: [0, 0, 1], initial: {travel: 0.1}", 1)
+    assert solved(text).coordinates["guide"]["travel"][-1] == pytest.approx(0.1 * np.cosh(2.0), rel=1e-9)
+
+
+@pytest.mark.parametrize("more", ["length: 3", "stiffness: 1e5", "tension_only: true", "damping: 3"])
+def test_a_length_of_its_own_is_refused(more: str) -> None:
+    with pytest.raises(SpecError) as refused:
+        load("hoist.yaml", HOIST.replace("tension: 120 + 10*t", f"tension: 120\n    {more}"))
+    assert any(p.code == "rope-bounds" and "whose length is free" in p.message for p in refused.value.problems)

@@ -22,7 +22,7 @@ NAMES = {
     "POINT": "left_arm.upper_eye", "ELEMENT": "drives.main_motor", "JOINT": "front_left", "BODY": "left_arm",
     "SECTION": "long_bar", "CORNER": "top_left", "FORCE": "gas_spring", "CAUSE": "gas_spring", "STOP": "end_stop",
     "COUPLING": "first_gear",
-    "END": "left_arm", "EVENT": "is_open", "NUMBER": "2",
+    "END": "left_arm", "EVENT": "is_open", "NUMBER": "2", "SENSOR": "load_cell", "BEARING": "1",
 }  # fmt: skip
 LABELS = Labels(
     {"front_left": JointInfo("pin", "", ""), "guide": JointInfo("slide", "", "")},

@@ -213,7 +213,7 @@ def test_joints(text: str, expected: dict[str, Any]) -> None:
     found = joint(text)
     kind: Any = text.split()[1].rstrip(",")
     none = dict.fromkeys(("angle", "rate", "travel", "speed", "length", "stiffness", "drive", "restitution"))
-    none |= dict.fromkeys(("bearing", "path")) | {"path_index": -1, "one_sided": False}
+    none |= dict.fromkeys(("bearing", "bearings", "path")) | {"path_index": -1, "one_sided": False}
     ends = {"a": "ground", "p": (0.0, 0.0, 0.0), "p_name": "O", "b": "b", "q": (1.0, 2.0, 3.0), "q_name": "q"}
     axis = expected.get("axis", (0.0, 0.0, 1.0))
     axes = {"axis": axis, "to_axis": axis, "to_axis_given": "to_axis" in expected, "tension_only": False}

@@ -128,6 +128,7 @@ BLOCKS = {
     "SECTION": "sections",
     "STOP": "stops",
     "COUPLING": "couplings",
+    "SENSOR": "sensors",
 }
 SETTABLE = ("gravity", "space", "title")
 MAX_COMPLETIONS = 400  # most completions to offer

@@ -127,6 +127,11 @@ class JointLoads:
         return self.points.positions[self.number]
 
     @property
+    def slides(self) -> bool:
+        """Whether its points may part along a line or in a plane, so that it carries no force there."""
+        return bool(JOINTS[self.joint.kind].shifts)
+
+    @property
     def torque(self) -> Array | None:
         """Of shafts that turn alike the moment ON `to` about either of them, (..., n_t); None for other joints."""
         if not JOINTS[self.joint.kind].is_constant_velocity or self.axis is None:
@@ -206,7 +211,8 @@ def find_joint_loads(
     loads: list[JointLoads] = []
     for k, joint in joints:
         kind = JOINTS[joint.kind]
-        axis = states.world_direction(joint.a, joint.axis) if kind.has_axis else None
+        has_axis = kind.has_axis or joint.bearings is not None
+        axis = states.world_direction(joint.a, joint.axis) if has_axis else None
         if kind.follows_path and joint.drive is not None:
             axis = path_direction(joint, states)
         drive = tension = None
@@ -354,3 +360,6 @@ def rotate_block(block: Block, R: Array | None) -> None:
     """Rotate the force and moment of a joint's block, and of their shares by cause, to these axes, in place."""
     for entry in (block, *block.get("shares", {}).values()):
         entry |= {name: rotate_to_axes(entry[name], R) for name in ("force", "moment") if name in entry}
+    for bearing in block.get("bearings", {}).values():
+        for entry in (bearing, *bearing.get("shares", {}).values()):
+            entry["radial_force"] = rotate_to_axes(entry["radial_force"], R)

@@ -13,7 +13,7 @@ Joint friction that depends on an indeterminate load is refused.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,7 +31,12 @@ from heuncli.loads.kinetostatics.couplings import (
     list_coupling_actions,
     transfer_force,
 )
-from heuncli.loads.kinetostatics.reactions import JointLoads, remove_free_components, rotate_shares
+from heuncli.loads.kinetostatics.reactions import (
+    JointLoads,
+    remove_free_components,
+    rotate_shares,
+    rotate_to_axes,
+)
 from heuncli.loads.redundancy.self_stress import SelfStress, find_self_stress
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.multibody.mechanism.couplings import Coupling
@@ -98,10 +103,37 @@ def mark_joint(
     if load.tension is not None:
         parts["drive"] = parts["tension"] = np.asarray(force.any(axis=1))
     parts["pressure"] = parts.get("radial", np.asarray(force.any(axis=1)))
+    mask_parts(block, parts)
+    block["open"] = list_indeterminate_names({name: is_open for name, is_open in parts.items() if name in block})
+    if load.joint.bearings is not None:
+        mark_bearings(block["bearings"], load, share, stress, axes)
+
+
+def mask_parts(block: Block, parts: Mapping[str, Mask]) -> None:
+    """Set the indeterminate components of a block, and of its shares by cause, to nan, in place."""
     for entry in (block, *block.get("shares", {}).values()):
         for name in parts.keys() & entry.keys():
             entry[name] = mask_indeterminate(entry[name], parts[name])
-    block["open"] = list_indeterminate_names({name: is_open for name, is_open in parts.items() if name in block})
+
+
+def mark_bearings(block: Block, load: JointLoads, share: Array, stress: SelfStress, axes: Array | None) -> None:
+    """Mark the indeterminate components of a joint's bearings, in place; axes as of `mark_joint`."""
+    from heuncli.loads.kinetostatics.sensors import find_bearing_factors, split_to_bearings  # few joints have them
+
+    pair = load.joint.bearings
+    assert pair is not None
+    assert load.axis is not None
+    F, M = np.moveaxis(share[:, :3], 2, 0), np.moveaxis(share[:, 3:], 2, 0)
+    axial = stress.has_share(np.einsum("ti,tik->tk", load.axis, share[:, :3])[:, None])[:, 0]
+    by_force, by_moment = find_bearing_factors(pair)
+    scale = by_force + by_moment * stress.length
+    for (key, bearing), across in zip(block.items(), split_to_bearings(pair, load.axis, F, M), strict=True):
+        is_open = stress.has_share(np.moveaxis(rotate_to_axes(across, axes), 0, 2), scale)
+        parts = {"radial_force": is_open, "radial": np.asarray(is_open.any(axis=1))}
+        if "axial" in bearing and pair.axial in (None, int(key)):
+            parts["axial"] = axial
+        mask_parts(bearing, parts)
+        bearing["open"] = [*dict.fromkeys([*list_indeterminate_names(parts), *bearing["open"]])]
 
 
 def is_coordinate_indeterminate(quantity: str, free_share: Array, stress: SelfStress) -> Mask:
@@ -171,20 +203,33 @@ def find_indeterminate_section(
     """Return for each component of a section's loads whether it is indeterminate: some self-stress has a share in
     it.
     """
-    from heuncli.loads.kinetostatics.sections import MOMENTS, find_attachments, static_components
+    from heuncli.loads.kinetostatics.sections import MOMENTS
 
     is_open: dict[str, Mask] = {}
-    for k in range(stress.largest.shape[1]):
-        parts = zip(joints, stress.shares, strict=True)
-        actions = [make_joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts]
-        actions += list_coupling_actions([own.with_multipliers(stress.multipliers[:, :, k]) for own in couplings])
-        attached_loads = find_attachments(cuts.body, states, actions)
+    for k, components in enumerate(iter_self_stress_components(cuts, states, joints, couplings, stress)):
         limit = np.where(stress.largest[:, k] > 0.0, tolerances.OPEN_SHARE * stress.largest[:, k], np.inf)
-        for name, share in static_components(cuts, states, attached_loads).items():
+        for name, share in components.items():
             scale = limit * (stress.length if name in MOMENTS else 1.0)
             has_share = np.abs(share) > scale.reshape(-1, *([1] * (share.ndim - 1)))
             is_open[name] = is_open.get(name, False) | has_share
     return is_open
+
+
+def iter_self_stress_components(
+    cuts: Cuts,
+    states: BodyStates,
+    joints: Sequence[JointLoads],
+    couplings: Sequence[CouplingLoads],
+    stress: SelfStress,
+) -> Iterator[Block]:
+    """Yield for each self-stress its share in the loads of cuts, by name."""
+    from heuncli.loads.kinetostatics.sections import find_attachments, static_components
+
+    for k in range(stress.largest.shape[1]):
+        parts = zip(joints, stress.shares, strict=True)
+        actions = [make_joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts]
+        actions += list_coupling_actions([own.with_multipliers(stress.multipliers[:, :, k]) for own in couplings])
+        yield static_components(cuts, states, find_attachments(cuts.body, states, actions))
 
 
 def list_indeterminate_section_names(is_open: Mapping[str, Mask]) -> list[str]:

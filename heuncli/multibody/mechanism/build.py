@@ -150,6 +150,7 @@ def build_joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
         drive=None, restitution=j.restitution, bearing=j.bearing,
         p_name=j.p_name, q_name=j.q_name, path=j.path, one_sided=j.one_sided,
+        bearings=j.bearings,
     )  # fmt: skip
 
 

@@ -290,7 +290,7 @@ class RopeLoad(AnyLoad):
 
     It has the name of its coupling.
 
-    stiffness [N/m]: at the unloaded length [m], which `law` gives in time if it is not None
+    stiffness [N/m]: at the unloaded length [m], which `law` gives in time if it is not None; 0 of a given tension
     only_pulls: it stores no energy where it is shorter
     """
 
@@ -312,7 +312,7 @@ class RopeLoad(AnyLoad):
     @property
     def is_conservative(self) -> bool:
         """Whether it has a potential, and nothing else."""
-        return self.law is None and not self.is_damped
+        return self.stiffness > 0.0 and self.law is None and not self.is_damped
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:

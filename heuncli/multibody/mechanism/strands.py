@@ -119,7 +119,13 @@ def find_strands(entry: c.Belt, first: GearMember, second: GearMember) -> tuple[
 
 
 def rope_load(name: str, entry: Rope, row: CoupledRow, length: float) -> RopeLoad:
-    """Make the load of an elastic rope, along the parts of what would be its condition; length: unloaded [m]."""
+    """Make the load of an elastic rope or one of given tension, along the parts of what would be its condition.
+
+    length: unloaded [m]
+    """
+    if entry.tension is not None:  # a value is a multiplier, above 0 where the rope would push
+        value = multiply_expressions(Expression.from_number(-1.0), entry.tension).with_source(f"tension of rope {name}")
+        return RopeLoad(name, row.parts, value, 0.0, length, None, 0.0, False)
     assert entry.stiffness is not None
     prefix = f"{LOADS}.{name}"
     free = Expression.from_number(length) if entry.law is None else entry.law

@@ -126,6 +126,8 @@ SYMBOLS: Mapping[str, SymbolShape] = {
     # stop of a coordinate, with x into it; latch
     "stop": SymbolShape((SymbolPart(((0.0, -9.0), (5.0, -9.0), (5.0, 9.0), (0.0, 9.0)), True, "ink"),), "▌", "]"),
     "latch": SymbolShape((SymbolPart(((0.0, 0.0), (-9.0, 4.5), (-9.0, -4.5)), True, "paper"),), "◁", "<"),
+    # where a reaction is read
+    "sensor": SymbolShape((ring(6.5, "paper"), ring(4.0), ring(1.6, "ink")), "◎", "o"),
     # bodies
     "centre": SymbolShape((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
     "mass": SymbolShape((ring(3.4, "ink"),), "●", "*"),

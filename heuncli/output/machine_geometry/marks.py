@@ -1,4 +1,4 @@
-"""Symbols in a machine with a position and a direction: drives and loads in joints, stops, latches, roads, rope ends.
+"""Symbols in a machine with a position and a direction: loads in joints, stops, latches, roads, rope ends, sensors.
 
 The symbol of a load stands in the row of its kind. The limit of an angle is drawn where the body would be, on the side
 of its centre of mass; the limit of a travel where the joint's `to` point would be, for a path on the path; the limit
@@ -33,6 +33,7 @@ DRIVE = "drive"  # drawn as the torque that it is
 AXIS_KINDS = ("pin", "line", "cylinder")  # of bearings: the kinds whose axis is that of the shaft
 BEARING_KINDS = (*AXIS_KINDS, "ball")
 ON_AXIS = 1e-6  # share of the distance of bearings: those farther from the axis are not on it
+OBLIQUE = np.array([1.0, -0.35, -0.6])  # of a round symbol: no usual view looks along it
 STOP_RADIUS = 0.6  # of the distance to the body's centre of mass: radius at which the stop of an angle is drawn
 
 
@@ -175,12 +176,32 @@ def iter_marks(spec: Spec, scene: PreparedScene, ropes: tuple[RopeGeometry, ...]
         yield from _iter_sheave_marks(rope, scene)
     for name, wheel in spec.rolling.items():
         yield RoadMark("road", f"{name}: rolls on {wheel.on.body}", wheel)
+    yield from _iter_reaction_marks(spec, scene)
     joints = {joint.name: joint for joint in scene.mechanism.joints}
     for stop in spec.stops.values():
         for limit, sign in iter_limits(stop):
             yield make_mark(scene, joints[stop.joint], stop, "stop", limit, sign)
     for latch in spec.latches.values():
         yield from _iter_latch_marks(spec, scene, joints[latch.joint], latch)
+
+
+def _iter_reaction_marks(spec: Spec, scene: PreparedScene) -> Iterator[Mark]:
+    """Yield the two bearings of joints that have them, and the points of sensors."""
+    for joint in scene.mechanism.joints:
+        if joint.bearings is not None:
+            for number, place in enumerate(joint.bearings.at):
+                symbol = "fixed bearing" if joint.bearings.axial == number else "floating bearing"
+                body, at = spec.joints[joint.name].b, joint.q + place * joint.to_axis
+                yield FixedMark(symbol, f"{joint.name}: bearing {number}", body, at, joint.to_axis)
+    for name, sensor in spec.sensors.items():
+        if sensor.point is not None:
+            body, point = sensor.point.body, sensor.point.point
+        elif sensor.joint is not None:
+            body, point = spec.joints[sensor.joint].b, spec.joints[sensor.joint].q
+        else:
+            section = spec.sections[sensor.section or ""]
+            body, point = section.body, section.at or section.from_ or (0.0, 0.0, 0.0)
+        yield FixedMark("sensor", f"{name}: sensor", body, np.array(point), OBLIQUE, name)
 
 
 def _iter_sheave_marks(rope: RopeGeometry, scene: PreparedScene) -> Iterator[Mark]:

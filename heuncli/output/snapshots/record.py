@@ -229,11 +229,13 @@ def find_ending_error(results: Results) -> float | None:
 
 def _find_open_components(results: Results, reports: frozenset[str]) -> Iterator[str]:
     """Yield the paths of the components that are open at some instant."""
-    blocks = {"joints": results.joints, "sections": results.sections}
+    blocks = {"joints": results.joints, "sensors": results.sensors, "sections": results.sections}
     blocks["foundation.supports"] = results.foundation.get("supports", {})
     for kind, block in blocks.items():
         for name, part in block.items():
             yield from (f"{kind}.{name}.{component}" for component in part.get("open", ()))
+            for number, bearing in part.get("bearings", {}).items():
+                yield from (f"{kind}.{name}.bearings.{number}.{component}" for component in bearing["open"])
 
 
 def _make_sums(view: ResultView, page: Page) -> dict[str, SumSnapshot]:

@@ -39,7 +39,7 @@ COLUMNS = (
     OutputColumn("max", vector="extremes"), OutputColumn("at", "instant", "s", vector="extremes"),
 )  # fmt: skip
 MARK = "†"  # of an extreme at a doubtful instant
-FRICTION_KINDS = frozenset({"foundation", "joints", "stops", "couplings", "sections"})  # depend on friction
+FRICTION_KINDS = frozenset({"foundation", "joints", "sensors", "stops", "couplings", "sections"})  # depend on friction
 
 
 class DoubtfulInstants(NamedTuple):

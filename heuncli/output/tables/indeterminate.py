@@ -60,7 +60,7 @@ def _iter_things(
 ) -> Iterator[tuple[str, str, Sequence[Channel]]]:
     """Yield kind, name and channels of all that may be indeterminate; supports and elements repeat joints and loads."""
     for block in blocks:
-        if block.kind in ("joints", "stops", "couplings", "sections"):
+        if block.kind in ("joints", "sensors", "stops", "couplings", "sections"):
             yield from ((block.kind, group.name, group.rows) for group in block.groups)
     yield from (("sections", series.name, series.loads) for series in cut_series)
 

@@ -18,6 +18,7 @@ from heuncli.output.tables.event_tables import make_impact_results
 from heuncli.output.tables.extremes_tables import DoubtfulInstants
 from heuncli.output.tables.page import Page, SearchedPage
 from heuncli.output.tables.table_blocks import build_block
+from heuncli.output.tables.table_plans import BEARING
 from heuncli.output.tables.table_plans import IMPULSES as IMPULSE_PLANS
 from heuncli.results.path_words import IMPULSE_UNITS
 from heuncli.results.results import Array, CutPosition, Extremes, Results
@@ -49,6 +50,8 @@ class SummaryKind(NamedTuple):
 
 KINDS = (
     SummaryKind("joint", "joints", (("tension",), ("force",), ("moment",))),
+    SummaryKind("bearing", "joints", (("radial_force",), ("axial",))),
+    SummaryKind("sensor", "sensors", (("force",), ("moment",))),
     SummaryKind("drive", "joints", (("drive",),), repeats="tension"),
     SummaryKind("stop", "stops", (("force",), ("moment",))),
     SummaryKind(
@@ -187,6 +190,8 @@ def _make_impulse_rows(page: Page) -> list[SummaryRow]:
 
 def _list_names(kind: SummaryKind, results: Results) -> Sequence[str]:
     block = getattr(results, kind.block)
+    if kind.word == "bearing":
+        return [f"{name}{BEARING}{key}" for name, joint in block.items() for key in joint.get("bearings", ())]
     return [""] * bool(block) if kind.block == "foundation" else list(block)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import NumberCell
-from heuncli.output.tables.table_plans import MASS_EFFECT, TablePlan
+from heuncli.output.tables.table_plans import BEARING, MASS_EFFECT, TablePlan
 from heuncli.results.results import Array, Results
 from heuncli.results.results_schema import XYZ
 from heuncli.study.quantities.captions import find_label
@@ -139,7 +139,7 @@ def build_block(plan: TablePlan, results: Results, labels: Labels, channels: Ite
     notes: tuple[str, ...] = ()
     if plan.is_foundation:
         groups, notes = _select_foundation_groups(groups, results)
-    if plan.kind == "joints":
+    if plan.kind == "joints" and not plan.part:
         notes = describe_chosen_components(results)
     if plan.kind == "energy" and groups and (energy_sum := make_energy_sum(results)) is not None:
         groups = [groups[0]._replace(rows=(*groups[0].rows, energy_sum), is_whole_scene=True)]
@@ -153,6 +153,8 @@ def _group_channels(plan: TablePlan, results: Results, channels: Iterable[Channe
     found: dict[str, dict[str, Channel]] = {}
     for channel in channels:
         if channel.cause or channel.kind != plan.kind or channel.quantity not in plan.quantities:
+            continue
+        if plan.kind == "joints" and (BEARING in channel.name) != (plan.part == BEARING):
             continue
         is_mass_effect = plan.is_foundation and channel.name == MASS_EFFECT.only
         if (

@@ -16,6 +16,7 @@ from heuncli.results.results_schema import RESULTANTS, STRESSES
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE
 from heuncli.study.quantities.labels import Labels
 
+BEARING = ".bearings."  # in the names of a joint's bearings
 POINT_PHRASES = ("the origin", "the point")
 NO_AXIS = ("none", "none: no axis, the force is zero")
 
@@ -27,6 +28,7 @@ class TablePlan(NamedTuple):
     only: takes one name of the kind
     has_extremes: False for a line in space, which is shown at instants only
     missing: the text for nan, and the note that explains it
+    part: takes only the names that have this word, which other plans of the kind do not take
     is_detail: whether it is shown only to those who request its report
     """
 
@@ -39,6 +41,7 @@ class TablePlan(NamedTuple):
     only: str | None = None
     has_extremes: bool = True
     missing: tuple[str, str] = (OPEN, OPEN_NOTE)
+    part: str = ""
     is_detail: bool = False
 
     @property
@@ -63,6 +66,19 @@ def _format_axes(results: Results) -> str:
 def _make_joint_note(name: str, labels: Labels) -> str:
     info = labels.joints.get(name)
     return f"{info.type}, {info.first_end} → {info.second_end}" if info else ""
+
+
+def _make_bearing_note(name: str, labels: Labels) -> str:
+    joint, _, number = name.partition(BEARING)
+    info = labels.joints.get(joint)
+    if info is None or not info.bearings:
+        return ""
+    unit, size = labels.units.find("m")
+    return f"at {size * info.bearings[int(number)]:.6g} {unit} along the axis"
+
+
+def _make_sensor_note(name: str, labels: Labels) -> str:
+    return labels.sensors.get(name, "")
 
 
 def _make_force_note(name: str, labels: Labels) -> str:
@@ -149,6 +165,25 @@ JOINTS = TablePlan(
     ),
     _make_joint_note,
 )
+BEARINGS = TablePlan(
+    "joints",
+    "joints",
+    "bearing",
+    ("radial_force", "axial"),
+    lambda results, labels: (
+        f'BEARINGS  load on "to" of the two bearings of a joint, across its axis and along it; {_format_axes(results)}'
+    ),
+    _make_bearing_note,
+    part=BEARING,
+)
+SENSORS = TablePlan(
+    "joints",
+    "sensors",
+    "sensor",
+    ("force", "moment"),
+    lambda results, labels: "SENSORS  reactions about other points, in the axes of each sensor",
+    _make_sensor_note,
+)
 STOPS = TablePlan(
     "joints",
     "stops",
@@ -228,6 +263,8 @@ PLANS = (
     MASS_EFFECT,
     AXIS,
     JOINTS,
+    BEARINGS,
+    SENSORS,
     STOPS,
     COUPLINGS,
     SECTIONS,
@@ -261,6 +298,11 @@ IMPULSES = (
             f'JOINTS  reaction impulse of "from" on "to"; drive is listed separately; {_format_axes(results)}, '
             'moment about the "to" point'
         )
+    ),
+    BEARINGS,
+    SENSORS._replace(
+        key="sensors",
+        heading=lambda results, labels: "SENSORS  impulses about other points, in the axes of each sensor",
     ),
     STOPS._replace(
         key="stops",

@@ -71,8 +71,9 @@ def find_peaks(study: Study, labels: Labels, stated_errors: StatedErrors) -> Pea
 def _collect_loads(results: Results, labels: Labels) -> list[Channel]:
     """Collect the loads of a page whose peaks are searched: vectors of joints and of the foundation, section forces."""
     channels = [channel for channel in iter_channels(results, labels) if not channel.cause and not channel.has_cuts]
-    vectors = [channel for channel in channels if channel.quantity in ("force", "moment")]
-    loads = [channel for channel in vectors if channel.kind == "joints" or channel.path in FOUNDATION_LOADS]
+    vectors = [channel for channel in channels if channel.quantity in ("force", "moment", "radial_force")]
+    is_shown = {"joints", "sensors"}
+    loads = [channel for channel in vectors if channel.kind in is_shown or channel.path in FOUNDATION_LOADS]
     loads += [channel for channel in channels if channel.kind == "sections" and channel.quantity in RESULTANTS]
     return loads + collect_series_loads(results)
 

@@ -18,7 +18,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.output.tables.indeterminate import make_sums_table
 from heuncli.output.tables.table_blocks import choose_styles
-from heuncli.output.tables.table_plans import AXIS, IMPULSES, PLANS, SECTIONS, TablePlan
+from heuncli.output.tables.table_plans import AXIS, BEARING, IMPULSES, PLANS, SECTIONS, TablePlan
 from heuncli.output.web_page.packing import pack_points, pack_values
 from heuncli.results.results import Array, Block, Results
 from heuncli.scene.file_format.models import Section, Spec
@@ -62,7 +62,7 @@ def make_impact_page_tables(
     channels = [item for item in iter_impulse_channels(impact, labels) if not item.cause]
     tables = []
     for plan in IMPULSES:
-        if plan.kind in ("foundation", "joints", "stops", "sections") and plan.only is None:
+        if plan.kind in ("foundation", "joints", "sensors", "stops", "sections") and plan.only is None:
             plan_channels = [item for item in channels if item.quantity in plan.quantities and not item.has_cuts]
             block = _make_block(plan, plan_channels, plan.heading(results, labels), labels, stated_errors)
             block["heading"] += f" at {float(impact['time']):.6g} s, {', '.join(impact['names']) or 'impulse'}"
@@ -122,6 +122,8 @@ def _is_in_plan(plan: TablePlan, name: str) -> bool:
     """Return whether an object of the plan's kind belongs to its table."""
     if plan.only is not None:
         return name == plan.only
+    if plan.kind == "joints":
+        return (BEARING in name) == bool(plan.part)
     return not plan.is_foundation or name not in ("axis", "mass_effect")
 
 

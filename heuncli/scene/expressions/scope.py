@@ -62,7 +62,7 @@ OTHER_NAMES = {  # names from other programs, and heun's
     "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
     "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
 }  # fmt: skip
-RESULT_BLOCKS = SHARED_BLOCKS | {"stops", "couplings"}  # blocks of the results that follow from the motion
+RESULT_BLOCKS = SHARED_BLOCKS | {"sensors", "stops", "couplings"}  # blocks of the results that follow from the motion
 REACTIONS = frozenset(
     row.path.split(".")[2]
     for row in ROWS

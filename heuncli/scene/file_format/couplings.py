@@ -219,6 +219,7 @@ class Rope(NamedTuple):
     tension_only: the run ends where it would push; with restitution it goes slack instead and catches again
     stiffness, damping: of an elastic rope [N/m], [N s/m]; its length without load is `length`, with a law that at the
     start; with tension_only it goes slack
+    tension: of a rope that a weight or a winch keeps at it, whatever its length [N]
     """
 
     through: tuple[RopePassage, ...]
@@ -228,12 +229,13 @@ class Rope(NamedTuple):
     law: Expression | None = None
     stiffness: float | None = None
     damping: float = 0.0
+    tension: Expression | None = None
     type: Literal["rope"] = "rope"
 
     @property
     def is_elastic(self) -> bool:
-        """Whether the rope is elastic, so that its length is not a constraint."""
-        return self.stiffness is not None
+        """Whether the rope is elastic or paid out at a tension, so that its length is not a constraint."""
+        return self.stiffness is not None or self.tension is not None
 
     @property
     def joints(self) -> tuple[str, ...]:

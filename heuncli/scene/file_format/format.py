@@ -304,6 +304,14 @@ class FoundationEntry(Entry):
     about: PointOrName | None = None
 
 
+class SensorEntry(Entry):
+    """A reaction as a load cell reads it: about a point, in the axes of a body."""
+
+    of: str
+    point: AnEnd | None = None
+    axes: str = "ground"
+
+
 class ExpectEntry(Entry):
     of: str
     at: Time | None = None
@@ -374,7 +382,7 @@ class HeadEntry(Entry):
 ENTRY_BLOCKS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # named entries: model, or models by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
     "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "rolling": RollingEntry,
-    "sections": SectionEntry, "cases": CaseEntry,
+    "sections": SectionEntry, "sensors": SensorEntry, "cases": CaseEntry,
 }  # fmt: skip
 SINGLE_BLOCKS: dict[str, type[Entry]] = {
     "ground": GroundEntry,
@@ -408,6 +416,7 @@ class Document(NamedTuple):
     rolling: dict[str, RollingEntry]
     latches: dict[str, LatchEntry]
     sections: dict[str, SectionEntry]
+    sensors: dict[str, SensorEntry]
     cases: dict[str, CaseEntry]
     analysis: AnalysisEntry
     foundation: FoundationEntry

@@ -17,6 +17,7 @@ from heuncli.scene.file_format.fields import (
     Either,
     EndEntry,
     Force,
+    ForceInTime,
     Length,
     LengthInTime,
     Lift,
@@ -142,6 +143,7 @@ class RopeEntry(Entry):
     restitution: Number | None = None
     stiffness: Stiffness | None = None
     damping: Damping | None = None
+    tension: ForceInTime | None = None
 
 
 CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry

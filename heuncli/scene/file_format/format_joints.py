@@ -38,6 +38,13 @@ class StiffnessParts(Entry):
     ) = None
 
 
+class BearingPairEntry(Entry):
+    """Two bearings or rollers on the axis of a joint, at distances from its `to` point; one may carry the thrust."""
+
+    at: tuple[Length, Length]
+    axial: Literal["first", "second"] | None = None
+
+
 class AnyJoint(Entry):
     """What all joints have."""
 
@@ -46,6 +53,7 @@ class AnyJoint(Entry):
     stiffness: (
         Annotated[Annotated[Stiffness, Tag("single")] | Annotated[StiffnessParts, Tag("mapping")], FORM] | None
     ) = None
+    bearings: BearingPairEntry | None = None
 
 
 class BearingEntry(Entry):

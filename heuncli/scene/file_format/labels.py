@@ -27,7 +27,7 @@ MAX_TEXT = 80  # characters: they share a line of a table with the name
 BLOCKS = {
     "parameters": "parameters", "bodies": "bodies", "joints": "joints", "drives": "drives", "forces": "forces",
     "impulses": "impulses", "stops": "stops", "latches": "stops", "couplings": "couplings", "rolling": "couplings",
-    "sections": "sections", "tables": "tables", "cases": "cases",
+    "sections": "sections", "sensors": "sensors", "tables": "tables", "cases": "cases",
 }  # fmt: skip
 # What is a plain value without a label -> the key of the value in a mapping
 VALUE_KEYS = {"parameters": "value", "points": "at", "events": "when"}

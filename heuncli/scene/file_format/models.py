@@ -52,6 +52,7 @@ RIGID: Vec = (math.inf, math.inf, math.inf)  # default stiffness
 NO_LOCATIONS: Mapping[str, SourceLocation] = MappingProxyType({})
 NO_CASES: Mapping[str, str] = MappingProxyType({})
 NO_COUPLINGS: Mapping[str, Coupling] = MappingProxyType({})
+NO_SENSORS: Mapping[str, Sensor] = MappingProxyType({})
 
 
 class Ground(NamedTuple):
@@ -161,6 +162,16 @@ class Drive:
         return self.from_start or (self.zero_assembled and self.quantity == "travel")
 
 
+class BearingPair(NamedTuple):
+    """Two bearings of a joint, at distances from its `to` point along its axis [m], fixed in `to`.
+
+    axial: which of them carries the force along the axis, 0 or 1; None: indeterminate
+    """
+
+    at: tuple[float, float]
+    axial: int | None = None
+
+
 @record
 class Joint(Generic[Ref, V]):
     """A joint between the point p of body a ("from") and the point q of body b ("to"), each in the axes of its body.
@@ -175,6 +186,7 @@ class Joint(Generic[Ref, V]):
     restitution: of a rope that catches, or a point that hits its path again; None: the run ends where it would open
     one_sided: the path only pushes, to its left
     bearing: bearing diameter times width [m^2]
+    bearings: the two bearings that carry its loads, or None
     p_name, q_name: names of the two points, if they have any
     path: of a curve joint, from the point p, in a's axes
     path_index: in a mechanism, the index of the joint among those with a path, else -1
@@ -204,6 +216,7 @@ class Joint(Generic[Ref, V]):
     path: Path | None = None
     path_index: int = -1
     one_sided: bool = False
+    bearings: BearingPair | None = None
 
     @property
     def can_open(self) -> bool:
@@ -463,6 +476,19 @@ class ReportSettings(NamedTuple):
     results: tuple[str, ...] | None = None
 
 
+class Sensor(NamedTuple):
+    """What reads a reaction: that of a joint, or of a single cut.
+
+    point: about which the moment is taken; None: as the joint or section has it
+    body: in whose axes; the ground's are the world's
+    """
+
+    joint: str | None
+    section: str | None
+    point: End | None
+    body: str
+
+
 class Spec(NamedTuple):
     """A validated scene.
 
@@ -498,6 +524,7 @@ class Spec(NamedTuple):
     case: str | None = None
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
     labels: Mapping[str, str] = NO_LABELS
+    sensors: Mapping[str, Sensor] = NO_SENSORS
 
     @property
     def rolling(self) -> Mapping[str, RollingWheel]:

@@ -22,7 +22,7 @@ from heuncli.scene.file_format.semantics import rotor_name
 GROUND = "ground"
 NAMED_BLOCKS = (
     "parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "rolling",
-    "sections", "tables", "cases",
+    "sections", "sensors", "tables", "cases",
 )  # fmt: skip
 ALL_CASES = "all"  # the value of --case that selects all cases
 UNTIL = "until"  # name of the condition that ends a motion; events have names of their own
@@ -111,14 +111,15 @@ def is_name(text: str) -> bool:
 # Planar
 
 VECTOR_BLOCKS = (
-    "gravity", "ground", "bodies", "joints", "couplings", "rolling", "forces", "impulses", "sections", "foundation",
+    "gravity", "ground", "bodies", "joints", "couplings", "rolling", "forces", "impulses", "sections", "sensors",
+    "foundation",
 )  # fmt: skip
 ENTRY_LISTS = ("shapes", "through")  # lists whose items hold vectors
 VECTOR_KEYS = frozenset({  # keys of vectors that lie in the plane; named points are found under `points`
     "gravity", "center", "position", "from", "to", "at", "velocity", "vector", "to_vector", "axis", "to_axis", "normal",
     "first_axis", "about",
 })  # fmt: skip
-KEYS_ABOUT_Z = ("orientation", "angular_velocity")  # their values are about z already
+KEYS_ABOUT_Z = ("orientation", "angular_velocity", "bearings")  # their values are about z, or along it, already
 
 
 def complete_planar_scene(data: dict[str, Any]) -> dict[str, Any]:

@@ -99,6 +99,7 @@ def resolve(document: f.Document, inputs: ResolveInputs, resolver: Resolver | No
         | motor_rotors.couplings,
         latches=active_resolver.resolve_entries("latches", "latch"),
         sections=active_resolver.resolve_entries("sections", "section"),
+        sensors=active_resolver.resolve_entries("sensors", "sensor"),
         tables=inputs.tables,
         analysis=active_resolver.resolve_single("analysis"),
         report=make_report_settings(document.head.report, inputs.logo),
@@ -262,6 +263,7 @@ class Resolver:
             q_name=b.name,
             path=self.make_path(joint) if isinstance(joint, fj.CurveJoint) else None,
             one_sided=getattr(joint, "one_sided", False),
+            bearings=make_bearing_pair(joint.bearings),
         )
 
     def make_path(self, joint: fj.CurveJoint) -> Path:
@@ -321,6 +323,12 @@ class Resolver:
             beam_theory=beam_theory,
             piece=self.piece(section.piece or (body.piece if at is not None else None)),
         )  # fmt: skip
+
+    def sensor(self, _: str, sensor: f.SensorEntry) -> m.Sensor:
+        block, _, name = sensor.of.partition(".")
+        point = None if sensor.point is None else self.end(sensor.point)
+        is_joint = block == "joints"
+        return m.Sensor(name if is_joint else None, None if is_joint else name, point, sensor.axes)
 
     def find_reference_point(self, point: object) -> m.Vec | None:
         if isinstance(point, str):
@@ -405,6 +413,11 @@ def make_framed_vector(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) 
     if isinstance(value, f.VelocityInFrame | f.RateInFrame):
         return m.FramedVector(value.vector, value.frame == "body")
     return m.FramedVector(value, False)
+
+
+def make_bearing_pair(pair: fj.BearingPairEntry | None) -> m.BearingPair | None:
+    """Return the two bearings of a joint, if it has them."""
+    return None if pair is None else m.BearingPair(pair.at, {"first": 0, "second": 1}.get(pair.axial or ""))
 
 
 def bearing_area(bearing: fj.BearingEntry | None) -> float | None:

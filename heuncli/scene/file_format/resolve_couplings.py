@@ -183,7 +183,10 @@ def resolve_rope(resolver: ReferenceResolver, name: str, entry: f.RopeEntry) -> 
     elif law is not None:
         law = resolver.attach_location(law, f"couplings.{name}.length")
     elastic_properties = entry.stiffness, entry.damping or 0.0
-    return c.Rope(passages, length, entry.tension_only, entry.restitution, law, *elastic_properties)
+    tension = entry.tension
+    if tension is not None:
+        tension = resolver.attach_location(tension, f"couplings.{name}.tension")
+    return c.Rope(passages, length, entry.tension_only, entry.restitution, law, *elastic_properties, tension)
 
 
 def resolve_passage(resolver: ReferenceResolver, entry: f.PassageEntry) -> c.RopePassage:

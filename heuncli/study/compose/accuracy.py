@@ -119,7 +119,7 @@ def largest_magnitude(values: Array) -> float:
 
 # paths that may be nan: indeterminate loads, and the axis or line of a wrench that has none
 MAY_BE_NAN = (
-    "joints.JOINT.", "stops.", "couplings.", "sections.", "foundation.supports.", "foundation.elements.",
+    "joints.JOINT.", "sensors.", "stops.", "couplings.", "sections.", "foundation.supports.", "foundation.elements.",
     "foundation.axis.", "bodies.BODY.rodrigues",
 )  # fmt: skip
 BLOCKS = ("time", *REPORT_OF, IMPULSES, "events", "certain_sums", "accuracy")  # causes before what follows from them

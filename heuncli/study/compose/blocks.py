@@ -63,11 +63,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             mechanism, states, recovery.ground_actions, recovery.setup.moment_point, recovery.inner_forces
         )
     if "joints" in reports:
-        blocks_by_name["joints"] = {j.joint.name: make_joint_block(j) for j in recovery.requested_joints}
-        blocks_by_name["stops"] = make_stop_blocks(recovery.requested_joints)
-        blocks_by_name["couplings"] = {
-            own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings
-        }
+        blocks_by_name |= make_reaction_blocks(recovery, SHARES in reports)
     if SHARES in reports:
         from heuncli.study.solve.cause_shares import add_shares  # few runs need them
 
@@ -111,6 +107,21 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     return blocks_by_name
 
 
+def make_reaction_blocks(recovery: Recovery, by_cause: bool) -> dict[str, Any]:
+    """Make the blocks of joints, sensors, stops and couplings; by_cause: those of sensors with their shares."""
+    planar = recovery.setup.scene.mechanism.planar
+    blocks: dict[str, Any] = {
+        "joints": {j.joint.name: make_joint_block(j, planar) for j in recovery.requested_joints},
+        "stops": make_stop_blocks(recovery.requested_joints),
+        "couplings": {own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings},
+    }
+    if recovery.setup.sensors:
+        from heuncli.study.compose.sensors import make_sensor_blocks  # few scenes have them
+
+        blocks["sensors"] = make_sensor_blocks(recovery, by_cause)
+    return blocks
+
+
 def make_requested_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     """Make the blocks of some reports; of a report with requested entries, these alone."""
     return select_blocks(make_blocks(recovery, reports), recovery.setup.selection)
@@ -134,8 +145,11 @@ def make_body_block(states: BodyStates, quaternions: Array, vectors: Array, mome
     }
 
 
-def make_joint_block(load: JointLoads) -> JointBlock:
-    """Make the block of one joint's reaction, with its components along and across the axis."""
+def make_joint_block(load: JointLoads, planar: bool = False) -> JointBlock:
+    """Make the block of one joint's reaction, with its components along and across the axis.
+
+    planar: whether the scene is declared planar
+    """
     block: JointBlock = {"point": load.point, "force": load.force, "moment": load.moment, "open": []}
     if load.drive is not None:
         block["drive"] = load.drive
@@ -153,6 +167,10 @@ def make_joint_block(load: JointLoads) -> JointBlock:
     if load.joint.bearing is not None:
         carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
         block["pressure"] = carried / load.joint.bearing
+    if load.joint.bearings is not None:
+        from heuncli.loads.kinetostatics.sensors import make_bearing_blocks  # few joints have them
+
+        block["bearings"] = make_bearing_blocks(load, planar)
     if load.joint.path is not None and load.joint.path.radius:
         block["contact_point"] = load.points.contact_point(load.joint, load.point)
     return block

@@ -47,6 +47,8 @@ ERROR_KINDS = (  # of estimated errors, the block they are of, and its numbers b
     ("reactions", "joints", WRENCH),
     ("reactions", "couplings", COUPLING_QUANTITIES),
     ("sections", "sections", WRENCH),
+    ("sensors", "sensors", WRENCH),
+    ("bearings", "joints", {"N·s": ("radial_force", "axial")}),
     ("drives", "joints", {"N·s": ("drive",), "N·m·s": ("drive",)}),
 )
 

@@ -224,9 +224,13 @@ def count_numbers(row: Quantity, setup: Setup) -> int:
         "END": 2,
         "SECTION": sum(len(cuts.side) for cuts in setup.cuts) if CUT in row.shape else len(setup.cuts),
         "CORNER": CORNERS_OF_MEMBER,
+        "SENSOR": len(setup.spec.sensors),
+        "BEARING": 2,
         "FORCE": len(mechanism.loads),
         "CAUSE": len(mechanism.loads) + CAUSES_WITHOUT_LOAD,
     }
+    if ".BEARING." in row.path:
+        names["JOINT"] = sum(joint.bearings is not None for joint in mechanism.joints)
     if row.path.startswith("forces.") and row.shape:  # only a bushing has vectors
         names["FORCE"] = sum(isinstance(load, BushingLoad) for load in mechanism.loads)
     total = 1

@@ -135,7 +135,7 @@ def list_entries(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
         ("bodies",): bodies, ("points",): dict(points), ("coordinates",): dict(spec.joints),
         ("foundation",): dict.fromkeys(PARTS),
         ("foundation", "supports"): dict(spec.joints), ("foundation", "elements"): elements,
-        ("joints",): dict(spec.joints), ("stops",): dict(stops),
+        ("joints",): dict(spec.joints), ("sensors",): dict(spec.sensors), ("stops",): dict(stops),
         ("couplings",): dict(spec.couplings), ("sections",): dict(spec.sections),
         ("forces",): dict(spec.forces), ("system_vector", "bodies"): bodies,
     }  # fmt: skip
@@ -180,10 +180,10 @@ def select_sums(sums: Sequence[DeterminateSum], selection: Selection) -> list[De
 
 Ends = Mapping[str, Mapping[str, set[str]]]
 # blocks whose entries refer to bodies
-BODY_BLOCKS = ("joints", "drives", "forces", "impulses", "stops", "latches", "couplings")
+BODY_BLOCKS = ("joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "sensors")
 # reports that concern some bodies only, and their blocks; other reports concern all bodies
 BLOCKS_OF_REPORT = {
-    "joints": (("joints",), ("stops",), ("couplings",)),
+    "joints": (("joints",), ("sensors",), ("stops",), ("couplings",)),
     "sections": (("sections",),),
     "forces": (("forces",),),
     "points": (("points",),),
@@ -204,8 +204,8 @@ def find_bodies(item: Any, spec: Spec) -> set[str]:
             found.add(value.body)
         elif name in ("body", "a", "b"):
             found.add(value)
-        elif name == "joint":
-            found |= find_bodies(spec.joints[value], spec)
+        elif name in ("joint", "section"):
+            found |= find_bodies(getattr(spec, f"{name}s")[value], spec) if value is not None else set()
         elif name in ("ends", "through"):  # of couplings
             found |= {body for one in value for body in find_bodies(one, spec)}
     for joint in getattr(item, "joints", ()):  # of couplings
@@ -316,6 +316,9 @@ def restrict_spec(spec: Spec, selection: Selection, *, reduce: bool = True) -> S
         if selection.has_whole("sections") or IMPULSES in selection.reports
         else selection.names_in("sections")
     )
+    is_read = selection.names_in("sensors").__contains__ if "joints" in selection.partial else spec.sensors.__contains__
+    if "joints" in selection.reports:
+        cut |= {own.section for name, own in spec.sensors.items() if own.section is not None and is_read(name)}
     if len(needed_bodies) == len(spec.bodies):
         return spec if len(cut) == len(spec.sections) else spec._replace(sections=select_items(spec.sections, cut))
     entries: dict[str, Any] = {

@@ -43,6 +43,7 @@ from heuncli.study.model.selection import EVERYTHING, Selection
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.cuts import Cuts
+    from heuncli.loads.kinetostatics.sensors import PlacedSensor
     from heuncli.loads.redundancy.self_stress import CachedStress
     from heuncli.multibody.tree.layout import Layout
     from heuncli.study.model.rest_pose import Rest
@@ -84,6 +85,15 @@ class Setup:
         """The point about which the foundation's moment is taken, (3,) [m], world axes."""
         point = self.spec.foundation.about
         return np.array(point if point is not None else (0.0, 0.0, 0.0))
+
+    @cached_property
+    def sensors(self) -> tuple[PlacedSensor, ...]:
+        """What reads reactions elsewhere."""
+        if not self.spec.sensors:
+            return ()
+        from heuncli.loads.kinetostatics.sensors import make_sensors  # few scenes have them
+
+        return make_sensors(self.spec, self.scene.mechanism)
 
     @cached_property
     def steady_spin_axes(self) -> dict[int, Array]:

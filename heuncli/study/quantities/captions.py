@@ -28,6 +28,9 @@ WORDS: dict[str, str | tuple[str, str]] = {
     "direct_force": ("direct part of the force", "direct part of F{}"),
     "direct_moment": ("direct part of the moment", "direct part of M{}"), "torque": "torque", "power": "power",
     "axial": "axial force", "radial": "radial force", "tilting": "tilting moment", "tension": "tension",
+    "bearings.axial": "axial force of bearing", "bearings.radial": "radial force of bearing",
+    "radial_force": ("radial load of bearing", "radial load {} of bearing"),
+    "bearings.point": "point of bearing",
     "pressure": "mean pressure", "drive": "drive", "value": "load", "open": "indeterminate components",
     "chosen": "components by a chosen distribution", "point": "point", "direction": "direction", "time": "time",
     "position": "position", "velocity": ("velocity", "v {}"), "acceleration": ("acceleration", "a {}"),
@@ -102,6 +105,7 @@ LABELLED_BLOCKS = {
 # One thing of a block of the spec -> the block, as sentences name it: "the body crank", "joints.main"
 THINGS = {
     "body": "bodies", "joint": "joints", "rod": "joints", "drive": "drives", "force": "forces", "section": "sections",
+    "sensor": "sensors",
     "stop": "stops", "latch": "stops", "coupling": "couplings", "rope": "couplings", "cam": "couplings",
     "impulse": "impulses", "case": "cases",
 }  # fmt: skip
@@ -135,11 +139,11 @@ def describe_path(path: str, labels: Labels) -> str:
     parts = parse_path(path)
     if parts is None:
         return _describe_entry(path, labels)
-    number = parts.find_name("NUMBER")
+    number, bearing = parts.find_name("NUMBER"), parts.find_name("BEARING")
     if parts.words[0] == IMPULSES:
         parts = parts._replace(words=parts.words[1:])
     subject = _describe_subject(parts, labels)
-    text = _describe_quantity(parts, labels)
+    text = _describe_quantity(parts, labels) + f" {bearing}" * bool(bearing)
     text += f" at impulse {number}" if number and parts.words[0] != "certain_sums" else f" {number}" * bool(number)
     return f"{subject}, {text}" if subject else text
 
@@ -167,6 +171,9 @@ def describe_object(kind: str, name: str, labels: Labels) -> str:
     if kind == "couplings" and ".on." in name:
         coupling, _, end = name.partition(".on.")
         return f"{describe_object(kind, coupling, labels)} on {describe_object('bodies', end, labels)}"
+    if kind == "joints" and ".bearings." in name:
+        joint, _, number = name.partition(".bearings.")
+        return f"{describe_object(kind, joint, labels)} {number}"
     label = find_label(kind, name, labels)
     if label:
         return label
@@ -244,7 +251,7 @@ def _follow_words(node: Node | Quantity, words: Sequence[str], parts: PathParts)
 def _describe_subject(parts: PathParts, labels: Labels) -> str:
     """Describe what a quantity belongs to; empty if its words say so themselves."""
     kind = parts.words[0]
-    names = [name for word, name in parts.names if word not in ("CAUSE", "NUMBER", "END")]
+    names = [name for word, name in parts.names if word not in ("CAUSE", "NUMBER", "END", "BEARING")]
     if kind == "foundation":
         words = [*parts.words[1:2], *names] if names else []
         return describe_object(kind, ".".join(words), labels)

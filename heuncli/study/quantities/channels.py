@@ -52,6 +52,7 @@ CSV_SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # opposite to the sig
 SYMBOLS = {
     "force": "F",
     "moment": "M",
+    "radial_force": "F radial ",
     "moment_orbital": "M orbital ",
     "moment_spin": "M spin ",
     "position": "",
@@ -67,7 +68,7 @@ SYMBOLS = {
 }
 # Quantities with the same decimals as another, so that noise in one shows against the others.
 FAMILIES = {
-    **dict.fromkeys((*AXIAL_FORCES, *SECTION_FORCES), "force"),
+    **dict.fromkeys((*AXIAL_FORCES, *SECTION_FORCES, "radial_force"), "force"),
     **dict.fromkeys((*TILTING_MOMENTS, *SECTION_MOMENTS, "moment_orbital", "moment_spin"), "moment"),
 }
 

@@ -113,9 +113,10 @@ def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes)
     errors = {
         key: results.relative_error(ESTIMATE_OF_ERROR_KIND.get(key[0], key[0])) * scale for key, scale in scales.items()
     }
-    for kind in LOADS:
+    for kind in (*LOADS, "sensors", "bearings"):
+        relative = results.relative_error(ESTIMATE_OF_ERROR_KIND.get(kind, kind))
         for error_kind in (kind, f"{kind} {BY_CAUSE}"):
-            errors |= _find_wrench_errors(error_kind, results.relative_error(kind), scales, magnitudes.size)
+            errors |= _find_wrench_errors(error_kind, relative, scales, magnitudes.size)
     errors |= magnitudes.errors
     errors |= results.position_errors(magnitudes.size)
     for unit in ("m", "m/s", "m/s²", "rad/s²"):  # where no path has its own measure of travel

@@ -17,8 +17,9 @@ from heuncli.base.joint_kinds import TYPES, JointKind
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
+from heuncli.scene.file_format.labels import GROUND
 from heuncli.scene.file_format.loads import Friction
-from heuncli.scene.file_format.models import End, Force, Section, Spec, Stop, Vec
+from heuncli.scene.file_format.models import End, Force, Section, Sensor, Spec, Stop, Vec
 from heuncli.scene.shapes.section_axes import choose_default_axis, find_nearest_axis
 from heuncli.study.quantities.table_units import Units
 
@@ -27,11 +28,12 @@ MOMENT_POINTS = {"at": "the cut's point", "centroid": "the cut's centroid", "lin
 
 
 class JointInfo(NamedTuple):
-    """A joint's type and its two ends as `body.point`."""
+    """A joint's type, its two ends as `body.point`, and where its two bearings are along its axis, if it has them."""
 
     type: str
     first_end: str
     second_end: str
+    bearings: tuple[float, ...] = ()
 
 
 class ForceInfo(NamedTuple):
@@ -73,6 +75,7 @@ NO_ENTRIES: Mapping[str, Any] = MappingProxyType({})
 class Labels:
     """The kinds of everything named in the results.
 
+    sensors: what each reads, about which point and in which axes, in words
     moment_point: the name of the ground point that M_s is taken about, if it has one
     units: the display units of tables
     captions: texts for readers in place of names, by paths such as joints.main (captions.py)
@@ -82,6 +85,7 @@ class Labels:
     forces: Mapping[str, ForceInfo] = NO_ENTRIES
     sections: Mapping[str, SectionInfo] = NO_ENTRIES
     stops: Mapping[str, StopInfo] = NO_ENTRIES
+    sensors: Mapping[str, str] = NO_ENTRIES
     moment_point: str | None = None
     units: Units = DEFAULT_UNITS
     captions: Mapping[str, str] = NO_ENTRIES
@@ -121,7 +125,12 @@ def make_unit_labels(spec: Spec) -> Labels:
 def make_labels(spec: Spec) -> Labels:
     """Make the labels of a loaded spec."""
     joints = {
-        name: JointInfo(j.kind, _format_end(End(j.a, j.p, j.p_name)), _format_end(End(j.b, j.q, j.q_name)))
+        name: JointInfo(
+            j.kind,
+            _format_end(End(j.a, j.p, j.p_name)),
+            _format_end(End(j.b, j.q, j.q_name)),
+            j.bearings.at if j.bearings is not None else (),
+        )
         for name, j in spec.joints.items()
     }
     forces = {name: _make_force_info(force) for name, force in spec.forces.items()}
@@ -129,7 +138,15 @@ def make_labels(spec: Spec) -> Labels:
     moment_point = spec.foundation.about or (0.0, 0.0, 0.0)
     point_name = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(moment_point)), None)
     stops = {name: _make_stop_info(stop) for name, stop in {**spec.stops, **spec.latches}.items()}
-    return Labels(joints, forces, sections, stops, point_name, captions=spec.labels)
+    sensors = {name: _describe_sensor(sensor) for name, sensor in spec.sensors.items()}
+    return Labels(joints, forces, sections, stops, sensors, point_name, captions=spec.labels)
+
+
+def _describe_sensor(sensor: Sensor) -> str:
+    """Describe what a sensor reads: "main, about arm.flange, in the axes of arm"."""
+    about = "" if sensor.point is None else f", about {_format_end(sensor.point)}"
+    axes = "world axes" if sensor.body == GROUND else f"in the axes of {sensor.body}"
+    return f"{sensor.joint or sensor.section}{about}, {axes}"
 
 
 def _make_stop_info(stop: Stop[str]) -> StopInfo:

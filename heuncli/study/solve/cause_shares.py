@@ -17,6 +17,7 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.loads.kinetostatics.reactions import JointLoads, rotate_joint_loads
+from heuncli.loads.kinetostatics.sensors import PlacedSensor, Reaction
 from heuncli.loads.kinetostatics.shares import (
     CauseResults,
     Shares,
@@ -39,7 +40,13 @@ def add_shares(
     if "joints" in blocks:
         for load in shares.joints:
             if load.joint.name in blocks["joints"]:  # if single joints are requested, only these are shown
-                blocks["joints"][load.joint.name]["shares"] = joint_shares_block(shares, load)
+                block = blocks["joints"][load.joint.name]
+                block["shares"] = joint_shares_block(shares, load)
+                if load.joint.bearings is not None:
+                    from heuncli.loads.kinetostatics.sensors import make_bearing_loads  # few joints have them
+
+                    for key, own in make_bearing_loads(load, mechanism.planar).items():
+                        block["bearings"][key]["shares"] = shares.to_blocks(own)
         for coupled in shares.couplings:
             carried = {number.name: number.values for number in list_numbers(coupled) if number.is_sum}
             blocks["couplings"][coupled.coupling.name]["shares"] = shares.to_blocks(carried)
@@ -83,6 +90,7 @@ def iter_compared_shares(
     shares_of_kinds = (
         list_joint_shares(joint_shares) + list_coupling_shares(shares.couplings) if "reactions" in kinds else []
     )
+    shares_of_kinds += list_moved_shares(setup, states, shares) if "reactions" in kinds else []
     shares_of_kinds += list_foundation_shares(setup, states, shares) if "foundation" in kinds else []
     shares_of_kinds += list_section_shares(setup, states, shares) if "sections" in kinds else []
     for kind, name, values in shares_of_kinds:
@@ -97,6 +105,7 @@ def compute_term_ratio(column: CauseResults, terms: BalanceTerms) -> Array:
     return np.asarray(np.maximum(1.0, largest / np.where(terms.force > 0.0, terms.force, np.inf)))
 
 
+WRENCH = ("force", "moment")
 KindValues = list[tuple[str, str, Array]]  # kind, quantity, values with the instants first
 
 
@@ -111,6 +120,35 @@ def list_joint_shares(joints: Sequence[JointLoads]) -> KindValues:
             name = "moment" if load.joint.drive.quantity == "angle" else "force"
             found.append(("drives", name, load.drive.T[..., None]))
     return found
+
+
+def list_moved_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindValues:
+    """Return the shares of the bearings of joints, and of what sensors read."""
+    found: KindValues = []
+    if any(load.joint.bearings is not None for load in shares.joints):
+        from heuncli.loads.kinetostatics.sensors import iter_bearing_terms  # few joints have them
+
+        found += [("bearings", "force", np.moveaxis(values, 0, 1)) for values, *_ in iter_bearing_terms(shares.joints)]
+    for sensor in setup.sensors:
+        read = sensor.read(states, find_sensor_shares(setup, sensor, states, shares), setup.scene.mechanism.planar)
+        found += [("sensors", name, np.moveaxis(values, 0, 1)) for name, values in zip(WRENCH, read, strict=True)]
+    return found
+
+
+def find_sensor_shares(setup: Setup, sensor: PlacedSensor, states: BodyStates, shares: Shares) -> Reaction:
+    """Return the shares by cause in a sensor's reaction: origin (n_t, 3), force and moment, (n_c, n_t, 3) each."""
+    if sensor.joint is not None:
+        load = next(load for load in shares.joints if load.joint.name == sensor.joint)
+        return load.point, load.force, load.moment
+    from heuncli.loads.kinetostatics.sections import make_cut_places  # few sensors read a cut
+    from heuncli.loads.kinetostatics.shares import section_shares_block
+
+    cuts = next(cuts for cuts in setup.cuts if cuts.name == sensor.section).for_impulse
+    block = section_shares_block(cuts, setup.scene.layout, states, shares, {})
+    places = make_cut_places(cuts, states)
+    origin = places.to_world_axes(places.moment_points, is_position=True)[:, 0]
+    force, moment = (np.array([block[cause][name] for cause in shares.causes]) for name in WRENCH)
+    return origin, force, moment
 
 
 def list_coupling_shares(couplings: Sequence[CouplingLoads]) -> KindValues:

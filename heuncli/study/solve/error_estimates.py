@@ -308,6 +308,8 @@ class ErrorEstimates:
         for kind, parts in (
             ("reactions", ("reactions",)),
             ("sections", ("sections",)),
+            ("sensors", ("sensors",)),
+            ("bearings", ("bearings",)),
             ("foundation", foundation_kinds),
         ):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):

@@ -148,10 +148,12 @@ def _export(request: RunRequest, form: str, study: Study, labels: Labels) -> Ite
 
 def _check_strict(results: Results, warnings: list[str]) -> int:
     """Return 1 if there are warnings or indeterminate reactions, and print why."""
-    loads = [results.joints, results.sections, results.foundation.get("supports", {})]
+    loads = [results.joints, results.sensors, results.sections, results.foundation.get("supports", {})]
     for impulse in results.impulses:
         supports = impulse.get("foundation", {}).get("supports", {})
-        loads += [impulse.get("joints", {}), impulse.get("sections", {}), supports]
+        loads += [*(impulse.get(block, {}) for block in ("joints", "sensors", "sections")), supports]
+    for joint, block in results.joints.items():
+        loads.append({f"{joint}.bearings.{number}": own for number, own in block.get("bearings", {}).items()})
     indeterminate = [name for block in loads for name, part in block.items() if part.get("open") or _has_open(part)]
     if warnings:
         print_stderr(f"heun: --strict: {len(warnings)} warning{'s' * (len(warnings) > 1)}")

@@ -230,6 +230,7 @@ def check_rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
                 message,
                 "leave it out: the wound length is not known; to wind the rope, drive the drum's pin",
             )
+        yield from check_rope_tension(name, rope)
         yield from check_rope_elasticity(name, rope)
         if rope.restitution is None:
             continue
@@ -239,6 +240,23 @@ def check_rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
         if not rope.tension_only:
             message = "restitution given, but this rope never goes slack: it has no impacts"
             yield Violation((*path, "restitution"), message, "add tension_only: true")
+
+
+def check_rope_tension(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
+    """Yield what is wrong with a rope of given tension, whose length is whatever it has to be."""
+    if rope.tension is None:
+        return
+    path = ("couplings", name)
+    given = [key for key in ("length", "stiffness", "damping", "restitution") if getattr(rope, key) is not None]
+    for key in given + ["tension_only"] * rope.tension_only:
+        message = f"{key} is given for a rope of given tension, whose length is free"
+        yield Violation((*path, key), message, f"leave {key} or the tension out", key=True)
+    if any(place.slip == "none" for place in rope.through):
+        message = "a rope of given tension cannot be fixed to a sheave"
+        yield Violation((*path, "tension"), message, "use slip: free, or put a torque on the drum instead")
+    if rope.tension.constant is not None and rope.tension.constant < 0.0:
+        message = f"tension must not be below 0, but is {rope.tension.constant:g} N"
+        yield Violation((*path, "tension"), message, "a rope only pulls")
 
 
 def check_rope_elasticity(name: str, rope: f.RopeEntry) -> Iterator[Violation]:

@@ -293,6 +293,10 @@ def expand_schema_word(word: str, names: SceneNames, is_impact: bool = False) ->
             return list(entries["joints"])
         case "SECTION":
             return list(entries["sections"])
+        case "BEARING":
+            return ["0", "1"]
+        case "SENSOR":
+            return list(entries["sensors"])
         case "CORNER":
             return [*STRESS_POINTS]
         case "STOP":

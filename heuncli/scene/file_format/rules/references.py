@@ -52,6 +52,9 @@ def iter_ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
         end = find_reduction_end(section.reduce_to)
         if end is not None:
             yield ("sections", name, "reduce_to"), end
+    for name, sensor in document.sensors.items():
+        if sensor.point is not None:
+            yield ("sensors", name, "point"), sensor.point
     reference_point = document.foundation.about
     if isinstance(reference_point, str):
         yield ("foundation", "about"), parse_ground_end(reference_point)
@@ -87,6 +90,8 @@ def iter_body_references(draft: DraftDocument) -> Iterator[tuple[Path_, str, boo
         yield path, end.body, may_be_ground
     for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False
+    for name, sensor in draft.document.sensors.items():
+        yield ("sensors", name, "axes"), sensor.axes, True
     for name, load in draft.document.forces.items():
         if isinstance(load, fl.DistributedEntry):
             yield ("forces", name, "on"), load.on, False
@@ -104,6 +109,7 @@ GROUND_BLOCKS = (
     "rolling",
     "foundation",
     "sections",
+    "sensors",
 )  # blocks in which an end may be on the ground
 GROUND_SYNONYMS = frozenset({"world", "base", "frame", "earth", "fixed", "origin", "inertial"})  # synonyms of ground
 POINT_BLOCKS = {GROUND: GROUND}  # owner of points -> block that holds it, if not bodies
