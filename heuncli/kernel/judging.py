@@ -124,7 +124,9 @@ def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
     run.control.is_balanced = run.control.rate < scene.limits.balanced_rate * run.control.imposed_rate
 
 
-def least_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], a: cython.int, b: cython.int) -> cython.double:
+def least_inertia(
+    scene: cython.pointer[Scene], run: cython.pointer[Run], a: cython.int, b: cython.int
+) -> cython.double:
     """Return the lesser mass of two bodies by the size; -1: the ground. One without mass counts as the least of all."""
     first: cython.double = body_inertia(scene, run, a)
     second: cython.double = body_inertia(scene, run, b)

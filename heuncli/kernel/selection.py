@@ -87,6 +87,7 @@ def list_candidates(scene: cython.pointer[Scene], island: cython.pointer[Island]
     """Build the rows of an island's J that have a rank, and list the nonzero ones. Returns how many these are."""
     k: cython.Py_ssize_t
     width: cython.Py_ssize_t = island.freedom_count
+    shift: cython.int = part_shift(width)
     count: cython.Py_ssize_t = 0
     for k in range(island.row_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.indices[island.rows + k]])
@@ -94,8 +95,8 @@ def list_candidates(scene: cython.pointer[Scene], island: cython.pointer[Island]
         if row.rank < 0:
             continue
         build_scaled_row(scene, island, k)
-        scene.remainders[k] = remaining_square(scene, island, k, 0)
-        scene.row_bits[k] = find_reach(scene, list_nonzeros(scene, width * k, 0, width), width)
+        scene.row_bits[k] = find_reach(scene, list_nonzeros(scene, width * k, 0, width), shift)
+        scene.remainders[k] = remaining_square(scene, width, k, 0, shift)
         if scene.remainders[k] != 0.0:
             scene.rows_left[count] = k
             count += 1
@@ -171,14 +172,29 @@ def spread_jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closur
 
 
 def remaining_square(
-    scene: cython.pointer[Scene], island: cython.pointer[Island], k: cython.Py_ssize_t, n: cython.Py_ssize_t
+    scene: cython.pointer[Scene],
+    width: cython.Py_ssize_t,
+    k: cython.Py_ssize_t,
+    n: cython.Py_ssize_t,
+    shift: cython.int,
 ) -> cython.double:
-    """Return the square of what the n rows chosen before leave of row k."""
+    """Return the square of what the n rows chosen before leave of row k, summed over the parts where it is not zero."""
     i: cython.Py_ssize_t
+    end: cython.Py_ssize_t
     square: cython.double = 0.0
-    width: cython.Py_ssize_t = island.freedom_count
-    for i in range(n, width):
-        square += scene.J[width * k + i] * scene.J[width * k + i]
+    offset: cython.Py_ssize_t = width * k
+    if shift == 0:
+        for i in range(n, width):
+            square += scene.J[offset + i] * scene.J[offset + i]
+        return square
+    while n < width:
+        end = ((n >> shift) + 1) << shift
+        if end > width:
+            end = width
+        if scene.row_bits[k] & (1 << (n >> shift)):
+            for i in range(n, end):
+                square += scene.J[offset + i] * scene.J[offset + i]
+        n = end
     return square
 
 
@@ -224,7 +240,8 @@ def eliminate_pivot(
     reflector: cython.double = 1.0 / (scene.remainders[best] + left * fabs(J[v + n]))
     J[v + n] += left if J[v + n] > 0.0 else -left
     nonzero_count: cython.Py_ssize_t = list_nonzeros(scene, v, n, width)
-    reach: cython.int = find_reach(scene, nonzero_count, width)
+    shift: cython.int = part_shift(width)
+    reach: cython.int = find_reach(scene, nonzero_count, shift)
     for j in range(candidate_count):
         k = scene.rows_left[j]
         offset = width * k
@@ -238,7 +255,7 @@ def eliminate_pivot(
                 J[offset + scene.pivot_row_velocities[i]] -= x * J[v + scene.pivot_row_velocities[i]]
             scene.row_bits[k] |= reach
         if x != 0.0 or J[offset + n] != 0.0:
-            scene.remainders[k] = remaining_square(scene, island, k, n + 1)
+            scene.remainders[k] = remaining_square(scene, width, k, n + 1, shift)
 
 
 def list_nonzeros(
@@ -254,14 +271,24 @@ def list_nonzeros(
     return count
 
 
-def find_reach(scene: cython.pointer[Scene], nonzero_count: cython.Py_ssize_t, width: cython.Py_ssize_t) -> cython.int:
+def part_shift(width: cython.Py_ssize_t) -> cython.int:
+    """Return the power of 2 of the size of parts, so that an island's freedoms have at most as many as an int has bits
+    without its sign.
+    """
+    shift: cython.int = 0
+    while (width - 1) >> shift > 30:
+        shift += 1
+    return shift
+
+
+def find_reach(scene: cython.pointer[Scene], nonzero_count: cython.Py_ssize_t, shift: cython.int) -> cython.int:
     """Return in which parts of an island's freedoms the listed ones lie, one bit a part: rows without a common bit
     share none.
     """
     i: cython.Py_ssize_t
     reach: cython.int = 0
     for i in range(nonzero_count):
-        reach |= 1 << (31 * scene.pivot_row_velocities[i] // width)  # as many parts as an int has bits without its sign
+        reach |= 1 << (scene.pivot_row_velocities[i] >> shift)
     return reach
 
 

@@ -88,6 +88,8 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
         from heuncli.study.compose.results import compose_in_parts  # only for exports
 
         parts = compose_in_parts(setup, history, options.reports, options.least_norm)
+        if parts is None and options.memory_budget is not None:
+            require_memory(setup, options.memory_budget)
     recovery = (
         recover(setup, history.solutions, options.least_norm, history.state_instants)
         if parts is None

@@ -35,7 +35,8 @@ from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes
 from heuncli.results.results_schema import REPORT_OF, REPORTS, RESULTANTS, SHARES
 from heuncli.study.compose.warnings import has_smoothed_friction, make_partial_note
 from heuncli.study.model.selection import EntryKeys, Selection
-from heuncli.study.quantities.channels import Channel, ChannelSelection, iter_channels, make_section_channels
+from heuncli.study.quantities.channel_selection import ChannelSelection
+from heuncli.study.quantities.channels import Channel, iter_channels, make_section_channels
 from heuncli.study.quantities.cut_series import CutSeries, choose_cuts, collect_cut_series, split_into_cuts
 from heuncli.study.quantities.digits import StatedErrors, add_axis_errors, find_stated_errors
 from heuncli.study.quantities.labels import Labels
@@ -93,7 +94,7 @@ class Page(NamedTuple):
         """Make the search of the numbers of all blocks, and of the section forces along series of cuts."""
         blocks = self.make_blocks(self.results, only_searched=True)
         numbers = [row for block in blocks for group in block.groups for row in group.rows]
-        selection = ChannelSelection.from_numbers(self.labels, numbers, has_cut_series=self.has_cut_series)
+        selection = ChannelSelection(self.labels, numbers, has_cut_series=self.has_cut_series)
         return ChannelSearch(selection.collect, self.stated_errors.find_error)
 
     def make_tables_of_extremes(self, search_result: Extremes, shares: ShareSource | None = None) -> list[OutputTable]:

@@ -11,7 +11,8 @@ all instants:
 
 Composed at once, as where they fit into memory:
 
-    closed chains         indeterminate components, determinate sums, singular poses depend on all instants
+    closed chains         where something is indeterminate, or an instant is close to a singular pose: marks,
+                          determinate sums and the sentences on singular poses depend on all instants
     loads by cause        the list of causes depends on all instants
     events on results     searched for in the solutions at all instants
     one instant           there are no parts
@@ -256,7 +257,8 @@ def compose_in_parts(
 ) -> ComposedInstants | None:
     """Compose the results of the run's instants part by part; None where they are to be composed at once.
 
-    That is also the case where a part fails: it is judged by its own sizes, and may fail where the whole does not.
+    That is also the case where a part fails, as it is judged by its own sizes and may fail where the whole does not, or
+    where a closed chain shows what all instants decide.
     """
     numbers = count_numbers_per_instant(setup)
     if not can_compose_in_parts(setup) or numbers * len(history.times) <= FEW:
@@ -280,12 +282,17 @@ def divide_instants(count: int, part_size: int) -> list[slice]:
 
 def compose_parts(
     setup: Setup, history: History, reports: frozenset[str], least_norm: bool, parts: list[slice]
-) -> ComposedInstants:
-    """Compose all parts. Raises SolveError where one of them has no accelerations, or a number that is not finite."""
+) -> ComposedInstants | None:
+    """Compose all parts; None where one of them depends on all instants.
+
+    Raises SolveError where one of them has no accelerations, or a number that is not finite.
+    """
     store, blocks, balance, largest = ArrayStore(), dict[str, Any](), Balance(setup, history.followed_duration), 0.0
     for part in parts:
         recovery = recover(setup, history.find_solutions(part), least_norm)
-        part_blocks = make_requested_blocks(recovery, reports)
+        part_blocks, unknown = make_known_blocks(history, recovery, reports)
+        if len(unknown) or depends_on_all_instants(recovery):
+            return None
         times = recovery.solutions.times
         require_finite_blocks(part_blocks, times, np.ones(len(times), dtype=bool))
         balance.add(recovery)
@@ -296,6 +303,12 @@ def compose_parts(
     if "axis" in blocks.get("foundation", {}):
         drop_axes(blocks["foundation"], largest, parts)
     return ComposedInstants(history.times, recovery, blocks, np.zeros(0), balance)
+
+
+def depends_on_all_instants(recovery: Recovery) -> bool:
+    """Return whether a closed chain is indeterminate at some instants, or singular, or nearly so."""
+    is_marked = recovery.needs_indeterminacy and recovery.decided is not None and recovery.decided.has_marks
+    return is_marked or bool(recovery.describe_singular_poses())
 
 
 def allocate_like(

@@ -167,7 +167,11 @@ def truncate_to_two_digits(value: float) -> float:
 
 def can_compose_in_parts(setup: Setup) -> bool:
     """Return whether results can be composed in parts (study/compose/results.py says where not, and why)."""
-    if setup.method is None or setup.scene.layout.rows or SHARES in setup.selection.reports:
+    layout = setup.scene.layout
+    may_be_indeterminate = bool(
+        setup.model["redundant"] or layout.contacts or layout.friction_contacts or layout.mechanism.couplings
+    )
+    if setup.method is None or (layout.rows and may_be_indeterminate) or SHARES in setup.selection.reports:
         return False
     return not any(isinstance(condition, ResultCondition) for condition in setup.spec.analysis.conditions)
 

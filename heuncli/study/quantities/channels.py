@@ -10,7 +10,7 @@ come from the schema: a new quantity of the results needs a row there.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from types import MappingProxyType
 from typing import Any
@@ -174,9 +174,13 @@ class Channel(NamedTuple):
         columns = zip(self.components, self.values.T, strict=True)
         numbers = [self._replace(component=name, values=column, axes=()) for name, column in columns]
         if self.components == XYZ and self.quantity not in POSITIONS:
-            length = np.sqrt(np.einsum("ij,ij->i", self.values, self.values))
-            numbers.append(self._replace(component=LENGTH, values=length, axes=()))
+            numbers.append(self._replace(component=LENGTH, values=compute_lengths(self.values), axes=()))
         return numbers
+
+
+def compute_lengths(vectors: Array) -> Array:
+    """Compute the magnitudes of vectors (n, 3)."""
+    return np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
 
 
 def make_path_channel(numbers: PathValues) -> Channel:
@@ -202,37 +206,6 @@ def make_energy_sum(results: Results) -> Channel | None:
     kinetic, potential, work = (np.asarray(results.energy[key]) for key in ("kinetic", "potential", "work"))
     terms = max(float(np.abs(values).max(initial=0.0)) for values in (kinetic, potential, work))
     return Channel("energy", "", "sum", "J", ("",), kinetic + potential - work, largest_term=terms)
-
-
-class ChannelSelection(NamedTuple):
-    """Chosen numbers of the results, in the order in which results hold them.
-
-    components: of the chosen quantities by their paths, the components of the chosen numbers
-    has_cut_series: whether section forces along series of cuts are chosen as well; they stand last
-    """
-
-    labels: Labels
-    components: Mapping[str, Collection[str]]
-    has_cut_series: bool = False
-
-    @classmethod
-    def from_numbers(cls, labels: Labels, numbers: Iterable[Channel], *, has_cut_series: bool) -> ChannelSelection:
-        """Choose some numbers, and the section forces along series of cuts if there are any."""
-        components: dict[str, set[str]] = {}
-        for number in numbers:
-            components.setdefault(number._replace(component="").path, set()).add(number.component)
-        return cls(labels, components, has_cut_series)
-
-    def collect(self, results: Results) -> list[Channel]:
-        """Collect the chosen numbers from results at any instants."""
-        found: list[Channel] = []
-        for channel in iter_channels(results, self.labels):
-            chosen = self.components.get(channel.path)
-            if chosen is not None:
-                found += [number for number in channel.numbers if number.component in chosen]
-        if "energy.sum" in self.components and (energy_sum := make_energy_sum(results)) is not None:
-            found.append(energy_sum)
-        return found + (collect_series_loads(results) if self.has_cut_series else [])
 
 
 def collect_series_loads(results: Results) -> list[Channel]:

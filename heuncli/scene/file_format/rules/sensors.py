@@ -8,7 +8,7 @@ from heuncli.base import tolerances
 from heuncli.base.joint_kinds import TYPES, format_kind_names
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
-from heuncli.scene.file_format.rules.sections import is_run
+from heuncli.scene.file_format.rules.sections import is_cut_series
 
 
 @rule("sensor-of")
@@ -24,7 +24,9 @@ def check_sensor_source(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, f"'{sensor.of}' is not a reaction", hint)
         elif source not in entries[block]:
             yield Violation(path, f"'{source}' is not a {block[:-1]}", suggest(source, entries[block], block) or "")
-        elif block == "sections" and source in draft.document.sections and is_run(draft.document.sections[source]):
+        elif (
+            block == "sections" and source in draft.document.sections and is_cut_series(draft.document.sections[source])
+        ):
             hint = "give the section one cut: at and normal"
             yield Violation(path, f"'{source}' is a series of cuts, and a sensor has one place", hint)
 
