@@ -113,14 +113,24 @@ def make_plan(axis_arguments: Sequence[AxisArgument], request: SweepRequest) -> 
     """Make the plan of the variants, still without the load cases of `case=all`, which only the spec knows. Raises
     AxisError.
     """
-    draws = draw_samples([one.axis for one in axis_arguments if isinstance(one.axis, RandomVariable)], request)
-    return combine_axes([one for one in axis_arguments if not one.is_all_cases], request, draws)
+    draws = draw_samples(
+        [argument.axis for argument in axis_arguments if isinstance(argument.axis, RandomVariable)], request
+    )
+    return combine_axes([argument for argument in axis_arguments if not argument.is_all_cases], request, draws)
 
 
 def combine_axes(axis_arguments: Sequence[AxisArgument], request: SweepRequest, draws: Draws | None) -> Plan:
     """Make the plan of axes, columns and random draws. Raises AxisError."""
-    columns = [one.axis for one in axis_arguments if one.column is not None and isinstance(one.axis, ParameterAxis)]
-    axes = [one.axis for one in axis_arguments if one.column is None and not isinstance(one.axis, RandomVariable)]
+    columns = [
+        argument.axis
+        for argument in axis_arguments
+        if argument.column is not None and isinstance(argument.axis, ParameterAxis)
+    ]
+    axes = [
+        argument.axis
+        for argument in axis_arguments
+        if argument.column is None and not isinstance(argument.axis, RandomVariable)
+    ]
     return make_axes_plan(axes, together=request.zip, draws=draws, columns=columns)
 
 
@@ -148,11 +158,12 @@ def expand_cases(
     plan: Plan, axis_arguments: Sequence[AxisArgument], request: SweepRequest, evaluator: VariantEvaluator
 ) -> Plan:
     """Return the plan with `case=all` replaced by every load case. Raises AxisError."""
-    if not any(one.is_all_cases for one in axis_arguments):
+    if not any(argument.is_all_cases for argument in axis_arguments):
         return plan
     case_axis = ParameterAxis(CASE, tuple(evaluator.spec.cases)) if varies_cases(evaluator.spec) else None
     expanded = [
-        one._replace(axis=case_axis) if case_axis is not None and one.is_all_cases else one for one in axis_arguments
+        argument._replace(axis=case_axis) if case_axis is not None and argument.is_all_cases else argument
+        for argument in axis_arguments
     ]
     return combine_axes(expanded, request, plan.draws)
 

@@ -242,8 +242,8 @@ def show_stored(request: SweepRequest, output: SweepOutput) -> int:
         sweeps = list(store.iter_sweeps())
         sweep = choose_sweep(name, sweep_number, sweeps, "--show")
         if len(sweeps) > 1 and sweep_number is None and not request.quiet:
-            for one in sweeps:
-                print_stderr(f"heun: {escape(name)}:{one.number}  {format_sweep(one)}")
+            for stored_sweep in sweeps:
+                print_stderr(f"heun: {escape(name)}:{stored_sweep.number}  {format_sweep(stored_sweep)}")
         rows = store.find_rows(sweep.number, sweep.head.plan, shard)
         write_sweep(sweep.head, rows, output)
         note_si_format(request.units, output.form, request.quiet)
