@@ -92,18 +92,16 @@ class SweepColumns(NamedTuple):
         none.
         """
         measures = (head for text in self.measures for head in (text, f"{text} error", f"{text} at [s]"))
-        return [NUMBER, *(column.heading for column in self.parameters), *measures, CODE, REASON]
+        return [NUMBER, *(one.heading for one in self.parameters), *measures, CODE, REASON]
 
     def make_cells(self, row: SweptRow) -> list[Cell]:
         """Return the cells of a variant; None where there is no value."""
         measures: list[Cell] = [None] * (3 * len(self.measures))
-        for place, reading in enumerate(row.result.measures):
-            measures[3 * place : 3 * place + 3] = (
-                to_finite(number) for number in (reading.value, reading.error, reading.time)
-            )
+        for place, one in enumerate(row.result.measures):
+            measures[3 * place : 3 * place + 3] = (to_finite(number) for number in (one.value, one.error, one.time))
         return [
             row.number,
-            *(to_cell(row.values[column.name]) for column in self.parameters),
+            *(to_cell(row.values[one.name]) for one in self.parameters),
             *measures,
             row.result.code,
             explain_missing(row, self.measures),
@@ -112,7 +110,7 @@ class SweepColumns(NamedTuple):
 
 def make_columns(head: SweepHead) -> SweepColumns:
     """Make the columns of a sweep."""
-    measures = tuple(f"{measure.text} [{measure.unit}]" if measure.unit else measure.text for measure in head.measures)
+    measures = tuple(f"{one.text} [{one.unit}]" if one.unit else one.text for one in head.measures)
     return SweepColumns(make_parameter_columns(head.plan), measures)
 
 
@@ -125,9 +123,7 @@ def explain_missing(row: SweptRow, measures: Sequence[str]) -> str:
     """Say why a variant, or a measure of it, has no value; empty if all have one."""
     if row.result.code:
         return row.result.reason
-    missing = [
-        (text, reading.word) for text, reading in zip(measures, row.result.measures, strict=True) if reading.word
-    ]
+    missing = [(text, one.word) for text, one in zip(measures, row.result.measures, strict=True) if one.word]
     return SEPARATOR.join(f"{text}: {MISSING_KINDS[word].sentence} [{word}]" for text, word in missing)
 
 
@@ -200,9 +196,9 @@ class JumpFinder:
         if isinstance(x, str):
             return
         for k, window in enumerate(self._windows):
-            reading = row.result.measures[k] if row.result.measures else None
-            value = math.nan if reading is None or reading.value is None else reading.value
-            window.append(SweptSample(row.number, x, value, (reading and reading.error) or 0.0))
+            one = row.result.measures[k] if row.result.measures else None
+            value = math.nan if one is None or one.value is None else one.value
+            window.append(SweptSample(row.number, x, value, (one and one.error) or 0.0))
         self._judge(from_end=3)
 
     def _end_course(self) -> None:

@@ -58,9 +58,7 @@ def _make_header(head: SweepHead, columns: SweepColumns) -> dict[str, Any]:
     """Return the keys before the rows."""
     draws = head.plan.draws
     laws = {law.name: law for law in draws.laws} if draws is not None else {}
-    parameters = [
-        _make_parameter_block(column) | _make_law_block(laws.get(column.name)) for column in columns.parameters
-    ]
+    parameters = [_make_parameter_block(one) | _make_law_block(laws.get(one.name)) for one in columns.parameters]
     sampling = {} if draws is None else {"samples": len(draws.values) // draws.each, "seed": draws.seed}
     return {
         "heun": FORMAT,
@@ -70,12 +68,12 @@ def _make_header(head: SweepHead, columns: SweepColumns) -> dict[str, Any]:
         "variants": head.plan.size,
         **sampling,
         "parameters": parameters,
-        "measures": [{"measure": measure.text, "unit": measure.unit or None} for measure in head.measures],
+        "measures": [{"measure": one.text, "unit": one.unit or None} for one in head.measures],
     }
 
 
-def _make_parameter_block(column: ParameterColumn) -> dict[str, Any]:
-    return {"parameter": column.name, "unit": column.unit or None}
+def _make_parameter_block(one: ParameterColumn) -> dict[str, Any]:
+    return {"parameter": one.name, "unit": one.unit or None}
 
 
 def _make_law_block(law: Any) -> dict[str, Any]:
@@ -88,8 +86,8 @@ def _make_row_block(row: SweptRow, columns: SweepColumns) -> dict[str, Any]:
         "set": {name: to_cell(value) for name, value in row.values.items()},
     }
     measures = row.result.measures or (NO_VALUE,) * len(columns.measures)
-    values = [(to_finite(reading.value), to_finite(reading.error), to_finite(reading.time)) for reading in measures]
-    block["values"] = [dict(zip(("value", "error", "at"), numbers, strict=True)) for numbers in values]
+    values = [(to_finite(one.value), to_finite(one.error), to_finite(one.time)) for one in measures]
+    block["values"] = [dict(zip(("value", "error", "at"), one, strict=True)) for one in values]
     block |= {"code": row.result.code, "reason": explain_missing(row, columns.measures)}
     return block | ({"warnings": list(row.result.warnings)} if row.result.warnings else {})
 
@@ -121,15 +119,13 @@ def _make_statistics_block(statistics: MeasureStatistics, head: SweepHead) -> di
     }
     if statistics.sample is not None:
         block |= {"mean": statistics.sample.mean._asdict(), "deviation": statistics.sample.deviation._asdict()}
-        block["percentiles"] = [{"percent": p} | estimate._asdict() for p, estimate in statistics.sample.percentiles]
+        block["percentiles"] = [{"percent": p} | one._asdict() for p, one in statistics.sample.percentiles]
     if statistics.indices is not None and head.plan.draws is not None:
         names = (law.name for law in head.plan.draws.laws)
-        indices = [
-            {"parameter": n} | _make_index_block(pair) for n, pair in zip(names, statistics.indices, strict=True)
-        ]
+        indices = [{"parameter": n} | _make_index_block(one) for n, one in zip(names, statistics.indices, strict=True)]
         block |= {"samples": statistics.samples, "indices": indices}
     return block
 
 
-def _make_index_block(pair: SobolIndices) -> dict[str, dict[str, Any]]:
-    return {"first": pair.first._asdict(), "total": pair.total._asdict()}
+def _make_index_block(one: SobolIndices) -> dict[str, dict[str, Any]]:
+    return {"first": one.first._asdict(), "total": one.total._asdict()}

@@ -25,11 +25,16 @@ from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, is_same_file, parse_units, require_other_file, require_writable
 from heuncli.app.cli.variant_workers import require_job_count
-from heuncli.app.commands.sweep.axes import AxisArgument, parse_axis, parse_shard
-from heuncli.app.commands.sweep.axis_checks import find_problems, find_warnings
+from heuncli.app.commands.sweep.axes import (
+    AxisArgument,
+    find_problems,
+    find_warnings,
+    parse_axis,
+    parse_shard,
+    read_axes,
+)
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep, show_stored
-from heuncli.app.commands.sweep.variants_table import read_axes
 from heuncli.app.commands.sweep.writer import SweepOutput, require_writable_form
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.process import result_memory
@@ -113,24 +118,14 @@ def make_plan(axis_arguments: Sequence[AxisArgument], request: SweepRequest) -> 
     """Make the plan of the variants, still without the load cases of `case=all`, which only the spec knows. Raises
     AxisError.
     """
-    draws = draw_samples(
-        [argument.axis for argument in axis_arguments if isinstance(argument.axis, RandomVariable)], request
-    )
-    return combine_axes([argument for argument in axis_arguments if not argument.is_all_cases], request, draws)
+    draws = draw_samples([one.axis for one in axis_arguments if isinstance(one.axis, RandomVariable)], request)
+    return combine_axes([one for one in axis_arguments if not one.is_all_cases], request, draws)
 
 
 def combine_axes(axis_arguments: Sequence[AxisArgument], request: SweepRequest, draws: Draws | None) -> Plan:
     """Make the plan of axes, columns and random draws. Raises AxisError."""
-    columns = [
-        argument.axis
-        for argument in axis_arguments
-        if argument.column is not None and isinstance(argument.axis, ParameterAxis)
-    ]
-    axes = [
-        argument.axis
-        for argument in axis_arguments
-        if argument.column is None and not isinstance(argument.axis, RandomVariable)
-    ]
+    columns = [one.axis for one in axis_arguments if one.column is not None and isinstance(one.axis, ParameterAxis)]
+    axes = [one.axis for one in axis_arguments if one.column is None and not isinstance(one.axis, RandomVariable)]
     return make_axes_plan(axes, together=request.zip, draws=draws, columns=columns)
 
 
@@ -158,12 +153,11 @@ def expand_cases(
     plan: Plan, axis_arguments: Sequence[AxisArgument], request: SweepRequest, evaluator: VariantEvaluator
 ) -> Plan:
     """Return the plan with `case=all` replaced by every load case. Raises AxisError."""
-    if not any(argument.is_all_cases for argument in axis_arguments):
+    if not any(one.is_all_cases for one in axis_arguments):
         return plan
     case_axis = ParameterAxis(CASE, tuple(evaluator.spec.cases)) if varies_cases(evaluator.spec) else None
     expanded = [
-        argument._replace(axis=case_axis) if case_axis is not None and argument.is_all_cases else argument
-        for argument in axis_arguments
+        one._replace(axis=case_axis) if case_axis is not None and one.is_all_cases else one for one in axis_arguments
     ]
     return combine_axes(expanded, request, plan.draws)
 

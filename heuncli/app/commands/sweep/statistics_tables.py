@@ -42,14 +42,14 @@ def make_statistics_tables(
     return tables
 
 
-def format_label(head: SweepHead, entry: MeasureStatistics, unit: str = "") -> str:
+def format_label(head: SweepHead, one: MeasureStatistics, unit: str = "") -> str:
     """Return a measure with the combination of the axes: `max joints.main.force [N], n = 1000 rpm`."""
     known = {parameter.name: parameter for parameter in make_parameter_columns(head.plan)}
-    values = [(known[name], format_parameter(value)) for name, value in entry.combination.items()]
+    values = [(known[name], format_parameter(value)) for name, value in one.combination.items()]
     axis_texts = [
         f"{parameter.name} = {text}{f' {parameter.unit}' if parameter.unit else ''}" for parameter, text in values
     ]
-    text = head.measures[entry.measure].text
+    text = head.measures[one.measure].text
     return ", ".join([f"{text} [{unit}]" if unit else text, *axis_texts])
 
 
@@ -59,27 +59,23 @@ def _make_statistics_table(
     columns = (OutputColumn("", "text"), OutputColumn("value"), OutputColumn("from"), OutputColumn("to"))
     rows: list[tuple[Cell, ...] | str] = []
     notes = _make_notes(head)
-    for entry in statistics:
-        unit, size = units.find(head.measures[entry.measure].unit)
-        label = format_label(head, entry, unit)
-        left_out_text = f", {entry.left_out} left out" if entry.left_out else ""
-        rows.append(f"{label}: {format_variant_count(entry.drawn_count)}{left_out_text}")
-        if entry.sample is None:
+    for one in statistics:
+        unit, size = units.find(head.measures[one.measure].unit)
+        label = format_label(head, one, unit)
+        rows.append(
+            f"{label}: {format_variant_count(one.drawn_count)}{f', {one.left_out} left out' if one.left_out else ''}"
+        )
+        if one.sample is None:
             rows.append(("too few", "", "", ""))
             continue
-        rows.append(_make_row("mean", entry.sample.mean, size))
-        rows.append(_make_row("deviation", entry.sample.deviation, size))
-        rows += [_make_row(f"{percent:g} %", value, size) for percent, value in entry.sample.percentiles]
-        if has_large_errors(entry):
-            notes.append(
-                SPOILT.format(
-                    format_label(head, entry),
-                    f"{format_error(size * entry.error)} {unit}".rstrip(),
-                )
-            )
+        rows.append(_make_row("mean", one.sample.mean, size))
+        rows.append(_make_row("deviation", one.sample.deviation, size))
+        rows += [_make_row(f"{percent:g} %", value, size) for percent, value in one.sample.percentiles]
+        if has_large_errors(one):
+            notes.append(SPOILT.format(format_label(head, one), f"{format_error(size * one.error)} {unit}".rstrip()))
     if any("-" in row for row in rows):
         notes.append("-: the sample is too small for a bound on this side")
-    if any(entry.left_out for entry in statistics):
+    if any(one.left_out for one in statistics):
         notes.append("left out: could not be solved, or the measure is not known")
     if omitted:
         notes.append(f"{format_count(omitted, 'block')} more: --all")
@@ -95,19 +91,19 @@ def _make_notes(head: SweepHead) -> list[str]:
     return notes + [EVEN.format(CALLED[law]) for law in CALLED if law in laws]
 
 
-def has_large_errors(entry: MeasureStatistics) -> bool:
+def has_large_errors(one: MeasureStatistics) -> bool:
     """Return whether the errors of the runs matter relative to the interval of the mean."""
-    mean = entry.sample.mean if entry.sample is not None else None
-    return mean is not None and mean.low is not None and entry.error > ERROR_SHARE * (mean.value - mean.low)
+    mean = one.sample.mean if one.sample is not None else None
+    return mean is not None and mean.low is not None and one.error > ERROR_SHARE * (mean.value - mean.low)
 
 
-def _make_row(label: str, estimate: BoundedEstimate, size: float) -> tuple[Cell, ...]:
+def _make_row(label: str, one: BoundedEstimate, size: float) -> tuple[Cell, ...]:
     """Make the row of a statistic with the digits that its interval supports."""
-    ends = [estimate.value if end is None else end for end in (estimate.low, estimate.high)]
+    ends = [one.value if end is None else end for end in (one.low, one.high)]
     half_width = 0.5 * size * (ends[1] - ends[0])
-    scale = size * max(abs(estimate.value), *map(abs, ends))
+    scale = size * max(abs(one.value), *map(abs, ends))
     error = 0.01 * half_width
-    numbers = [None if end is None else size * end for end in estimate]
+    numbers = [None if end is None else size * end for end in one]
     cells = ("-" if x is None else NumberCell(x, error, choose_number_style(x, error, scale).write) for x in numbers)
     return (label, *cells)
 
@@ -119,16 +115,16 @@ def _make_index_table(
     columns = tuple(OutputColumn(name, "text" if not name else "number") for name in names)
     rows: list[tuple[Cell, ...] | str] = []
     notes: list[str] = ["first order: of the parameter alone; total: including its interactions"]
-    for entry in statistics:
-        if entry.indices is None:
-            why = FLAT if entry.is_constant else FEW.format(len(laws) + 2, entry.samples)
-            notes.append(NO_INDICES.format(format_label(head, entry)) + why)
+    for one in statistics:
+        if one.indices is None:
+            why = FLAT if one.is_constant else FEW.format(len(laws) + 2, one.samples)
+            notes.append(NO_INDICES.format(format_label(head, one)) + why)
             continue
-        rows.append(f"{format_label(head, entry)}: {format_count(entry.samples, 'sample')}")
-        for law, index_pair in zip(laws, entry.indices, strict=True):
+        rows.append(f"{format_label(head, one)}: {format_count(one.samples, 'sample')}")
+        for law, index_pair in zip(laws, one.indices, strict=True):
             ends = [end for estimated in index_pair for end in estimated]
             cells = ("-" if end is None else NumberCell(end, write="{:.3f}".format) for end in ends)
             rows.append((law.name, *cells))
-        if entry.samples < MIN_INDEX_BOUNDED:
-            notes.append(UNBOUNDED.format(format_label(head, entry), entry.samples))
+        if one.samples < MIN_INDEX_BOUNDED:
+            notes.append(UNBOUNDED.format(format_label(head, one), one.samples))
     return OutputTable(INDICES, columns, tuple(rows), tuple(notes))

@@ -30,9 +30,9 @@ def make_row_table(head: SweepHead, selection: ShownRows, units: Units) -> Outpu
     """Make the table of the selected rows; marks stand after the least and the greatest value."""
     parameters = make_parameter_columns(head.plan)
     has_numbers = len(parameters) > 1
-    columns = [OutputColumn("variant", "text")] * has_numbers + [make_parameter_column(column) for column in parameters]
+    columns = [OutputColumn("variant", "text")] * has_numbers + [make_parameter_column(one) for one in parameters]
     cells: list[list[Cell]] = [
-        [row.number] * has_numbers + [to_cell(row.values[column.name]) for column in parameters]
+        [row.number] * has_numbers + [to_cell(row.values[one.name]) for one in parameters]
         for row in selection.rows.values()
     ]
     for measure in range(len(head.measures)):
@@ -60,9 +60,9 @@ def format_variant_count(number: int) -> str:
     return f"{number:,} variants" if number >= 1000 else format_count(number, "variant")
 
 
-def make_parameter_column(column: ParameterColumn) -> OutputColumn:
+def make_parameter_column(one: ParameterColumn) -> OutputColumn:
     """Make the column of a parameter."""
-    return OutputColumn(column.label, "text" if column.unit is None else "number", column.unit or "")
+    return OutputColumn(one.label, "text" if one.unit is None else "number", one.unit or "")
 
 
 def format_parameter(value: ParameterValue) -> str:
@@ -93,11 +93,11 @@ def _make_measure_columns(
     scale = size * largest_magnitude(selection.columns.values(k))
     results = [row.result.get_measure(k) for row in selection.rows.values()]
     cells: list[list[Cell]] = [[cell] for cell in _make_measure_cells(results, size, scale)]
-    instants = {reading.time for reading in results if reading.time is not None}
+    instants = {one.time for one in results if one.time is not None}
     if len(instants) > 1:
         columns.append(OutputColumn("at", "instant", "s", vector=vector_name))
-        for line, reading in zip(cells, results, strict=True):
-            line.append(None if reading.time is None else NumberCell(reading.time, write="{:.5g}".format))
+        for line, one in zip(cells, results, strict=True):
+            line.append(None if one.time is None else NumberCell(one.time, write="{:.5g}".format))
     best = selection.extremes[k]
     if best is not None and not best.is_constant:
         marks = pad_words(["", *(choose_mark(best, place) for place in selection.rows)])
@@ -129,10 +129,10 @@ def _make_measure_cells(results: Sequence[MeasureValue], size: float, scale: flo
     size: factor to the display unit
     scale: the largest value, in that unit
     """
-    known = [(size * reading.value, size * (reading.error or 0.0)) for reading in results if reading.value is not None]
+    known = [(size * one.value, size * (one.error or 0.0)) for one in results if one.value is not None]
     numbers = iter(trim_cells([(value, error, choose_number_style(value, error, scale)) for value, error in known]))
-    words = [MISSING_KINDS[reading.word].mark if reading.word else "" for reading in results]
-    return [next(numbers) if reading.value is not None else word for reading, word in zip(results, words, strict=True)]
+    words = [MISSING_KINDS[one.word].mark if one.word else "" for one in results]
+    return [next(numbers) if one.value is not None else word for one, word in zip(results, words, strict=True)]
 
 
 def choose_number_style(value: float, error: float, scale: float) -> Style:
@@ -210,9 +210,8 @@ def format_variant(plan: Plan, parameters: tuple[ParameterColumn, ...], number: 
     """Return the name of a variant: its value if there is one parameter, else its number."""
     if len(parameters) != 1:
         return f"variant {number}"
-    (column,) = parameters
-    text, unit = format_parameter(plan.find_values(number)[column.name]), f" {column.unit}" if column.unit else ""
-    return f"{column.name} = {text}{unit}"
+    (one,) = parameters
+    return f"{one.name} = {format_parameter(plan.find_values(number)[one.name])}{f' {one.unit}' if one.unit else ''}"
 
 
 def draw_courses(
@@ -252,9 +251,9 @@ def format_combination(plan: Plan, number: int) -> str:
     """Return the values that distinguish a sparkline from the others: `L = 0.1, case = warm`."""
     moving = {law.name for law in plan.draws.laws} if plan.draws is not None else {plan.axes[-1].name}
     values = plan.find_values(number)
-    fixed = [column for column in make_parameter_columns(plan) if column.name not in moving]
-    texts = ((column, format_parameter(values[column.name])) for column in fixed)
-    return ", ".join(f"{column.name} = {text}{f' {column.unit}' if column.unit else ''}" for column, text in texts)
+    fixed = [one for one in make_parameter_columns(plan) if one.name not in moving]
+    texts = ((one, format_parameter(values[one.name])) for one in fixed)
+    return ", ".join(f"{one.name} = {text}{f' {one.unit}' if one.unit else ''}" for one, text in texts)
 
 
 def list_jumps(head: SweepHead, selection: ShownRows, k: int, limit: int | None) -> list[str]:
