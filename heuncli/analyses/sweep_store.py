@@ -168,8 +168,8 @@ class StoredRows:
             for number, cells, measures, code, reason, warnings in found:
                 pairs = zip(self.columns, json.loads(cells), strict=True)
                 values = {column.name: column.make_value(cell) for column, cell in pairs}
-                measured = tuple(MeasureValue(*one) for one in json.loads(measures or "[]"))
-                answer = VariantResult(measured, code, reason, tuple(json.loads(warnings or "[]")))
+                readings = tuple(MeasureValue(*numbers) for numbers in json.loads(measures or "[]"))
+                answer = VariantResult(readings, code, reason, tuple(json.loads(warnings or "[]")))
                 yield SweptRow(number, values, answer)
 
 
@@ -200,9 +200,9 @@ def split_store_argument(word: str, option: str) -> tuple[str, int | None]:
 
 def choose_sweep(name: str, number: int | None, sweeps: list[StoredSweep], option: str) -> StoredSweep:
     """Return the sweep with that number, or the last. Raises UsageError."""
-    found = sweeps[-1:] if number is None else [one for one in sweeps if one.number == number]
+    found = sweeps[-1:] if number is None else [sweep for sweep in sweeps if sweep.number == number]
     if not found:
-        numbers = ", ".join(str(one.number) for one in sweeps)
+        numbers = ", ".join(str(sweep.number) for sweep in sweeps)
         message = f"{option} {name}: there is no sweep {number if number is not None else 'in it'}"
         raise UsageError(Problem("bad-option", message, hint=f"known: {numbers}" if numbers else "it is empty"))
     return found[0]
@@ -243,5 +243,5 @@ def _dump_values(values: Values) -> str:
 
 def _to_row(result: VariantResult) -> tuple[Any, ...]:
     """Return a result as its row in the table."""
-    measures = json.dumps([tuple(one) for one in result.measures]) if result.measures else ""
+    measures = json.dumps([tuple(reading) for reading in result.measures]) if result.measures else ""
     return measures, result.code, result.reason, json.dumps(result.warnings) if result.warnings else ""

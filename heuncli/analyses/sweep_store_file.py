@@ -129,7 +129,7 @@ def write_head(head: SweepHead) -> tuple[str, bytes | None]:
     """Return a head as JSON, and the draws, None if there are none."""
     plan, draws = head.plan, head.plan.draws
     block = head._asdict() | {
-        "measures": [tuple(one) for one in head.measures],
+        "measures": [tuple(measure) for measure in head.measures],
         "plan": plan._asdict() | {"draws": None if draws is None else draws._asdict() | {"values": draws.values.shape}},
     }
     return json.dumps(block), None if draws is None else draws.values.astype(DOUBLES).tobytes()
@@ -154,7 +154,7 @@ def read_head(text: str, values: bytes | None) -> SweepHead:
                 "values": values_by_row,
             }
         )
-    measures = tuple(MeasureLabel(*one) for one in block["measures"])
+    measures = tuple(MeasureLabel(*measure) for measure in block["measures"])
     stored_plan = Plan(**{**plan, "axes": axes, "columns": columns, "draws": draws})
     return SweepHead(**{**block, "measures": measures, "plan": stored_plan})
 

@@ -56,7 +56,9 @@ class VariantKeys:
         self.recipe, self.varies_cases = recipe, varies_cases
         self.source: SourceFile = read_source(recipe.path, recipe.text)
         self.settings = parse_settings(recipe.overrides)[0]
-        self.head = repr((VERSION, [tuple(one) for one in recipe.measures], select_options(recipe.options))).encode()
+        self.head = repr(
+            (VERSION, [tuple(request) for request in recipe.measures], select_options(recipe.options))
+        ).encode()
         self.files: dict[str, str] = {}
         self.cases: dict[str | None, CaseData] = {}
         self.texts: dict[str, Any] = {}

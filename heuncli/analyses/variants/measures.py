@@ -96,7 +96,7 @@ class VariantResult(NamedTuple):
     @property
     def is_complete(self) -> bool:
         """Whether all measures are known."""
-        return bool(self.measures) and all(one.value is not None for one in self.measures)
+        return bool(self.measures) and all(reading.value is not None for reading in self.measures)
 
     def get_measure(self, index: int) -> MeasureValue:
         """Return a measure; of a variant that could not be solved one without a number."""
@@ -120,7 +120,7 @@ class VariantResult(NamedTuple):
 
     def explain_first(self) -> Reason:
         """Return why the variant, or else the first of its measures that has no number, has none."""
-        reasons = (self.explain(index) for index, one in enumerate(self.measures) if one.value is None)
+        reasons = (self.explain(index) for index, reading in enumerate(self.measures) if reading.value is None)
         return next(reasons, Reason(self.code, self.reason))
 
 

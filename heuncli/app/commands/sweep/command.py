@@ -25,11 +25,16 @@ from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, is_same_file, parse_units, require_other_file, require_writable
 from heuncli.app.cli.variant_workers import require_job_count
-from heuncli.app.commands.sweep.axes import AxisArgument, parse_axis, parse_shard
-from heuncli.app.commands.sweep.axis_checks import find_problems, find_warnings
+from heuncli.app.commands.sweep.axes import (
+    AxisArgument,
+    find_problems,
+    find_warnings,
+    parse_axis,
+    parse_shard,
+    read_axes,
+)
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep, show_stored
-from heuncli.app.commands.sweep.variants_table import read_axes
 from heuncli.app.commands.sweep.writer import SweepOutput, require_writable_form
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.process import result_memory

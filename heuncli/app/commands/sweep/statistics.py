@@ -49,9 +49,9 @@ class ColumnBuffer:
         if row.result.code:
             self.failures[row.result.code] += 1
         results = row.result.measures or (None,) * len(self._values)
-        for place, one in enumerate(results):
-            self._values[place].append(np.nan if one is None or one.value is None else one.value)
-            self._errors[place].append(np.nan if one is None or one.error is None else one.error)
+        for place, reading in enumerate(results):
+            self._values[place].append(np.nan if reading is None or reading.value is None else reading.value)
+            self._errors[place].append(np.nan if reading is None or reading.error is None else reading.error)
 
     def __len__(self) -> int:
         return len(self._numbers)
@@ -204,13 +204,13 @@ class ExtremeRows:
 
     def add(self, row: SweptRow, place: int) -> None:
         """Keep the row if it has an extreme."""
-        for k, one in enumerate(row.result.measures):
-            if one.value is None:
+        for k, reading in enumerate(row.result.measures):
+            if reading.value is None:
                 continue
             for best, sign in ((self._least, 1.0), (self._greatest, -1.0)):
                 known = best[k]
-                if known is None or sign * one.value < sign * known[0]:
-                    best[k] = one.value, place, row
+                if known is None or sign * reading.value < sign * known[0]:
+                    best[k] = reading.value, place, row
 
     def iter_rows(self) -> Iterator[tuple[int, SweptRow]]:
         """Yield these rows with their indices."""

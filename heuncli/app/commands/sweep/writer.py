@@ -180,7 +180,7 @@ def _read_group(pa: Any, schema: Any, columns: SweepColumns, rows: Iterator[Swep
 
 def _list_types(pa: Any, columns: SweepColumns) -> list[Any]:
     """Return the types of the columns, in their order."""
-    of_parameters = [pa.string() if one.unit is None else pa.float64() for one in columns.parameters]
+    of_parameters = [pa.string() if column.unit is None else pa.float64() for column in columns.parameters]
     of_measures = [pa.float64()] * (3 * len(columns.measures))
     return [pa.int64(), *of_parameters, *of_measures, pa.string(), pa.string()]
 
@@ -233,7 +233,7 @@ def collect_warnings(head: SweepHead, rows: Iterable[SweptRow]) -> SweepWarnings
             else:
                 other_kinds += 1
         absent.update(
-            m.text for m, one in zip(head.measures, row.result.measures, strict=False) if one.word == "absent"
+            m.text for m, reading in zip(head.measures, row.result.measures, strict=False) if reading.word == "absent"
         )
     return SweepWarnings(count, codes, warnings, other_kinds, absent)
 

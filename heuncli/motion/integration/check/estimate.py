@@ -10,7 +10,8 @@ Gauss's methods keep it alive at any step: there B runs with Radau's method (`Me
 
 At small tolerances A's error may be no larger than what the moved start has grown to in B, and cancel it. Then a
 further run M starts from the moved start and runs as A does: |A - M| is what rounding grows to. The largest distance of
-any two runs counts, because rounding may put all of them on one side of the truth.
+any two runs counts, because rounding may put all of them on one side of the truth. Where A replaces a run that missed
+the tolerance, that run's B took the very steps of M, so M is read from B's polynomials.
 
 This module is the top of the package. Each package imports those below it:
 
