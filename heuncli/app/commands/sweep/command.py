@@ -1,4 +1,14 @@
-"""`heun sweep`: solve a scene with other values, one row per variant."""
+"""`heun sweep`: solve a scene with other values, one row per variant.
+
+What an axis such as n=1000:6000/51rpm passes through, from the command line to a cell:
+
+    AxisArgument      axes.py                            the word, or the column of a table, and what it varies
+    ParameterAxis     analyses/variants/parameters.py    the parameter, its values and their unit
+    Plan              analyses/variants/plans.py         all axes; gives each variant its number and its values
+    VariantResult     analyses/variants/measures.py      the measures of a variant (evaluation.py), as they are stored
+    SweptRow          analyses/sweep_rows.py             number, values and result, read back in order
+    NumberCell        tables.py                          in display units; or a line of CSV, JSON, Parquet (writer.py)
+"""
 
 from __future__ import annotations
 
@@ -25,16 +35,10 @@ from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.solving import make_solver_options, parse_overrides, split_spec_and_assignments
 from heuncli.app.cli.target import choose_format, is_same_file, parse_units, require_other_file, require_writable
 from heuncli.app.cli.variant_workers import require_job_count
-from heuncli.app.commands.sweep.axes import (
-    AxisArgument,
-    find_problems,
-    find_warnings,
-    parse_axis,
-    parse_shard,
-    read_axes,
-)
+from heuncli.app.commands.sweep.axes import AxisArgument, find_problems, find_warnings, parse_axis, parse_shard
 from heuncli.app.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.app.commands.sweep.running import SweepTask, run_sweep, show_stored
+from heuncli.app.commands.sweep.variants_table import read_axes
 from heuncli.app.commands.sweep.writer import SweepOutput, require_writable_form
 from heuncli.base.errors import Problem, SpecError
 from heuncli.base.process import result_memory
