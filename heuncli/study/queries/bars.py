@@ -225,6 +225,7 @@ class WholeBar:
         """Search the lowest and highest value of each quantity over the bar and the run, between places and samples."""
 
         def collect(results: Results) -> tuple[Channel, ...]:
+            """Return the section forces along this bar."""
             return make_section_channels(self.name, results.sections[self.name])[: len(RESULTANTS)]
 
         search = ChannelSearch(collect, self.stated_errors.find_error)

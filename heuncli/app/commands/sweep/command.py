@@ -1,4 +1,14 @@
-"""`heun sweep`: solve a scene with other values, one row per variant."""
+"""`heun sweep`: solve a scene with other values, one row per variant.
+
+What an axis such as n=1000:6000/51rpm passes through, from the command line to a cell:
+
+    AxisArgument      axes.py                            the word, or the column of a table, and what it varies
+    ParameterAxis     analyses/variants/parameters.py    the parameter, its values and their unit
+    Plan              analyses/variants/plans.py         all axes; gives each variant its number and its values
+    VariantResult     analyses/variants/measures.py      the measures of a variant (evaluation.py), as the store keeps it
+    SweptRow          analyses/sweep_rows.py             number, values and result, read back in order
+    NumberCell        tables.py                          in display units; or a line of CSV, JSON, Parquet (writer.py)
+"""
 
 from __future__ import annotations
 
