@@ -97,7 +97,7 @@ def read_spec(call: ReportCall, name: str, text: str) -> reports.ReportedSpec:
     spec_files = reports.DigestedFiles(name)
     scene, cases = load_with_cases(name, call.settings, not call.settings, text, spec_files)
     scene = set_captions(scene, call.title, call.labels.items())
-    cases = {case: set_captions(own, call.title, call.labels.items()) for case, own in cases.items()}
+    cases = {case: set_captions(case_scene, call.title, call.labels.items()) for case, case_scene in cases.items()}
     return reports.ReportedSpec(name, text, scene, cases, spec_files.digests)
 
 
