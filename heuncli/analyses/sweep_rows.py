@@ -92,16 +92,17 @@ class SweepColumns(NamedTuple):
         none.
         """
         measures = (head for text in self.measures for head in (text, f"{text} error", f"{text} at [s]"))
-        return [NUMBER, *(one.heading for one in self.parameters), *measures, CODE, REASON]
+        return [NUMBER, *(parameter.heading for parameter in self.parameters), *measures, CODE, REASON]
 
     def make_cells(self, row: SweptRow) -> list[Cell]:
         """Return the cells of a variant; None where there is no value."""
         measures: list[Cell] = [None] * (3 * len(self.measures))
-        for place, one in enumerate(row.result.measures):
-            measures[3 * place : 3 * place + 3] = (to_finite(number) for number in (one.value, one.error, one.time))
+        for place, measure in enumerate(row.result.measures):
+            numbers = (measure.value, measure.error, measure.time)
+            measures[3 * place : 3 * place + 3] = map(to_finite, numbers)
         return [
             row.number,
-            *(to_cell(row.values[one.name]) for one in self.parameters),
+            *(to_cell(row.values[parameter.name]) for parameter in self.parameters),
             *measures,
             row.result.code,
             explain_missing(row, self.measures),
