@@ -93,9 +93,8 @@ def _drop_field_rounding(field: AccelerationField, r: float) -> AccelerationFiel
 def _iter_body_actions(recovery: Recovery, spec: Spec, body: int) -> Iterator[BodyAction]:
     """Yield the body's share of every action; a joint's drive and stops are separate from its constraint load."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    for action in sorted(
-        recovery.separate_actions, key=lambda action: action.kind == "load"
-    ):  # constraint forces come first
+    constraints_first = sorted(recovery.separate_actions, key=lambda action: action.kind == "load")
+    for action in constraints_first:
         attached_ends = find_attachments(body, states, [action])
         sources = [OUTSIDE] * len(attached_ends) if action.spread else _find_sources(mechanism, action, body)
         for end, source in zip(attached_ends, sources, strict=True):
