@@ -110,7 +110,7 @@ class SweepColumns(NamedTuple):
 
 
 def make_columns(head: SweepHead) -> SweepColumns:
-    """Make the columns of a sweep."""
+    """Make the columns of a sweep: its parameters, then value, error and instant of each measure."""
     measures = tuple(f"{one.text} [{one.unit}]" if one.unit else one.text for one in head.measures)
     return SweepColumns(make_parameter_columns(head.plan), measures)
 

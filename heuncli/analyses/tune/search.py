@@ -85,7 +85,7 @@ def find_best(trials: Trials, weight: float | None, first: int = 0) -> Trial | N
 
 
 def run_cobyla(trials: Trials, start: Trial, step: float, weight: float | None) -> None:
-    """Run COBYLA from a variant."""
+    """Run COBYLA from a variant; step: the first, relative to the box. Impure: tries variants."""
     from scipy.optimize import NonlinearConstraint, minimize
 
     worst_goal = trials.find_worst_value(trials.compute_scaled_goal)

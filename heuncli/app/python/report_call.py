@@ -79,7 +79,7 @@ def write_called_report(call: ReportCall) -> bool:
 
 
 def make_report_options(call: ReportCall) -> reports.ReportOptions:
-    """Make the options of the report. Raises UsageError."""
+    """Convert the arguments of the call to the options of a report. Raises UsageError."""
     cases, chapters = split_names(call.case), split_names(call.chapters)
     return reports.ReportOptions(
         call.options,

@@ -125,7 +125,7 @@ def format_summary(results: Sequence[ReferenceResult]) -> str:
 
 
 def make_case_row(result: ReferenceResult) -> tuple[Cell, ...]:
-    """Make the row of a case."""
+    """Make the row of a case: how many numbers it has, how well they agree, or that it was not solved."""
     if result.check.error:
         return result.case.name, result.case.description, *[""] * 5, "not solved"
     wrong = sum(number.verdict != AGREES for number in result.numbers)
@@ -193,7 +193,7 @@ def _describe_table(part: TableComparison) -> str:
 
 
 def _make_number_row(comparison: NumberComparison) -> tuple[Cell, ...]:
-    """Make the row of a number."""
+    """Make the row of a number: published, computed, their difference, and the verdict."""
     last = f"{comparison.in_last_digits:.2g}" if comparison.published.last_digit else ""
     return (
         comparison.number.path,

@@ -75,7 +75,7 @@ def read_axes(path: str) -> tuple[AxisArgument, ...]:
 
 
 def _read_text(path: str, file: str) -> str:
-    """Read the text of the table. Raises SpecError."""
+    """Read the table as UTF-8; file: its name in locations. Raises SpecError."""
     try:
         return read_bytes(path, MAX_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError:
