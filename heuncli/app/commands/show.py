@@ -17,7 +17,7 @@ from heuncli.app.cli.solving import (
     print_warnings,
     require_cases,
 )
-from heuncli.app.cli.target import is_same_file, parse_units, require_other_file, require_writable
+from heuncli.app.cli.target import is_output, parse_units, require_other_file, require_writable
 from heuncli.app.films import FORMATS, FilmFormat, draw_film, find_format, find_programs, make_film
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem
@@ -166,7 +166,7 @@ def _require_glb(request: ShowRequest) -> str | None:
         message = f"--glb {name}: unknown file extension"
         raise UsageError(Problem("bad-option", message, hint=f"accepted: {GLB}"))
     require_writable(name, "--glb")
-    if is_same_file("/dev/stdout" if request.output == STDOUT else request.output, name):
+    if request.output is not None and is_output(name, request.output):
         raise UsageError(
             Problem("bad-option", f"--glb {name}: the page is written to this file", hint="name another file")
         )
