@@ -8,10 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from heuncli.analyses.tune.results import (
-    Trials,
-    TuneResults,
-)
+from heuncli.analyses.tune.results import Trials, TuneResults
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
@@ -31,8 +28,9 @@ from heuncli.app.cli.target import (
     require_writable,
 )
 from heuncli.app.cli.variant_workers import choose_job_count, make_death_result, require_job_count, solve_contained
+from heuncli.app.commands.tune.as_json import TunedScene, make_history
 from heuncli.app.commands.tune.options import FORMATS, TuneRequest, TuningOptions, make_task, parse_options
-from heuncli.app.commands.tune.page import TunedScene, make_document, make_history
+from heuncli.app.commands.tune.page import make_document
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.output.documents.as_data import iter_csv
 from heuncli.scene.file_format.models import Spec
