@@ -92,16 +92,17 @@ class SweepColumns(NamedTuple):
         none.
         """
         measures = (head for text in self.measures for head in (text, f"{text} error", f"{text} at [s]"))
-        return [NUMBER, *(one.heading for one in self.parameters), *measures, CODE, REASON]
+        return [NUMBER, *(parameter.heading for parameter in self.parameters), *measures, CODE, REASON]
 
     def make_cells(self, row: SweptRow) -> list[Cell]:
         """Return the cells of a variant; None where there is no value."""
         measures: list[Cell] = [None] * (3 * len(self.measures))
-        for place, one in enumerate(row.result.measures):
-            measures[3 * place : 3 * place + 3] = (to_finite(number) for number in (one.value, one.error, one.time))
+        for place, measure in enumerate(row.result.measures):
+            numbers = (measure.value, measure.error, measure.time)
+            measures[3 * place : 3 * place + 3] = map(to_finite, numbers)
         return [
             row.number,
-            *(to_cell(row.values[one.name]) for one in self.parameters),
+            *(to_cell(row.values[parameter.name]) for parameter in self.parameters),
             *measures,
             row.result.code,
             explain_missing(row, self.measures),
@@ -109,7 +110,7 @@ class SweepColumns(NamedTuple):
 
 
 def make_columns(head: SweepHead) -> SweepColumns:
-    """Make the columns of a sweep."""
+    """Make the columns of a sweep: its parameters, then value, error and instant of each measure."""
     measures = tuple(f"{one.text} [{one.unit}]" if one.unit else one.text for one in head.measures)
     return SweepColumns(make_parameter_columns(head.plan), measures)
 

@@ -229,6 +229,7 @@ def _write_directly(pieces: Iterable[bytes], path: str) -> None:
 
 
 def _resolve_target(name: str) -> FileTarget:
+    """Find what a name leads to, with its present status. Raises OSError."""
     descriptor = _find_descriptor(name)
     if descriptor is not None:
         return FileTarget(name, os.fstat(descriptor), descriptor)

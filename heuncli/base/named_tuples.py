@@ -37,18 +37,21 @@ class TupleMethods(tuple["Any", ...]):
 
     @classmethod
     def _make(cls, values: Iterable[Any]) -> Self:
+        """Make a tuple of an iterable of its values."""
         made = tuple.__new__(cls, values)
         if len(made) != len(cls._fields):
             raise TypeError(f"Expected {len(cls._fields)} arguments, got {len(made)}")
         return made
 
     def _replace(self, **changes: Any) -> Self:
+        """Return a copy with some fields changed."""
         made = self._make(map(changes.pop, self._fields, self))
         if changes:
             raise ValueError(f"Got unexpected field names: {list(changes)!r}")
         return made
 
     def _asdict(self) -> dict[str, Any]:
+        """Return the fields by name."""
         return dict(zip(self._fields, self))  # noqa: B905 - as many as there are fields
 
     def __getnewargs__(self) -> tuple[Any, ...]:

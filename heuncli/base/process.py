@@ -50,6 +50,7 @@ def _iter_remaining_memory() -> Iterator[float]:
 
 
 def _read_text(name: str) -> str:
+    """Read a file of the system."""
     with open(name, encoding="utf-8") as file:  # noqa: PTH123 - pathlib takes 3 ms
         return file.read()
 

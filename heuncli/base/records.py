@@ -84,8 +84,10 @@ def fields(instance: Any) -> dict[str, Any]:
 
 
 def _refuse_change(self: Any, name: str, *value: Any) -> None:
+    """Raise AttributeError: records are frozen."""
     raise AttributeError(f"{type(self).__name__}.{name} cannot be changed: records are frozen")
 
 
 def _repr(self: Any) -> str:
+    """Format a record with its fields."""
     return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in fields(self).items())})"

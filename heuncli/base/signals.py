@@ -82,6 +82,7 @@ class GracefulStop:
         os.close(self.written)
 
     def _stop(self, number: int, frame: FrameType | None) -> None:
+        """Note the first signal; end the process at the second."""
         if self.number:
             _handle_signal(number, frame)
         self.number = number
@@ -130,5 +131,6 @@ def exit_after_cleanup(code: int, line: bytes) -> None:
 
 
 def _handle_signal(number: int, frame: FrameType | None) -> None:
+    """Clean up, and end the process as the signal asks."""
     ignore_signals()
     exit_after_cleanup(128 + number, next(LINES[name] for name in LINES if getattr(_signal, name, None) == number))

@@ -63,6 +63,7 @@ def find_similar(word: str, *candidates: Collection[str]) -> str | None:
 
 
 def _most_similar(word: str, candidates: Iterable[str]) -> str | None:
+    """Return the candidate most similar to a word, in any case; None if none is close."""
     import difflib  # only on the way to an error
 
     comparable = [name for name in candidates if len(name) <= MAX_WORD_LENGTH]

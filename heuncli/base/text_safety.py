@@ -36,6 +36,7 @@ def escape_all(text: str) -> str:
 
 
 def _unicode_escape(code: int) -> str:
+    """Escape a character as in JSON."""
     if code < 0x10000:
         return f"\\u{code:04x}"
     high, low = divmod(code - 0x10000, 0x400)

@@ -211,6 +211,7 @@ class _UnitReader:
         self.advance()
 
     def iter_tokens(self, text: str) -> Iterator[str]:
+        """Yield the tokens of a unit. Raises Finding."""
         position, text = 0, text.rstrip()
         while position < len(text):
             match = TOKEN.match(text, position)
@@ -221,9 +222,11 @@ class _UnitReader:
             yield match[0].strip()
 
     def advance(self) -> None:
+        """Go to the next token."""
         self.token = next(self.tokens, None)
 
     def read_product(self) -> tuple[float, Dimension]:
+        """Read factors up to the end or a closing parenthesis."""
         size, dimension = self.read_power()
         while self.token is not None and self.token != ")":
             sign = 1
@@ -236,6 +239,7 @@ class _UnitReader:
         return size, dimension
 
     def read_power(self) -> tuple[float, Dimension]:
+        """Read a factor and its power."""
         size, dimension = self.read_factor()
         exponent = 1
         if self.token in ("^", "**"):
@@ -255,6 +259,7 @@ class _UnitReader:
         return size**exponent, (dimension[0] * exponent, dimension[1] * exponent, dimension[2] * exponent)
 
     def read_factor(self) -> tuple[float, Dimension]:
+        """Read a symbol, 1, or a product in parentheses."""
         token = self.token
         self.advance()
         if token == "(" and self.depth < 8:

@@ -54,6 +54,7 @@ def parse_cut(word: str) -> CutSelector:
 
 
 def _unit_in_metres(word: str, unit: str) -> float:
+    """Return the size of a unit of length [m]. Raises Finding."""
     if not unit:
         return 1.0
     try:
@@ -84,7 +85,7 @@ def find_cut_rows(word: str, s: Array, sides: Sequence[str | None] | None) -> li
     """Return the rows that a word selects: one, or the two of a cut if the side is not given.
 
     s: the distances of the rows
-    sides: just before or beyond a load, None before the run
+    sides: just before or beyond a load; None where no load acts
 
     Raises Finding.
     """

@@ -97,6 +97,7 @@ def _make_tree() -> Node:
 
 
 def _insert_row(tree: Node, path: Sequence[str], row: Quantity) -> None:
+    """Insert a row into the tree at the words of its path."""
     for word in path[:-1]:
         child = tree.setdefault(word, {})
         assert isinstance(child, dict), row.path
@@ -131,6 +132,7 @@ def find_quantity(keys: Iterable[str]) -> Quantity | None:
 
 @lru_cache(maxsize=10_000)  # the paths of a scene, which every look at some of its instants goes through
 def _find_quantity(keys: tuple[str, ...]) -> Quantity | None:
+    """Return the row at some keys, or None."""
     node = find_node(keys)
     return node if isinstance(node, Quantity) else None
 
@@ -142,6 +144,7 @@ def is_block_or_words(keys: Sequence[str]) -> bool:
 
 @lru_cache(maxsize=10_000)
 def _is_no_number(keys: tuple[str, ...]) -> bool:
+    """Return whether keys lead to a block, or to or through words."""
     rows = (find_quantity(keys[:n]) for n in range(1, len(keys) + 1))
     return isinstance(find_node(keys), dict) or any(row is not None and row.is_words for row in rows)
 

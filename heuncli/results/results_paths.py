@@ -181,6 +181,7 @@ def _select_cut(
 
 
 def _parse_index(path: str, keys: Sequence[str], word: str, axis: Axis, size: int) -> int:
+    """Return the index that a word selects on an axis. Raises SpecError [unknown-path]."""
     index = axis.find_index(word, size)
     if index is None:
         allowed = [*axis.letters] or ["0" if size == 1 else f"0 ... {size - 1}"] if size else []
@@ -189,6 +190,7 @@ def _parse_index(path: str, keys: Sequence[str], word: str, axis: Axis, size: in
 
 
 def _to_array(path: str, keys: Sequence[str], node: Any) -> Array:
+    """Return a value as an array; None is nan. Raises SpecError [unknown-path]."""
     try:
         return np.asarray(np.nan if node is None else node, dtype=np.float64)
     except (TypeError, ValueError):
@@ -198,6 +200,7 @@ def _to_array(path: str, keys: Sequence[str], node: Any) -> Array:
 def _unknown_path_error(
     path: str, keys: Sequence[str], word: str, known_names: Collection[str], empty: str | None = None
 ) -> SpecError:
+    """Make the error of a path that leads nowhere, with the names known there."""
     names = list(known_names)
     parent = ".".join(keys) or "the results"
     what = f"{parent} has no '{word}'" if word else f"{parent} is not a number"

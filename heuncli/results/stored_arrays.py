@@ -80,6 +80,7 @@ class StoredArray:
             raise _write_error(reason) from None
 
     def _read(self, first: int, count: int) -> Array:
+        """Read numbers of the array. Raises OutputError."""
         values = np.empty(count)
         self._store.file.seek(self._begin + BYTES_PER_NUMBER * first)
         if self._store.file.readinto(values.data) != values.nbytes:
@@ -118,6 +119,7 @@ class ArrayStore:
 
 
 def _write_error(reason: OSError) -> OutputError:
+    """Make the error of a temporary file that cannot be written."""
     message = f"temporary results file: {reason.strerror or reason}"
     return OutputError(
         Problem("output-failed", message, hint="TMPDIR names the folder for it; or request fewer results: --only")

@@ -30,7 +30,7 @@ def test_what_would_not_fit_is_refused_with_what_would(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
     left, told = (2e6, "1 MB") if "format" in words else (2e7, "10 MB")  # what is exported takes its states alone
-    monkeypatch.setattr(process, "_left", lambda: iter([left]))
+    monkeypatch.setattr(process, "_iter_remaining_memory", lambda: iter([left]))
     many = (folder / "swinging.yaml").read_text().replace("samples: 11", "samples: 100001")
     (folder / "many.yaml").write_text(many)
     done = heun(*words.split(), "many.yaml")
@@ -53,12 +53,12 @@ def test_steps_that_are_known_before_are_counted(heun: Heun, folder: Path, monke
         "forces: {f: {type: force, on: b.p, vector: ['table(f, t)', 0, 0]}}\nanalysis: {duration: 1, samples: 3}\n"
     )
     (folder / "dense.yaml").write_text(scene)
-    monkeypatch.setattr(process, "_left", lambda: iter([8e6]))
+    monkeypatch.setattr(process, "_iter_remaining_memory", lambda: iter([8e6]))
     done = heun("run", "dense.yaml")
     assert (done.returncode, done.stdout) == (4, "")
     assert "loads and drives have 10,000 jumps or kinks" in done.stderr and "[too-much-memory]" in done.stderr
     assert "hint: a shorter duration, or tables with fewer points" in done.stderr
-    monkeypatch.setattr(process, "_left", lambda: iter([8e8]))
+    monkeypatch.setattr(process, "_iter_remaining_memory", lambda: iter([8e8]))
     assert heun("run", "dense.yaml", "--quiet").returncode == 0
 
 

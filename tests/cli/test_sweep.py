@@ -257,7 +257,7 @@ def test_a_terminal_shows_the_rate_and_what_is_left(scene: Path) -> None:
 def test_a_variant_that_would_not_fit_into_memory_is_refused_alone(
     heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(process, "_left", lambda: iter([2e6]))
+    monkeypatch.setattr(process, "_iter_remaining_memory", lambda: iter([2e6]))
     done = sweep(heun, "analysis.samples=3,100001", "--jobs", "1")
     assert [row["code"] for row in rows(done)] == ["", "too-much-memory"]
 

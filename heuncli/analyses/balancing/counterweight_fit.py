@@ -196,9 +196,9 @@ def refine_products(constant: Array, candidates: Sequence[Candidate], U: Array) 
 
     def compute_gradient(x: Array) -> tuple[Array, Array]:
         """Return the gradient of half the squared residual, and the Jacobian."""
-        own = x.reshape(-1, 2)
-        J = np.concatenate([one.slope(each) for one, each in zip(active_candidates, own, strict=True)], axis=1)
-        return J.T @ compute_residual(constant, active_candidates, own), J
+        products = x.reshape(-1, 2)
+        J = np.concatenate([one.slope(each) for one, each in zip(active_candidates, products, strict=True)], axis=1)
+        return J.T @ compute_residual(constant, active_candidates, products), J
 
     x = U[active].ravel()
     for _ in range(MAX_STEPS):

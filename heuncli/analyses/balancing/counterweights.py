@@ -86,7 +86,7 @@ def find_least_weights(
     linear = [one.is_linear(largest_effect) for one in candidates]
     require_radii([one for one, is_linear in zip(candidates, linear, strict=True) if not is_linear])
     U, several = solve_products(unbalanced, candidates, linear, largest_effect)
-    weights = tuple(make_weight(one, own) for one, own in zip(candidates, U, strict=True))
+    weights = tuple(make_weight(candidate, product) for candidate, product in zip(candidates, U, strict=True))
     return CounterweightSolution(weights, several, all(linear))
 
 
@@ -146,10 +146,10 @@ def find_rotation_axis(cycle: Cycle, weight_place: WeightPlace) -> Array:
     """Return the direction, body axes (3,), about which a body turns at all times. Raises SolveError [no-counterweight]
     if there is none.
     """
-    own = np.einsum("tji,tj->ti", cycle.states.R[:, weight_place.body], cycle.states.omega[:, weight_place.body])
-    _, sizes, directions = np.linalg.svd(own, full_matrices=False)
+    rotations = np.einsum("tji,tj->ti", cycle.states.R[:, weight_place.body], cycle.states.omega[:, weight_place.body])
+    _, sizes, directions = np.linalg.svd(rotations, full_matrices=False)
     name = cycle.mechanism.bodies[weight_place.body].name
-    if sizes[0] <= tolerances.SAME_VALUE * math.sqrt(len(own)):
+    if sizes[0] <= tolerances.SAME_VALUE * math.sqrt(len(rotations)):
         message = f"bodies.{name} does not rotate: a weight on it only adds to the reciprocating mass"
         raise SolveError(Problem("no-counterweight", message, hint="name a point of a crank or a coupler"))
     if sizes[1] > tolerances.PARALLEL * sizes[0]:
@@ -260,7 +260,7 @@ def find_counterbalance(
         lever=lever if objective == "mix" else None,
         several=solution.several,
         orders=rows,
-        summaries={name: format_remaining_orders(own) for name, own in rows.items()},
+        summaries={name: format_remaining_orders(of_kind) for name, of_kind in rows.items()},
         loads_without=before,
         loads_with=after,
         notes=notes,

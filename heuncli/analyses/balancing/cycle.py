@@ -80,8 +80,8 @@ class FollowedScene:
             assert isinstance(nodes, PieceNodes)
             order, x = np.arange(len(nodes.places)), nodes.places
         states = self.compute_states(x)
-        own = BodyStates(**{name: values[order] for name, values in fields(states).items()})
-        return Cycle(self.scene.mechanism, nodes, own, self.scene.layout.size)
+        ordered_states = BodyStates(**{name: values[order] for name, values in fields(states).items()})
+        return Cycle(self.scene.mechanism, nodes, ordered_states, self.scene.layout.size)
 
     def compute_states(self, x: Array) -> BodyStates:
         """Return the body states at places of the run (n,), ascending [rad], at unit rate."""
@@ -139,7 +139,7 @@ def make_driven_mechanism(mechanism: Mechanism, plan: CyclePlan, rate: float, wi
         angle = compile_expression(f"{plan.begin!r} + ({rate!r})*t", Scope(in_time=True))
         drive = Drive(DRIVE, plan.joint, "angle", angle, zero_assembled=True)
         joints = tuple(replace(j, drive=drive if j.name == plan.joint else None) for j in joints)
-    couplings = tuple(make_cam_two_sided(own) for own in mechanism.couplings)
+    couplings = tuple(make_cam_two_sided(coupling) for coupling in mechanism.couplings)
     driven = replace(mechanism, joints=joints, couplings=couplings, impulses=(), conditions=())
     return driven if with_loads else replace(driven, loads=(), gravity=np.zeros(3), points={})
 

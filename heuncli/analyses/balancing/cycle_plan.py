@@ -65,7 +65,7 @@ def require_no_contacts(mechanism: Mechanism) -> None:
     """
     names = [stop.path for stop in mechanism.stops]
     names += [f"joints.{joint.name}" for joint in mechanism.joints if joint.can_open]
-    names += [f"couplings.{own.name}" for own in mechanism.couplings if can_open(own)]
+    names += [f"couplings.{coupling.name}" for coupling in mechanism.couplings if can_open(coupling)]
     hint = "leave it out; or use --period for the orders of a periodic motion"
     if names:
         raise SolveError(*(
@@ -87,9 +87,10 @@ def can_open(coupling: Coupling) -> bool:
 def describe_cam_assumptions(mechanism: Mechanism) -> tuple[str, ...]:
     """Return notes on cams that only press: the cycle is computed as if their followers never lifted off."""
     return tuple(
-        f"the follower of cam {own.name} is assumed to stay on its cam; `heun run` shows where contact would be lost"
-        for own in mechanism.couplings
-        if own.entry.type == "cam" and any(row.tension_only for row in own.rows)
+        f"the follower of cam {coupling.name} is assumed to stay on its cam; "
+        "`heun run` shows where contact would be lost"
+        for coupling in mechanism.couplings
+        if coupling.entry.type == "cam" and any(row.tension_only for row in coupling.rows)
     )
 
 
@@ -157,8 +158,8 @@ def find_scene_rate(mechanism: Mechanism, scene: PreparedScene, joint: Joint) ->
 def count_turns(mechanism: Mechanism, joint: Joint) -> int:
     """Return 2 if a law in the cycle's angle repeats after two turns and not after one, else 1."""
     values = [value for load in mechanism.loads for value in load.values if not value.time_dependent]
-    own = [value for value in values if value.uses and all(name == joint.name for name, _ in value.uses)]
-    return 2 if any(has_two_turn_period(value) for value in own) else 1
+    angle_laws = [value for value in values if value.uses and all(name == joint.name for name, _ in value.uses)]
+    return 2 if any(has_two_turn_period(value) for value in angle_laws) else 1
 
 
 def has_two_turn_period(value: Expression) -> bool:

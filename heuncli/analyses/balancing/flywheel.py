@@ -90,9 +90,9 @@ class WorkCurve:
         def evaluate_rate(x: Array) -> tuple[Array, Array]:
             """Return the speed at x and its slope."""
             W, k, eps, half = self.interpolate(x)
-            own = np.sqrt(2.0 * np.maximum(E0 + W, 0.0) / (eps + J))
+            rates = np.sqrt(2.0 * np.maximum(E0 + W, 0.0) / (eps + J))
             with np.errstate(divide="ignore", invalid="ignore"):
-                return own, (k - half * own * own) / (own * (eps + J))
+                return rates, (k - half * rates * rates) / (rates * (eps + J))
 
         return find_extremes(self.x, w, (self.k - self.half_slope * w * w) / (w * (self.eps + J)), evaluate_rate)
 

@@ -225,7 +225,11 @@ def sum_load_powers(recovery: Recovery) -> Array:
     mechanism = recovery.setup.scene.mechanism
     masses = np.array([body.mass for body in mechanism.bodies])
     weight = np.einsum("n,tni,i->t", masses, recovery.states.v_centre, mechanism.gravity)
-    ropes = [rope_power(recovery.states, own) for own in recovery.couplings if own.coupling.stretched_row is not None]
+    ropes = [
+        rope_power(recovery.states, coupling)
+        for coupling in recovery.couplings
+        if coupling.coupling.stretched_row is not None
+    ]
     return np.stack([*(load.power for load in recovery.loads), *ropes, weight], axis=1)
 
 
@@ -244,9 +248,9 @@ def compute_cycle_loads(
 
     def compute_columns(recovery: Recovery) -> Array:
         """Compute the squares of the loads, (n, loads), and note which are indeterminate."""
-        own = compute_squares(recovery, plan, reference_point)
-        indeterminate.update(name for name, values in own.items() if np.isnan(values).any())
-        return np.nan_to_num(np.stack([own[name] for name in names], axis=1))
+        squares = compute_squares(recovery, plan, reference_point)
+        indeterminate.update(name for name, values in squares.items() if np.isnan(values).any())
+        return np.nan_to_num(np.stack([squares[name] for name in names], axis=1))
 
     numbers = scene.resolve_numbers(
         compute_columns,
@@ -257,8 +261,8 @@ def compute_cycle_loads(
         {name: numbers.values[:, k] for k, name in enumerate(names)}, numbers.nodes
     )
     loads = {
-        name: CycleLoad(None, None) if name in indeterminate else CycleLoad(own.rms, own.peak, own.error)
-        for name, own in residuals.items()
+        name: CycleLoad(None, None) if name in indeterminate else CycleLoad(residual.rms, residual.peak, residual.error)
+        for name, residual in residuals.items()
     }
     return loads, numbers.notes
 
@@ -273,8 +277,8 @@ def compute_squares(recovery: Recovery, plan: CyclePlan, reference_point: Array)
     squared = {"force": np.sum(ma.sum(axis=1) ** 2, axis=1), "moment": np.sum(moment**2, axis=1)}
     joints: Mapping[str, Mapping[str, Array]] = make_blocks(recovery, frozenset({"joints"}))["joints"]
     squared["drive"] = joints[plan.joint]["drive"] ** 2
-    for name, own in joints.items():
-        squared[f"joints.{name}"] = own["radial"] ** 2 if "radial" in own else np.sum(own["force"] ** 2, axis=1)
+    for name, joint in joints.items():
+        squared[f"joints.{name}"] = joint["radial"] ** 2 if "radial" in joint else np.sum(joint["force"] ** 2, axis=1)
     return squared
 
 
@@ -297,7 +301,7 @@ def compare_loads(
     rate = plan.rate or 1.0
     mechanisms: Sequence[Mechanism] = (scene.mechanism, heavier)
     (before, notes), (after, more) = (
-        compute_cycle_loads(make_loaded_scene(spec, scene, own, plan, rate), plan, reference_point)
-        for own in mechanisms
+        compute_cycle_loads(make_loaded_scene(spec, scene, mechanism, plan, rate), plan, reference_point)
+        for mechanism in mechanisms
     )
     return before, after, (*notes, *more)

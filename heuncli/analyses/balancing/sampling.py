@@ -50,7 +50,7 @@ def sample_evenly(followed_scene: FollowedScene, reference_point: Array) -> Cycl
         cycle = followed_scene.evaluate_cycle(followed_scene.make_even_nodes(count))
         effects = compute_mass_effects(cycle, reference_point)
         kinds = {"force": effects.force, "moment": effects.moment, "torque": effects.half_slope}
-        largest_tail = max(relative_tail(own, TAIL_FRACTION, effects.terms[name]) for name, own in kinds.items())
+        largest_tail = max(relative_tail(values, TAIL_FRACTION, effects.terms[name]) for name, values in kinds.items())
         is_rounding = largest_tail < tolerances.CANCELS and largest_tail * MIN_REDUCTION > previous_tail
         if largest_tail <= tolerances.ORDERS_SETTLED or is_rounding:
             return cycle if is_resolved(followed_scene, cycle, reference_point) else None
@@ -152,17 +152,17 @@ def compute_residuals(
 def compute_vector_magnitudes(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Residual]:
     """Return rms and peak of the magnitudes of vectors (n, c) of several kinds."""
     values = np.concatenate([*kinds.values()], axis=1)
-    interpolant, ends = nodes.interpolate(values), np.cumsum([own.shape[1] for own in kinds.values()])
+    interpolant, ends = nodes.interpolate(values), np.cumsum([vectors.shape[1] for vectors in kinds.values()])
     value_errors = nodes.estimate_errors(values).value
-    slices = [slice(end - own.shape[1], end) for own, end in zip(kinds.values(), ends, strict=True)]
+    slices = [slice(end - vectors.shape[1], end) for vectors, end in zip(kinds.values(), ends, strict=True)]
     errors = np.array([math.sqrt(float(np.sum(value_errors[part] ** 2))) for part in slices])
 
     def compute_squares(x: Array) -> Array:
         """Return the squared magnitude of each vector at places."""
-        own = interpolant(x) ** 2
-        return np.stack([own[:, part].sum(axis=1) for part in slices], axis=1)
+        squared = interpolant(x) ** 2
+        return np.stack([squared[:, part].sum(axis=1) for part in slices], axis=1)
 
-    means = [float(nodes.weights @ np.sum(own**2, axis=1)) for own in kinds.values()]
+    means = [float(nodes.weights @ np.sum(vectors**2, axis=1)) for vectors in kinds.values()]
     peaks = find_peaks(compute_squares, nodes, errors)
     return {
         name: Residual(math.sqrt(mean), peak, at, error)
@@ -290,5 +290,5 @@ def select_shown_orders(orders: dict[str, tuple[OrderRow, ...]]) -> tuple[float,
 
 def select_largest(sizes: Sequence[tuple[float, float]], count: int) -> tuple[float, ...]:
     """Return the `count` largest orders, ascending; of equal ones the first."""
-    chosen = sorted(sizes, key=lambda own: (-own[1], own[0]))[:count] if len(sizes) > count else sizes
+    chosen = sorted(sizes, key=lambda item: (-item[1], item[0]))[:count] if len(sizes) > count else sizes
     return tuple(sorted(order for order, _ in chosen))

@@ -90,7 +90,7 @@ def add_load_torque(
 
 
 def assemble_scene(spec: Spec) -> PreparedScene:
-    """Return the assembled scene."""
+    """Assemble the scene in the pose of its first instant, without its sections."""
     mechanism, _ = build_with_cuts(spec._replace(sections={}))
     t = spec.analysis.times[0] if spec.analysis.type == "state" and spec.analysis.times else 0.0
     return prepare_coupled(mechanism, t)

@@ -288,7 +288,7 @@ def _compute_rate(layout: Layout, name: str, states: BodyStates) -> tuple[Array,
     mechanism = layout.mechanism
     joint = next((joint for joint in mechanism.joints if joint.name == owner), None)
     if quantity in RODRIGUES_NAMES:
-        body = next(i for i, own in enumerate(mechanism.bodies) if own.name == owner)
+        body = next(i for i, other in enumerate(mechanism.bodies) if other.name == owner)
         k = RODRIGUES_NAMES.index(quantity)
         rate, acceleration = compute_rodrigues_rates(
             states.R[:, body], states.omega[:, body], states.alpha[:, body], owner
@@ -324,7 +324,7 @@ def get_rotation(states: BodyStates, body: int) -> tuple[Array, Array]:
 
 def get_body_rate(mechanism: Mechanism, name: str, quantity: str, states: BodyStates) -> tuple[Array, Array]:
     """Return a component of the angular velocity, or of the centre's velocity, of a free body, and its derivative."""
-    body = next(i for i, own in enumerate(mechanism.bodies) if own.name == name)
+    body = next(i for i, other in enumerate(mechanism.bodies) if other.name == name)
     k = "xyz".index(quantity[-1])
     if quantity.startswith("d"):
         return states.v_centre[:, body, k], states.a_centre[:, body, k]

@@ -72,9 +72,11 @@ def find_inertia_curve(spec: Spec, coordinate_range: CoordinateRange) -> Inertia
 
 
 def compute_mean(curve: InertiaCurve) -> tuple[float, float]:
-    """Return the mean of e over the range, and its difference from that of every other value, by the Euler-Maclaurin
-    sum.         integral = sum h (e_i + e_i+1)/2 + h^2 (e'_i - e'_i+1)/12 Over a whole turn the slopes cancel, and the
-    trapezoidal rule is as accurate as e is smooth.
+    """Return the mean of e over the range, and its difference from that of every other value.
+
+    By the Euler-Maclaurin sum:
+        integral = sum h (e_i + e_i+1)/2 + h^2 (e'_i - e'_i+1)/12
+    Over a whole turn the slopes cancel, and the trapezoidal rule is as accurate as e is smooth.
     """
     e, slope, length = curve.epsilon, 2.0 * curve.half, float(curve.values[-1] - curve.values[0])
 

@@ -73,7 +73,7 @@ class RateSlopes:
 
         Zero if s is a freedom of the tree.
         """
-        k = next(i for i, own in enumerate(self.layout.mechanism.joints) if own.name == joint.name)
+        k = next(i for i, other in enumerate(self.layout.mechanism.joints) if other.name == joint.name)
         if k not in self.layout.counters:
             return np.zeros(relative_change.shape[1])
         assert joint.path is not None
@@ -99,8 +99,8 @@ class RateSlopes:
         """Return where a point of a body is, (3,) in the world."""
         if body == GROUND:
             return point
-        k, own = self.layout.place[body], self.layout.mechanism.bodies[body]
-        return np.asarray(self.linear_equations.centres[k] + self.linear_equations.attitudes[k] @ (point - own.center))
+        k, center = self.layout.place[body], self.layout.mechanism.bodies[body].center
+        return np.asarray(self.linear_equations.centres[k] + self.linear_equations.attitudes[k] @ (point - center))
 
     def _compute_velocity(self, body: int, place: Array) -> Array:
         """Return the velocity of a body at a place, (3,) in the world."""

@@ -224,7 +224,7 @@ def select_inputs(instant: Instant, choice: CoordinateChoice, requested: Sequenc
     if not requested:
         loads = instant.freed_scene.layout.mechanism.loads
         with_direction = [
-            own.name for own in loads if not isinstance(own, PointLoad) or find_direction(own) is not None
+            load.name for load in loads if not isinstance(load, PointLoad) or find_direction(load) is not None
         ]
         return StateSpaceInputs(tuple(dict.fromkeys(name for name in forces if name in with_direction)), ())
     wrong = [name for name in requested if name not in forces and name not in drives]
@@ -245,7 +245,7 @@ def select_inputs(instant: Instant, choice: CoordinateChoice, requested: Sequenc
 def find_drive_name(instant: Instant, coordinate: str) -> str:
     """Return the name of the drive of a coordinate."""
     joint = coordinate.rpartition(".")[0]
-    drives = (own.drive for own in instant.setup.scene.mechanism.joints if own.name == joint)
+    drives = (other.drive for other in instant.setup.scene.mechanism.joints if other.name == joint)
     return next(drive.name for drive in drives if drive is not None)
 
 

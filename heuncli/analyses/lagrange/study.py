@@ -264,7 +264,7 @@ def list_applied_actions(layout: Layout, instant: Instant, states: BodyStates) -
 
 def list_constraint_actions(instant: Instant) -> list[Action]:
     """Return the constraint forces of joints and couplings."""
-    constraint_couplings = [own for own in instant.recovery.couplings if own.coupling.stretched_row is None]
+    constraint_couplings = [loads for loads in instant.recovery.couplings if loads.coupling.stretched_row is None]
     return [
         *list_whole_joint_actions(instant.recovery.kernel_joint_loads),
         *list_coupling_actions(constraint_couplings),

@@ -52,7 +52,13 @@ def collect_actions(recovery: Recovery, spec: Spec, body: int) -> list[tuple[Poi
     center = recovery.setup.scene.mechanism.bodies[body].center
     count = len(recovery.solutions.times)
     return [
-        _merge_actions([one for own in body_actions for one in _iter_point_actions(own, k, points_by_name, center)])
+        _merge_actions(
+            [
+                point_action
+                for action in body_actions
+                for point_action in _iter_point_actions(action, k, points_by_name, center)
+            ]
+        )
         for k in range(count)
     ]
 
@@ -87,12 +93,13 @@ def _drop_field_rounding(field: AccelerationField, r: float) -> AccelerationFiel
 def _iter_body_actions(recovery: Recovery, spec: Spec, body: int) -> Iterator[BodyAction]:
     """Yield the body's share of every action; a joint's drive and stops are separate from its constraint load."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    for action in sorted(recovery.separate_actions, key=lambda own: own.kind == "load"):  # constraint forces come first
+    constraints_first = sorted(recovery.separate_actions, key=lambda action: action.kind == "load")
+    for action in constraints_first:
         attached_ends = find_attachments(body, states, [action])
         sources = [OUTSIDE] * len(attached_ends) if action.spread else _find_sources(mechanism, action, body)
-        for own, source in zip(attached_ends, sources, strict=True):
+        for end, source in zip(attached_ends, sources, strict=True):
             yield BodyAction(
-                _get_kind(action, spec, bool(recovery.given_actions)), action.name, source, own, bool(action.spread)
+                _get_kind(action, spec, bool(recovery.given_actions)), action.name, source, end, bool(action.spread)
             )
 
 

@@ -1,5 +1,6 @@
-"""Assemble the load cases of one body of a solved scene: balanced, unique, within the horizon, or refused. Study ->
-LoadCases      the requested instants decide when, actions.py what acts
+"""Assemble the load cases of one body of a solved scene: balanced, unique, within the horizon, or refused.
+
+Study -> LoadCases        the requested instants say when, actions.py says what acts
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def assemble_load_cases(study: Study, body: str, requested: Sequence[InstantRequ
     and for instants that do not exist.
     """
     mechanism = study.setup.scene.mechanism
-    index = next((i for i, one in enumerate(mechanism.bodies) if one.name == body), None)
+    index = next((i for i, other in enumerate(mechanism.bodies) if other.name == body), None)
     if index is None:
         message = f"{body}: left out, because no requested result depends on it"
         raise UsageError(Problem("bad-option", message, hint="solve the whole model: without only="))
@@ -64,7 +65,7 @@ def assemble_load_cases(study: Study, body: str, requested: Sequence[InstantRequ
     errors = results.accuracy.get("estimate", {})
     return LoadCases(
         body=loaded_body,
-        cases=tuple(cases[one] for one in instants),
+        cases=tuple(cases[instant] for instant in instants),
         title=results.title,
         spec=results.spec["path"] or "",
         digest=results.spec["sha256"],
@@ -78,39 +79,40 @@ def _iter_instant_cases(
     study: Study, body: int, instants: Sequence[LoadCaseInstant]
 ) -> Iterator[tuple[LoadCaseInstant, LoadCase]]:
     """Yield the cases that are not impulses."""
-    requested = [one for one in instants if one.impulse is None]
+    requested = [instant for instant in instants if instant.impulse is None]
     if not requested:
         return
-    times = np.array(sorted({one.time for one in requested}))
+    times = np.array(sorted({instant.time for instant in requested}))
     reports = ALL_JOINTS.reports
     recovery = study.recovery if study.has_one_instant else study.find_recovery(times, reports)
     recovery = _include_joints(body, recovery)
     joints = study.compose_reports(recovery, reports).joints
     require_unique(recovery, body, joints, recovery.solutions.times)
     actions, fields = collect_actions(recovery, study.spec, body), compute_fields(recovery, body)
-    for one in requested:
-        k = 0 if study.has_one_instant else int(np.searchsorted(times, one.time))
-        yield one, LoadCase(one.name, one.time, actions[k], fields[k])
+    for instant in requested:
+        k = 0 if study.has_one_instant else int(np.searchsorted(times, instant.time))
+        yield instant, LoadCase(instant.name, instant.time, actions[k], fields[k])
 
 
 def _iter_impulse_cases(
     study: Study, body: int, instants: Sequence[LoadCaseInstant]
 ) -> Iterator[tuple[LoadCaseInstant, LoadCase]]:
     """Yield the cases of impulses, solved as loads at rest, with jumps of velocities as accelerations."""
-    requested = [one for one in instants if one.impulse is not None]
+    requested = [instant for instant in instants if instant.impulse is not None]
     if not requested or study.impulse_results is None:
         return
     recovery = _include_joints(body, study.impulse_results.recovery)
-    impulse_indices = np.array([one.impulse for one in requested])
+    impulse_indices = np.array([instant.impulse for instant in requested])
     joints = {
         name: _select_rows(block, impulse_indices)
         for name, block in make_blocks(recovery, ALL_JOINTS.reports)["joints"].items()
     }
-    require_unique(recovery, body, joints, np.array([one.time for one in requested]))
+    require_unique(recovery, body, joints, np.array([instant.time for instant in requested]))
     actions, fields = collect_actions(recovery, study.spec, body), compute_fields(recovery, body)
-    for one in requested:
-        assert one.impulse is not None
-        yield one, LoadCase(one.name, one.time, actions[one.impulse], fields[one.impulse], is_impulse=True)
+    for instant in requested:
+        k = instant.impulse
+        assert k is not None
+        yield instant, LoadCase(instant.name, instant.time, actions[k], fields[k], is_impulse=True)
 
 
 def _include_joints(body: int, recovery: Recovery) -> Recovery:

@@ -51,8 +51,8 @@ class Twists:
         """Return the world position of a body's point, (n_t, 3)."""
         if body == GROUND:
             return np.broadcast_to(point, (len(self.turn), 3))
-        k, own = self.layout.place[body], self.layout.mechanism.bodies[body]
-        return np.asarray(self.centre[:, k] + self.R[:, k] @ (point - own.center))
+        k, center = self.layout.place[body], self.layout.mechanism.bodies[body].center
+        return np.asarray(self.centre[:, k] + self.R[:, k] @ (point - center))
 
     def to_world(self, body: int, axis: Array) -> Array:
         """Return a direction fixed in a body, in world axes, (n_t, 3)."""

@@ -108,7 +108,7 @@ def _to_plain_data(node: Any) -> Any:
 
 
 def _parse_table(data: Mapping[str, Any]) -> PublishedTable:
-    """Parse a published table. Raises ValueError."""
+    """Parse one table of a case: where it was published, and its numbers. Raises ValueError for other keys."""
     is_valid = REQUIRED_KEYS <= data.keys() <= ALLOWED_KEYS and data["kind"] in KINDS
     if not is_valid or ("error" in data) != ("because" in data):
         raise ValueError(f"a table of published numbers has {', '.join(data)}")

@@ -121,7 +121,7 @@ def _solve_tables(spec: Spec, tables: Sequence[PublishedTable], options: Options
 
 
 def _compare_table(table: PublishedTable, study: Study) -> TableComparison:
-    """Compare the numbers of a table."""
+    """Compare each published number of a table with that of a solved scene."""
     values = [_parse_number(table, number, study.spec) for number in table.numbers]
     largest = max(abs(value.value) for value in values)
     numbers = tuple(

@@ -20,18 +20,16 @@ from heuncli.results.results import Array
 
 FIRST_STEP, MAX_STEP, MIN_STEP = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box
 MIN_STEP_RATIO = 0.1  # of the step before, at least; otherwise twice the distance that the last run moved
-# COBYLA's last step: of the root of the floor, but at least this multiple of the floor
-FINAL_STEP_FACTOR, NOISE_FACTOR = (0.01, 3.0)
+FINAL_STEP_FACTOR = 0.01  # of the root of the floor: COBYLA's last step
+NOISE_FACTOR = 3.0  # of the floor: the least such step
 SIMPLEX_TOLERANCE = 1e-3  # distance of the simplex's corners when it ends; their values differ by less than the floor
 COBYLA_TRIALS, SIMPLEX_TRIALS = 30, 40  # most evaluations of one run, per variable plus one
-# weight of violations: at first, and the factor by which it rises while they persist
-FIRST_WEIGHT, WEIGHT_FACTOR = (3.0, 4.0)
+FIRST_WEIGHT, WEIGHT_FACTOR = 3.0, 4.0  # weight of violations: at first; the factor by which it rises while they last
 MAX_VIOLATION = 1e-4  # scales by which the best by merit may violate the constraints before the weight is raised
 CONSTRAINT_MARGIN = 1e-7  # scales by which COBYLA stays inside the constraints, so that rounding does not violate them
 MAX_RUNS = 40
-# runs in turn that gain nothing when it ends; how many variables are few: of more
-STALLED_RUNS_FEW, STALLED_RUNS_MANY, FEW_VARIABLES = (2, 4, 2)
-# the simplex may collapse along a kink, and does so less from its other sides
+FEW_VARIABLES = 2
+STALLED_RUNS_FEW, STALLED_RUNS_MANY = 2, 4  # runs in turn without gain that end the descent, of few variables, of more
 
 
 def descend(trials: Trials) -> float | None:
@@ -87,7 +85,7 @@ def find_best(trials: Trials, weight: float | None, first: int = 0) -> Trial | N
 
 
 def run_cobyla(trials: Trials, start: Trial, step: float, weight: float | None) -> None:
-    """Run COBYLA from a variant."""
+    """Run COBYLA from a variant; step: the first, relative to the box. Impure: tries variants."""
     from scipy.optimize import NonlinearConstraint, minimize
 
     worst_goal = trials.find_worst_value(trials.compute_scaled_goal)
@@ -124,7 +122,11 @@ def compute_last_step(floor: float) -> float:
 
 
 def run_simplex(trials: Trials, start: Trial, step: float, weight: float | None, is_mirrored: bool) -> None:
-    """Run Nelder-Mead from a variant; is_mirrored: the first simplex extends to the opposite sides."""
+    """Run Nelder-Mead from a variant.
+
+    is_mirrored: the first simplex extends to the opposite sides; it may collapse along a kink, and does so less from
+    there
+    """
     from scipy.optimize import minimize
 
     worst_merit = trials.find_worst_value(lambda trial: trials.compute_merit(trial, weight))

@@ -90,12 +90,17 @@ def require_other_file(output: str | None, specs: Sequence[str], option: str = "
         raise UsageError(Problem("bad-option", f"{where}: would overwrite {what}", hint="name another file"))
 
 
-def is_same_file(one: str | None, other: str | None) -> bool:
+def is_same_file(name: str | None, other: str | None) -> bool:
     """Return whether two names lead to the same file, or would if it existed."""
-    states = _read_status(one), _read_status(other)
+    states = _read_status(name), _read_status(other)
     if states[0] is not None and states[1] is not None:
         return os.path.samestat(states[0], states[1])
-    return one is not None and other is not None and _resolve_path(one) == _resolve_path(other)
+    return name is not None and other is not None and _resolve_path(name) == _resolve_path(other)
+
+
+def is_output(name: str, output: str | None) -> bool:
+    """Return whether a file is the one to which the result goes: `output`, for None and `-` standard output."""
+    return is_same_file("/dev/stdout" if output in (None, STDOUT) else output, name)
 
 
 def _resolve_path(name: str) -> str:
@@ -184,7 +189,7 @@ def require_save_form(name: str | None, output: str | None) -> str | None:
     if name is None:
         return None
     form = require_figure_form(name, "--save")
-    if is_same_file("/dev/stdout" if output in (None, STDOUT) else output, name):
+    if is_output(name, output):
         raise UsageError(
             Problem("bad-option", f"--save {name}: the table is written to this file", hint="name another file")
         )

@@ -198,7 +198,7 @@ def complete_only(data: dict[str, Any], incomplete: str) -> Iterator[str]:
 
 
 def complete_bodies(data: dict[str, Any], incomplete: str) -> Iterator[str]:
-    """Yield the bodies."""
+    """Yield the names of the bodies, for --body."""
     from heuncli.scene.file_format.names import as_mapping
 
     yield from as_mapping(data.get("bodies"))

@@ -155,7 +155,7 @@ def _make_table(difference: Difference) -> OutputTable:
 
 
 def _make_row(case: str, change: Change) -> tuple[str, ...]:
-    """Make the row of a change."""
+    """Make the row of a change: both values, the difference, and how large it may be."""
     name = f"{case}: {change.path}" if case else change.path
     change_text = WORDS.get(change.reason, change.reason) or format_difference(change)
     change_text += f"; and {change.n_similar} more values" if change.n_similar else ""

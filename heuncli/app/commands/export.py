@@ -194,7 +194,7 @@ def choose_form(request: ExportRequest) -> str:
 
 
 def _parse_units(words: str | None) -> model.UnitSystem:
-    """Parse the units of a deck. Raises UsageError."""
+    """Parse the consistent units of --units; SI by default. Raises UsageError."""
     if words is None:
         return model.SI
     try:
@@ -294,7 +294,7 @@ def _read_mesh(request: ExportRequest, form: str, cases: LoadCases, names: DeckN
 
 
 def _read_text(name: str) -> str:
-    """Read the text of a file. Raises UsageError."""
+    """Read the mesh file of --mesh. Raises UsageError."""
     from pathlib import Path  # of few decks
 
     try:

@@ -121,7 +121,7 @@ def _validate_spec(text: str, name: str) -> list[str]:
 
 
 def _parse_options(request: ImportRequest) -> ImportOptions:
-    """Parse the options of the import. Raises UsageError."""
+    """Parse what is converted and how: base, freedoms, limits, density, repairs. Raises UsageError."""
     if request.base is not None and request.base not in BASES:
         hint = suggest(request.base, BASES, "values")
         raise UsageError(Problem("bad-option", f"--base {request.base}: accepted: {', '.join(BASES)}", hint=hint))

@@ -63,7 +63,7 @@ REASON_NAMES = {"condition": "condition number"}  # where a key is not the term
 
 
 def make_document(results: Probe) -> OutputDocument:
-    """Make the document of a probe."""
+    """Make the document: the verdict, tables of what was examined, and the data for JSON."""
     return OutputDocument(results.title, list(list_facts(results)), make_tables(results), results.to_block)
 
 
@@ -155,7 +155,7 @@ def list_growths(results: Probe) -> tuple[tuple[str, GrowthResults | None], ...]
 
 
 def make_growth_row(name: str, growth: GrowthResults) -> tuple[str, ...]:
-    """Make the cells of a growth."""
+    """Make the row of a growth of disturbances: its rate, and the horizon that follows from it."""
     rate_text = f"{1.0 / growth.rate:.3g}" if growth.exponential and growth.rate > 0.0 else "not exponential"
     if growth.rate < 0.0 and growth.logarithm < 0.0:
         rate_text = "decays"

@@ -79,7 +79,7 @@ def write_called_report(call: ReportCall) -> bool:
 
 
 def make_report_options(call: ReportCall) -> reports.ReportOptions:
-    """Make the options of the report. Raises UsageError."""
+    """Convert the arguments of the call to the options of a report. Raises UsageError."""
     cases, chapters = split_names(call.case), split_names(call.chapters)
     return reports.ReportOptions(
         call.options,
@@ -97,7 +97,7 @@ def read_spec(call: ReportCall, name: str, text: str) -> reports.ReportedSpec:
     spec_files = reports.DigestedFiles(name)
     scene, cases = load_with_cases(name, call.settings, not call.settings, text, spec_files)
     scene = set_captions(scene, call.title, call.labels.items())
-    cases = {case: set_captions(own, call.title, call.labels.items()) for case, own in cases.items()}
+    cases = {case: set_captions(case_scene, call.title, call.labels.items()) for case, case_scene in cases.items()}
     return reports.ReportedSpec(name, text, scene, cases, spec_files.digests)
 
 

@@ -288,6 +288,7 @@ def add_separating_forces(
 
 
 def _add_to_joint(load: JointLoads, share: float, part: PartLoad, planar: bool) -> JointLoads:
+    """Add a share of the separating force of two flanks to a joint's load."""
     force, moment = transfer_force(load, share * part.separation, part.place)
     if planar:
         force, moment = project_to_plane(force, moment)

@@ -213,6 +213,7 @@ def make_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, CompositeSolid]
 def _make_section_cuts(
     mechanism: Mechanism, spec: Spec, name: str, section: Section, index: dict[str, int], form: CompositeSolid | None
 ) -> Cuts:
+    """Make the cuts of one section. Raises SpecError, Finding."""
     body = index[section.body]
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)

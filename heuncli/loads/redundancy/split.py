@@ -254,11 +254,13 @@ def join_stresses(a: SelfStress | None, b: SelfStress | None) -> SelfStress | No
 
 
 def _wrench(load: JointLoads) -> Array:
+    """Return force and moment of a joint as one array, (..., 6)."""
     F, M = load.total
     return np.concatenate([F, M], axis=-1)
 
 
 def _add_wrench(load: JointLoads, states: BodyStates, added_wrench: Array) -> JointLoads:
+    """Add force and moment to a joint's load, and share them among its stops and its drive."""
     F, M = load.total
     F, M = F + added_wrench[..., :3], M + added_wrench[..., 3:]
     force, moment = remove_free_components(load.joint, states, F, M)

@@ -19,6 +19,10 @@ JSON is written of that block (output/tables/export.py). After it:
     Extremes                  results/results.py                     least and greatest value, each with its instant
     NumberCell                output/documents/document.py           in display units, with the digits of its error
 
+A section goes the same way: SectionEntry, Section, Cuts (loads/kinetostatics/cuts.py), its block, its channels. Those
+of a series of cuts are a CutSeries (study/quantities/cut_series.py); a search cuts it as one whole length, a Stretch
+(loads/kinetostatics/stretch.py).
+
 Tables group channels (RowGroup, TableBlock in output/tables/table_blocks.py) and place cells in an OutputTable, which
 holds no other form of the number.
 """

@@ -87,6 +87,7 @@ class Recovery:
         return self._use_computed(replace(self, skips_indeterminacy_search=True), INDEPENDENT_OF_VERDICTS)
 
     def _use_computed(self, other: Recovery, names: frozenset[str]) -> Recovery:
+        """Hand over the properties of these names that are already computed."""
         other.__dict__.update({name: value for name, value in self.__dict__.items() if name in names})
         return other
 

@@ -112,6 +112,7 @@ class Channel(NamedTuple):
 
     @property
     def _cause_name(self) -> str:
+        """The words between kind and quantity in its path."""
         share = f"{SHARES}.{self.cause}" if self.cause else ""
         return f"{self.name}.{share}" if self.name and share else self.name or share
 
@@ -298,6 +299,7 @@ class _Walk(NamedTuple):
 
 
 def _find_node(node: Node, key: str) -> Node:
+    """Return the rows below a key."""
     child = find_child(node, key)
     assert isinstance(child, dict), f"{key} has no rows in the schema"
     return child

@@ -99,10 +99,12 @@ class Labels:
         return self._is_force_rotational(self.forces.get(name))
 
     def _find_joint_kind(self, joint: str | None) -> JointKind:
+        """Return the kind of a joint; that of a pin for an unknown one."""
         info = self.joints.get(joint or "")
         return TYPES[info.type if info else "pin"]
 
     def _is_force_rotational(self, force: ForceInfo | None) -> bool:
+        """Return whether a load is a torque."""
         if force is None:
             return False
         if force.turning is not None:
@@ -150,6 +152,7 @@ def _describe_sensor(sensor: Sensor) -> str:
 
 
 def _make_stop_info(stop: Stop[str]) -> StopInfo:
+    """Collect what tables say of a stop."""
     coordinate, latch = f"{stop.joint}.{stop.quantity}", stop.latch
     if latch is None:
         return StopInfo(coordinate, stop.low, stop.high, stop.restitution)
@@ -157,11 +160,13 @@ def _make_stop_info(stop: Stop[str]) -> StopInfo:
 
 
 def _make_force_info(force: Force) -> ForceInfo:
+    """Collect what tables say of a load."""
     turning = force.torque is not None or force.radius is not None if isinstance(force, Friction) else None
     return ForceInfo(force.type, getattr(force, "joint", None), turning)
 
 
 def _make_section_info(section: Section) -> SectionInfo:
+    """Collect what tables say of a section."""
     moment_point = section.reduce_to
     return SectionInfo(
         section.body,
@@ -188,4 +193,5 @@ def _format_end(end: End) -> str:
 
 
 def _format_vector(vector: Vec) -> str:
+    """Format a vector to six digits."""
     return f"({', '.join(f'{component:.6g}' for component in vector)})"

@@ -60,6 +60,7 @@ def parse(words: str) -> list[InstantRequest]:
 
 
 def _parse_word(word: str) -> InstantRequest | None:
+    """Parse one word of --at; None if it means nothing."""
     if word in ("first", "last"):
         return InstantRequest(word, "first" if word == "first" else "last")
     kind, colon, what = word.partition(":")
@@ -109,6 +110,7 @@ def find_load_case_instants(requests: Sequence[InstantRequest], study: Study) ->
 
 
 def _iter_instants(request: InstantRequest, study: Study) -> Iterator[LoadCaseInstant]:
+    """Yield the instants that a word means. Raises UsageError."""
     times = study.results.time
     if request.kind == IMPULSE:
         yield from _iter_impulses(request, study)
@@ -156,6 +158,7 @@ def _iter_impulses(request: InstantRequest, study: Study) -> Iterator[LoadCaseIn
 
 
 def _format_impulse_hint(impulses: Sequence[Block], word: str) -> str:
+    """Name the impulses of a run, or the most similar one."""
     if not impulses:
         return "this run has no impulses: use a time, such as --at last"
     names = dict.fromkeys(name for block in impulses for name in block["names"])

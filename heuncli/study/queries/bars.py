@@ -242,6 +242,7 @@ class WholeBar:
         name_of = {f"sections.{self.name}.{name}": name for name in names}
 
         def collect(results: Results) -> list[Channel]:
+            """Return the channels of these quantities along this bar."""
             channels = make_section_channels(self.name, results.sections[self.name])
             return [channel for channel in channels if channel.path in name_of]
 

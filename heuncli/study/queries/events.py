@@ -190,6 +190,7 @@ class WatchedNumber(NamedTuple):
         return self.sample(times)[:, None]
 
     def _sample_chunk(self, times: Array) -> Array:
+        """Return by how much the condition is met, at some instants."""
         values, condition = self.read_values(times), self.condition
         limit = condition.limit * abs(condition.limit) if self.is_magnitude else condition.limit
         return np.asarray(values - limit if condition.is_above else limit - values)

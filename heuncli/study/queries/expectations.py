@@ -115,6 +115,7 @@ def _compare_curve(case: Case, study: Study, item: Expect) -> Case:
 
 
 def _find_values(study: Study, item: Expect) -> Array:
+    """Return the values that an expectation is about, at its instant."""
     results: Results = study.results
     if item.peak:
         return np.asarray(find_peak(study, item.of, item.peak).value)
@@ -146,6 +147,7 @@ def find_instant_index(times: Array, time: float) -> int:
 
 
 def _describe_failure(expected_values: Array, found_values: Array, tolerance: float) -> str | None:
+    """Describe what differs by more than the tolerance; None if nothing does."""
     if found_values.shape != expected_values.shape:
         if expected_values.ndim == 0 and np.isnan(expected_values):
             if not found_values.size:
@@ -183,12 +185,14 @@ def _compute_tolerance(expected_values: Array, rel: float | None, absolute: floa
 
 
 def _null_to_nan(value: Any) -> Any:
+    """Return nested lists with nan in place of None."""
     if isinstance(value, (list, tuple)):
         return [_null_to_nan(member) for member in value]
     return np.nan if value is None else value
 
 
 def _describe_size(values: Array) -> str:
+    """Describe how many numbers there are."""
     return "one number" if values.ndim == 0 else f"a list of {len(values)}"
 
 

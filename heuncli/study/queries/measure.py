@@ -195,6 +195,7 @@ def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> 
     open_at: list[float] = []
 
     def collect(results: Results) -> list[Channel]:
+        """Return the channel at the path, and note the first instant at which it is indeterminate."""
         channel = make_path_channel(numbers if results is study.results else find_values(results, path))
         is_open = np.isnan(channel.values)
         if is_open.any():
@@ -232,6 +233,7 @@ def make_joint_reader(study: Study, numbers: PathValues, path: str) -> Callable[
     is_known = is_load and bool(numbers.axes or component is not None) and study.setup.selection.axes == EVERYTHING.axes
 
     def read(recovery: Recovery) -> Array | None:
+        """Return the searched values of a joint's load without composing results; None where that is not possible."""
         if not is_known or recovery.decided is not None:
             return None
         load = next(load for load in recovery.requested_joints if load.joint.name == numbers.keys[1])

@@ -103,6 +103,7 @@ class Study:
 
     @cached_property
     def _numbers(self) -> dict[str, PathValues]:
+        """Values at paths that were already read."""
         return {}
 
     @cached_property
@@ -259,6 +260,7 @@ class Study:
         return self.compute_reports(times, frozenset({"sections", SHARES}), cut_at_places(self.setup, name, places))
 
     def _recover(self, times: Array, reports: frozenset[str]) -> Recovery:
+        """Recover the results at other instants."""
         recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in reports)
         return recover(self.setup, recovered, self.options.least_norm)
 

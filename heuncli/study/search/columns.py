@@ -145,20 +145,24 @@ class StudyColumns:
         return rows
 
     def _read_or_compose(self, recovery: Recovery) -> Array:
+        """Return the columns of a recovery, read where that is possible."""
         rows = self.read(recovery)
         return self._rows(self._compose(recovery)) if rows is None else rows
 
     def _compose(self, recovery: Recovery, verdicts: VerdictsBetween | None = None) -> Results:
+        """Compose the results of a recovery; those of the study's own instants are known."""
         results = self.study.results
         if self.setup is None and verdicts is None and np.array_equal(recovery.solutions.times, results.time):
             return results
         return self._note_unknown(self.study.compose_reports(recovery, self.reports, verdicts))
 
     def _note_unknown(self, results: Results) -> Results:
+        """Note the instants at which rounding decides some numbers."""
         self.unknown.extend(results.accuracy.get("unknown", []))
         return results
 
     def _rows(self, results: Results) -> Array:
+        """Return the columns of results: single channels, then the ranges along series of cuts."""
         channels = self.collect(results)
         columns = [channel.searched_values for channel in channels[: self.n_single]]
         if self.setup is not None:
@@ -179,6 +183,7 @@ class StudyColumns:
         return peaks._replace(low=low, high=high, paths=self.paths)
 
     def _add_places(self, peaks: Extremes) -> Extremes:
+        """Add where along a series of cuts each extreme is, and search it there again if need be."""
         first = self.n_single
         low, high, places = peaks.low.copy(), peaks.high.copy(), [(NOWHERE, NOWHERE)] * first
         peak_times = np.stack([peaks.low_at, peaks.high_at])[:, first:]
@@ -210,6 +215,7 @@ class StudyColumns:
         if self.bent and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:
+                """Return the channel at some places along the bar."""
                 cut_results = self.compute_results(np.array([instant]), cut_at(setup, name, s, ends))
                 return self.collect(cut_results)[k].searched_values.T
 

@@ -35,6 +35,7 @@ def replace_runs(setup: Setup, bent: bool) -> Setup:
     mechanism, halved = setup.scene.mechanism, HALVINGS if bent else 0
 
     def whole(cuts: Cuts) -> Cuts | Stretch:
+        """Return the cuts as a whole length, if they are a series through shapes."""
         if cuts.s is None or cuts.form is None:
             return cuts
         points = [attachment.place for attachment in list_attachments(mechanism, cuts.body)]

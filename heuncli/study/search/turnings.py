@@ -223,6 +223,7 @@ def make_required_height(errors: Array, is_squared: Mask) -> Callable[[Array, Ar
     n = len(errors)
 
     def require_height(b: Array, c: Array, target: Indices) -> Array:
+        """Return the height that a promise must exceed to be worth a sample."""
         higher, group = np.maximum(b, c), target % n
         error, size = GOOD_ENOUGH * errors[group], np.abs(higher)
         squared = error * error + 2.0 * error * np.sqrt(size)

@@ -258,6 +258,7 @@ class LoadErrors(ErrorEstimates):
         count = len(states.omega) // len(self.is_requested)
 
         def find_differences(values: Array) -> Array:
+            """Return the largest difference of each state from its perturbed copies."""
             own = values[0::count]
             return reduce(np.maximum, [compute_norms(own - values[k::count]) for k in range(1, count)])
 

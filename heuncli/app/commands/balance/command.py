@@ -111,7 +111,7 @@ MINIMISED = ("force", "moment", "mix")
 
 
 def parse_options(request: BalanceRequest, spec: Spec) -> BalanceOptions:
-    """Parse the options of a request."""
+    """Parse the cycle, its orders, counterweights and flywheel. Raises UsageError with all that do not go together."""
     require_cycle_options(request)
     turns = None if request.turns is None else int(require_choice("--turns", request.turns, TURNS))
     about, place = parse_about(request.about, spec)
@@ -152,7 +152,7 @@ def require_cycle_options(request: BalanceRequest) -> None:
 
 
 def parse_period(words: str) -> float:
-    """Parse the seconds of --period."""
+    """Parse --period, a time with or without a unit [s]. Raises UsageError."""
     return require_positive("--period", parse_quantity("--period", words, TIME, "20 ms"), "time", "20 ms")
 
 

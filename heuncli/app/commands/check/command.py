@@ -74,7 +74,7 @@ def _check_references(request: CheckRequest) -> int:
 
     references.require_alone(request)
     _require_consistent_options(request)
-    code, checked = references.main(request)
+    code, checked = references.check_published_cases(request)
     _print_slowest(checked, request.durations)
     return code
 

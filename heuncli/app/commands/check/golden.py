@@ -122,7 +122,7 @@ def require_inside(file: str, folder: str) -> None:
 
 
 def make_golden_error(file: str, finding: Finding) -> GoldenError:
-    """Make the error of a golden file."""
+    """Make the error of a golden file that cannot be used, located at its first line."""
     return GoldenError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), finding.hint))
 
 

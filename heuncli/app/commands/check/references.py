@@ -125,7 +125,7 @@ def format_summary(results: Sequence[ReferenceResult]) -> str:
 
 
 def make_case_row(result: ReferenceResult) -> tuple[Cell, ...]:
-    """Make the row of a case."""
+    """Make the row of a case: how many numbers it has, how well they agree, or that it was not solved."""
     if result.check.error:
         return result.case.name, result.case.description, *[""] * 5, "not solved"
     wrong = sum(number.verdict != AGREES for number in result.numbers)
@@ -193,7 +193,7 @@ def _describe_table(part: TableComparison) -> str:
 
 
 def _make_number_row(comparison: NumberComparison) -> tuple[Cell, ...]:
-    """Make the row of a number."""
+    """Make the row of a number: published, computed, their difference, and the verdict."""
     last = f"{comparison.in_last_digits:.2g}" if comparison.published.last_digit else ""
     return (
         comparison.number.path,
@@ -271,11 +271,11 @@ def require_alone(request: CheckRequest) -> None:
             raise UsageError(Problem("bad-option", f"--references and {word} cannot be combined", hint=hint))
 
 
-def main(request: CheckRequest) -> tuple[int, list[CheckResult]]:
+def check_published_cases(request: CheckRequest) -> tuple[int, list[CheckResult]]:
     """Check the cases; returns the exit code, and the result of each case."""
-    names_chosen = _select_names(request)
+    case_names = _select_names(request)
     form = choose_format(request.format, request.output, FORMATS)
-    checked = _check_all(names_chosen, request)
+    checked = _check_all(case_names, request)
     spec_results = [result.check for result in checked]
     if form == "github":
         emit(render_github(CheckSummary(spec_results)), request.output)
@@ -300,9 +300,9 @@ def _select_names(request: CheckRequest) -> Sequence[str]:
     return tuple(dict.fromkeys(request.paths)) or known
 
 
-def _check_all(names_chosen: Sequence[str], request: CheckRequest) -> list[ReferenceResult]:
+def _check_all(case_names: Sequence[str], request: CheckRequest) -> list[ReferenceResult]:
     """Check the cases; returns the results in their order, and prints their messages as they come."""
-    job_count = jobs.choose_job_count(request.jobs, len(names_chosen))
+    job_count = jobs.choose_job_count(request.jobs, len(case_names))
     checked: list[ReferenceResult] = []
     work = partial(check_case, request=request)
     separate_process = request.time_limit_each is not None
@@ -313,12 +313,12 @@ def _check_all(names_chosen: Sequence[str], request: CheckRequest) -> list[Refer
 
     with show_progress(request.quiet) as report:
         for checked_case in jobs.run_in_order(
-            work, names_chosen, job_count, _make_death_result, is_last, separate_process
+            work, case_names, job_count, _make_death_result, is_last, separate_process
         ):
             checked.append(checked_case)
             for line in checked_case.check.messages:
                 print_stderr(line)
-            report(len(checked), len(names_chosen), checked_case.case.name)
+            report(len(checked), len(case_names), checked_case.case.name)
     return checked
 
 

@@ -99,7 +99,7 @@ def _iter_outcomes(check_summary: CheckSummary) -> Iterator[tuple[CheckResult, O
 
 
 def _make_row(result: CheckResult, outcome: Outcome) -> tuple[str, ...]:
-    """Make the row of an outcome."""
+    """Make the row of an outcome: where it is expected, what was found, and why it fails."""
     place = f"{result.path}:{outcome.line}"
     name = f"{outcome.case}: {outcome.subject}" if outcome.case else outcome.subject
     return (place, name, outcome.when, outcome.expected_text, outcome.found_text, outcome.failure or "")

@@ -52,7 +52,7 @@ def make_request(page: str, heading: str = "") -> str:
 
 
 def read_page(page: str) -> str:
-    """Read the text of a page."""
+    """Return a page of the manual as Markdown."""
     return (FOLDER / f"{page}.md").read_text(encoding="utf-8")
 
 

@@ -71,7 +71,7 @@ def list_facts(page: FindPage) -> list[tuple[str, str]]:
 
 
 def _make_crossings_table(page: FindPage) -> OutputTable:
-    """Make the table of the crossings."""
+    """Make the table of the crossings, a row each, with the measure there and its error."""
     unit = page.units.find(page.results.condition.unit)[0]
     columns = (
         OutputColumn(page.results.interval.name, unit=page.results.interval.unit), OutputColumn("error"),

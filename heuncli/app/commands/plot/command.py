@@ -102,7 +102,7 @@ NAMED_KINDS = tuple(kind for kind in KINDS if kind not in (*PATH_KINDS, SWEEP_KI
 
 
 def parse_words(words: Sequence[str]) -> PlotTarget:
-    """Parse the words. Raises UsageError."""
+    """Split the words into files, the kind of figure, and paths. Raises UsageError."""
     files = [word for k, word in enumerate(words) if _is_file(word, first=k == 0)]
     others = [word for word in words if word not in files]
     if not files:

@@ -38,7 +38,7 @@ from heuncli.study.queries.measure_uncertainty import find_unit
 
 
 def draw_history(target: PlotTarget, request: PlotRequest) -> Figure:
-    """Draw the figure. Raises UsageError, NotDrawable, SpecError and what solving raises."""
+    """Draw numbers over time. Raises UsageError, NotDrawable, SpecError and what solving raises."""
     paths = [*target.paths, *([] if request.x is None else [request.x])]
     require_joint_paths(paths, request)
     specs = load_specs(target.files, request)
@@ -51,7 +51,7 @@ def draw_history(target: PlotTarget, request: PlotRequest) -> Figure:
 
 
 def _read_points(target: PlotTarget, request: PlotRequest, spec: Spec) -> list[MeasuredPoints]:
-    """Read the measured points. Raises SpecError with every problem of any of the files."""
+    """Read the points of each --with FILE. Raises SpecError with every problem of any of the files."""
     x_unit = "s" if request.x is None else find_unit(request.x, spec)
     y_units = [find_unit(path, spec) for path in target.paths]
     return collect_results([partial(_read_file, words, x_unit, y_units) for words in request.measured])
@@ -68,7 +68,7 @@ MAX_NAMES = 12  # of known series of cuts in an error message
 
 
 def draw_sections(target: PlotTarget, request: PlotRequest) -> Figure:
-    """Draw the figure. Raises UsageError, SpecError and what solving raises."""
+    """Draw section forces along bars. Raises UsageError, SpecError and what solving raises."""
     names = [path.partition(".")[2] for path in target.paths]
     specs = load_specs(target.files, request)
     for _, spec in specs:
@@ -135,7 +135,7 @@ SUCH_AS = "for example polar joints.main, or polar foundation"
 
 
 def draw_polar(target: PlotTarget, request: PlotRequest) -> Figure:
-    """Draw the figure. Raises UsageError, NotDrawable, SpecError and what solving raises."""
+    """Draw vectors by size and direction. Raises UsageError, NotDrawable, SpecError and what solving raises."""
     if not target.paths:
         raise UsageError(Problem("bad-option", "heun plot polar: no vector is given", hint=SUCH_AS))
     axes = "world" if request.axes is None else require_choice("--axes", request.axes, JOINT_AXES)

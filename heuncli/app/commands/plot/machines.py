@@ -44,7 +44,7 @@ REPORTS = ("bodies", "joints", "forces", "impulses")  # positions and loads
 
 
 def draw_scene(target: PlotTarget, request: PlotRequest) -> Figure:
-    """Draw the figure, one panel per run. Raises UsageError, SpecError and what solving raises."""
+    """Draw the machine at some instants, one panel per run. Raises UsageError, SpecError and what solving raises."""
     require_view(request.view)
     names = [word.removeprefix("points.").removeprefix("bodies.") for word in target.paths]
     paths = [_make_path(name) for name in names]
@@ -85,7 +85,7 @@ def _make_path(name: str) -> str:
 
 
 def draw_modes(target: PlotTarget, request: PlotRequest) -> Figure:
-    """Draw the figure. Raises UsageError, NotDrawable, SpecError, SolveError."""
+    """Draw the shapes of small oscillations. Raises UsageError, NotDrawable, SpecError, SolveError."""
     require_no_paths(target)
     specs = load_specs(target.files, request)
     if len(specs) > 1:
@@ -112,7 +112,7 @@ def _choose_view(moved: BodyModes, request: PlotRequest) -> SceneView:
 
 
 def draw_balance(target: PlotTarget, request: PlotRequest) -> Figure:
-    """Draw the figure. Raises UsageError, SpecError, SolveError."""
+    """Draw the loads on the foundation by order. Raises UsageError, SpecError, SolveError."""
     require_no_paths(target)
     sources = []
     for name, spec in load_specs(target.files, request):

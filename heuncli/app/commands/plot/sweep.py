@@ -40,7 +40,7 @@ from heuncli.scene.file_format.reading import read_bytes
 
 
 def draw_sweep(target: PlotTarget, request: PlotRequest) -> Figure:
-    """Draw the figure. Raises UsageError, OutputError, NotDrawable."""
+    """Draw measures over the varied parameters. Raises UsageError, OutputError, NotDrawable."""
     if len(target.files) > 1:
         message = f"heun plot {' '.join(target.files)}: one sweep at a time, without a spec"
         raise UsageError(Problem("bad-option", message, hint="call it once for each"))
@@ -56,7 +56,7 @@ UNKNOWN_TEXT = MISSING_KINDS["unknown"].short
 
 
 def read_sweep(word: str) -> SweepTable:
-    """Read the sweep in a file. Raises UsageError, OutputError."""
+    """Read a sweep from a store (FILE:NUMBER for one of several) or from CSV. Raises UsageError, OutputError."""
     if PurePath(word).suffix.lower() == ".csv":
         return _read_csv(word)
     name, number = split_store_argument(word, COMMAND)

@@ -116,7 +116,7 @@ def parse_whole(word: str) -> int:
 
 
 def make_option_error(message: str, hint: str) -> UsageError:
-    """Make the error of an invalid option."""
+    """Make the error of an option that does not fit --collective."""
     return UsageError(Problem("bad-option", message, hint=hint))
 
 

@@ -96,7 +96,7 @@ def main(request: RunRequest) -> int:
 
 
 def _parse_measures(request: RunRequest) -> list[MeasureRequest]:
-    """Parse the requested measures. Raises UsageError."""
+    """Parse each --measure; empty if none is given. Raises UsageError."""
     if not request.measure:
         return []
     from heuncli.output.tables import measure  # with paths and JSON 2 ms that tables do not need

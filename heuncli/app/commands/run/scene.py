@@ -88,7 +88,7 @@ def solve_and_render(task: RunTask, spec: Spec, case: str = "") -> RenderedRun:
 
 
 def make_query(task: RunTask, study: Study, spec: Spec) -> TablesQuery:
-    """Make the query of the tables."""
+    """Make the query of the tables: which results, at which instants, how much of them."""
     request, selection = task.request, task.selection
     is_explicit = (request.only is not None or spec.report.results is not None) and "foundation" in selection.reports
     times = parse_instants(request.at, study) if request.at is not None else None

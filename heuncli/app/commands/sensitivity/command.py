@@ -122,19 +122,19 @@ def solve_ahead(
     The order of the results does not depend on the number of processes. Raises SolveError if a process died.
     """
 
-    def solve_for(number: SpecNumber, own: CachedEvaluator) -> None:
+    def solve_for(number: SpecNumber, results: CachedEvaluator) -> None:
         """Solve all variants that the derivatives by one number need."""
         for k, head in enumerate(heads):
-            compute_slope(make_evaluation(own, k, head, {number.name: number}), number)
+            compute_slope(make_evaluation(results, k, head, {number.name: number}), number)
 
     def solve_in_worker(number: SpecNumber) -> KnownResults:
         """Do the same in a process of its own; returns the results."""
-        own = CachedEvaluator(
+        worker_results = CachedEvaluator(
             lambda values: solve_contained(evaluator, values, "sensitivity", timeout.remaining_time())
         )
-        own.add_known(cached.known)
-        solve_for(number, own)
-        return own.known
+        worker_results.add_known(cached.known)
+        solve_for(number, worker_results)
+        return worker_results.known
 
     def refuse(number: SpecNumber, death: jobs.ProcessDeath) -> KnownResults:
         """Raise SolveError: the process of a number died."""

@@ -44,7 +44,7 @@ class ColumnBuffer:
             yield row
 
     def add(self, row: SweptRow) -> None:
-        """Add a variant."""
+        """Append the measures of a variant, or nan, and count its failure."""
         self._numbers.append(row.number)
         if row.result.code:
             self.failures[row.result.code] += 1

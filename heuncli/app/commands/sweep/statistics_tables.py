@@ -54,13 +54,13 @@ def format_label(head: SweepHead, statistics: MeasureStatistics, unit: str = "")
 
 
 def _make_statistics_table(
-    head: SweepHead, shown: Sequence[MeasureStatistics], units: Units, omitted: int
+    head: SweepHead, selection: Sequence[MeasureStatistics], units: Units, omitted: int
 ) -> OutputTable:
     """Make the table of mean, deviation and percentiles, with their confidence intervals."""
     columns = (OutputColumn("", "text"), OutputColumn("value"), OutputColumn("from"), OutputColumn("to"))
     rows: list[tuple[Cell, ...] | str] = []
     notes = _make_notes(head)
-    for statistics in shown:
+    for statistics in selection:
         unit, size = units.find(head.measures[statistics.measure].unit)
         label = format_label(head, statistics, unit)
         rows.append(
@@ -78,7 +78,7 @@ def _make_statistics_table(
             notes.append(SPOILT.format(format_label(head, statistics), error))
     if any("-" in row for row in rows):
         notes.append("-: the sample is too small for a bound on this side")
-    if any(statistics.left_out for statistics in shown):
+    if any(statistics.left_out for statistics in selection):
         notes.append("left out: could not be solved, or the measure is not known")
     if omitted:
         notes.append(f"{format_count(omitted, 'block')} more: --all")
@@ -112,14 +112,14 @@ def _make_row(label: str, estimate: BoundedEstimate, size: float) -> tuple[Cell,
 
 
 def _make_index_table(
-    head: SweepHead, shown: Sequence[MeasureStatistics], laws: Sequence[RandomVariable]
+    head: SweepHead, selection: Sequence[MeasureStatistics], laws: Sequence[RandomVariable]
 ) -> OutputTable:
     """Make the table of the Sobol indices, and say why some are missing."""
     names = ("", "first order", "from", "to", "total", "from", "to")
     columns = tuple(OutputColumn(name, "text" if not name else "number") for name in names)
     rows: list[tuple[Cell, ...] | str] = []
     notes: list[str] = ["first order: of the parameter alone; total: including its interactions"]
-    for statistics in shown:
+    for statistics in selection:
         if statistics.indices is None:
             why = FLAT if statistics.is_constant else FEW.format(len(laws) + 2, statistics.samples)
             notes.append(NO_INDICES.format(format_label(head, statistics)) + why)

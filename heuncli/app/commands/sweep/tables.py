@@ -63,7 +63,7 @@ def format_variant_count(number: int) -> str:
 
 
 def make_parameter_column(parameter: ParameterColumn) -> OutputColumn:
-    """Make the column of a parameter."""
+    """Make the column of a parameter: of numbers with their unit, or of texts."""
     return OutputColumn(parameter.label, "text" if parameter.unit is None else "number", parameter.unit or "")
 
 

@@ -239,7 +239,7 @@ def collect_warnings(head: SweepHead, rows: Iterable[SweptRow]) -> SweepWarnings
 
 
 def print_warnings_summary(summary: SweepWarnings, quiet: bool) -> None:
-    """Print the failures and warnings."""
+    """Print to standard error how many variants failed by code, and each warning with its count."""
     if quiet:
         return
     for text, count in summary.warnings.values():

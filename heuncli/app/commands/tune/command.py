@@ -8,10 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from heuncli.analyses.tune.results import (
-    Trials,
-    TuneResults,
-)
+from heuncli.analyses.tune.results import Trials, TuneResults
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
@@ -24,17 +21,17 @@ from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import parse_overrides, print_warnings, require_tolerance
 from heuncli.app.cli.target import (
     choose_format,
-    is_same_file,
+    is_output,
     note_si_format,
     parse_units,
     require_other_file,
     require_writable,
 )
 from heuncli.app.cli.variant_workers import choose_job_count, make_death_result, require_job_count, solve_contained
+from heuncli.app.commands.tune.as_json import TunedScene, make_history
 from heuncli.app.commands.tune.options import FORMATS, TuneRequest, TuningOptions, make_task, parse_options
-from heuncli.app.commands.tune.page import TunedScene, make_document, make_history
+from heuncli.app.commands.tune.page import make_document
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.base.files import STDOUT
 from heuncli.output.documents.as_data import iter_csv
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.source import read_text
@@ -73,7 +70,7 @@ def require_consistent_options(request: TuneRequest, options: TuningOptions) -> 
     if request.history is None:
         return
     require_writable(request.history, "--history")
-    if is_same_file("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.history):
+    if is_output(request.history, request.output):
         message = f"--history {request.history}: the result is written to this file"
         raise UsageError(Problem("bad-option", message, hint="name another file"))
 

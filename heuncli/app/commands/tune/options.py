@@ -118,7 +118,7 @@ class TuningOptions(NamedTuple):
 
 
 def parse_options(request: TuneRequest) -> TuningOptions:
-    """Parse the options of a request. Raises UsageError, AxisError."""
+    """Parse the variables, the goal and the limits. Raises UsageError, AxisError."""
     path, variables = parse_words(request.words)
     goals = [(text, greatest) for text, greatest in ((request.minimise, False), (request.maximise, True)) if text]
     if len(goals) != 1:
