@@ -88,7 +88,7 @@ def test_what_is_0_takes_no_column_but_a_vector_stays_whole() -> None:
     (text,) = at_one("joints", joints={"a": {**pivot, "axial": 0 * ONE}})
     heads = [word for word in text.splitlines()[1].split() if not word.startswith("[")]
     assert heads == ["joint", "Fx", "Fy", "Fz", "|F|"]
-    assert text.splitlines()[-1] == "Rows that are zero at all times are not shown."
+    assert text.splitlines()[-1] == "Columns that are zero in every row are not shown."
 
 
 def test_a_run_that_stopped_says_so_once() -> None:

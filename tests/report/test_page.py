@@ -204,7 +204,7 @@ def test_instants_stand_below_each_other() -> None:
 
 def test_one_instant_takes_a_line_a_joint() -> None:
     (text,) = instants_page([0.5], {"joints"})
-    assert [line.split()[0] for line in text.splitlines()] == ["JOINTS", "joint", "pivot", "elbow", "Rows"]
+    assert [line.split()[0] for line in text.splitlines()] == ["JOINTS", "joint", "pivot", "elbow", "Columns"]
 
 
 def test_columns_of_different_unit_stand_in_different_tables() -> None:

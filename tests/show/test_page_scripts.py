@@ -118,9 +118,8 @@ def test_frames_are_found_by_their_instants() -> None:
 
 
 def test_a_run_is_proposed_at_a_speed_at_which_it_is_seen() -> None:
-    found = run(
-        "return given.map((duration) => player_js.proposeSpeed(duration));", [0.05, 0.08, 2.0, 36.0, 5000.0, 1e-9]
-    )
+    durations = [0.05, 0.08, 2.0, 36.0, 5000.0, 1e-9]
+    found = run("return given.map((duration) => player_js.proposeSpeed(duration));", durations)
     assert found == [0.01, 0.01, 1, 1, 100, 0.0001]
 
 

@@ -159,6 +159,8 @@ def make_accuracy_parts(data: ReportData) -> list[Part]:
     """Make the chapter: how errors were found, how far each kind of number is certain, checks, runs and sources."""
     parts: list[Part] = [Sentence(f"{text} {LIMITS_NOTE}") for text in dict.fromkeys(map(_explain_errors, data.runs))]
     parts += [_make_error_table(data), _make_balance_table(data)]
+    if notes := _list_notes(data):  # above the tables: below, one line may stand alone on the last page
+        parts.append(Facts(notes))
     solved = [[run.case_label, *_describe_solution(run)] for run in data.runs]
     if data.has_cases:
         heads = [OutputColumn(head, "text") for head in SOLUTION_HEADS]
@@ -168,7 +170,7 @@ def make_accuracy_parts(data: ReportData) -> list[Part]:
         rows = [[TextCell(head), TextCell(text)] for head, text in zip(SOLUTION_HEADS[1:], solved[0][1:], strict=True)]
         parts.append(OutputTable("SOLUTION", heads, rows, (), "half"))
     parts.append(_make_provenance_table(data, "page" if data.has_cases else "half"))
-    return [*parts, *([Facts(notes)] if (notes := _list_notes(data)) else [])]
+    return parts
 
 
 def _explain_errors(run: ReportedRun) -> str:

@@ -38,6 +38,11 @@ MAX_WHOLE_ROWS = 20  # of a table that is kept on one page
 TALL_HEIGHT = 480.0  # pixels of a first figure that has a key of its numbers below, and gets more of the page
 LONG_CELL = 34  # characters; a longer cell may wrap
 VOID_TAGS = ("meta", "br", "img")  # tags without an end tag
+LOW_FIGURES = """@media print { /* landscape: the machine and the summary on the first page, a figure on one page */
+  figure.first svg, figure.first.tall svg { max-height: 65mm; }
+  figure svg { max-height: 145mm; }
+}
+"""
 PAPERS = {"a4": "A4", "letter": "letter"}  # words of --paper -> names of CSS
 
 
@@ -246,7 +251,8 @@ def make_page_style(sheet: Sheet) -> str:
         "padding-top: 3mm }"
     )
     first = "@page :first {\n  @top-left { content: none }\n  @top-right { content: none }\n}\n"
-    return f"\n@page {{\n  size: {size};\n" + "\n".join(rules) + "\n}\n" + first
+    low = LOW_FIGURES if sheet.is_landscape else ""
+    return f"\n@page {{\n  size: {size};\n" + "\n".join(rules) + "\n}\n" + first + low
 
 
 def quote_css(text: str) -> str:

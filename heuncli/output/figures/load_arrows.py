@@ -22,6 +22,7 @@ from heuncli.output.figures.acting_loads import (
     DistributedLoad,
 )
 from heuncli.output.figures.posed_machine import to_pair
+from heuncli.output.figures.windows import Window
 from heuncli.output.machine_geometry.views import SceneView
 from heuncli.results.results import Array
 from heuncli.study.quantities.captions import describe_object
@@ -80,15 +81,15 @@ def scale_loads(loads: ActingLoads, view: SceneView, size: float, side: float) -
     return LoadDrawing(loads, view, size, side, LONGEST_ARROW * side / largest[0], LONGEST_MOMENT * side / largest[1])
 
 
-def draw_loads(drawing: LoadDrawing) -> Iterator[Arrow | Strokes | Symbol]:
-    """Draw the arrows."""
+def draw_loads(drawing: LoadDrawing, window: Window) -> Iterator[Arrow | Strokes | Symbol]:
+    """Draw the arrows, without reactions on bodies outside the window, such as on a far anchor on the ground."""
     for distributed in drawing.loads.distributed:
         yield from _draw_distributed_load(distributed, drawing)
     for load in drawing.loads.loads:
         place, arrow = drawing.find_place(load), drawing.find_arrow(load)
         depth, length = float(drawing.view.compute_depth(load.vector)), drawing.find_scale(load) * load.magnitude
         description = f"{'moment' if load.is_moment else 'force'}: {load.name}"
-        if load.is_reaction and length < MIN_REACTION * drawing.side:
+        if load.is_reaction and (length < MIN_REACTION * drawing.side or not window.contains(place)):
             continue
         if drawing.faces_viewer(load):
             symbol = "turning" if depth > 0.0 else "turning back"

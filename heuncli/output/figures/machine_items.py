@@ -325,7 +325,8 @@ def draw_joint_actions(posed_machine: PosedMachine, k: int, drawn_names: Collect
         seen_axis = posed_machine.project_direction(joint.a, axis, k)
         symbol = action.symbols[int(posed_machine.find_depth_component(joint.a, axis, k) < 0.0)]
         symbol_axis = to_pair(seen_axis) if action.slides and seen_axis.any() else (1.0, 0.0)
-        label = f"{action.name}: {action.load_kind} on {action.joint}"
+        kind = "force" if action.load_kind == "torque" and action.slides else action.load_kind
+        label = f"{action.name}: {kind} on {action.joint}"
         yield Symbol(*to_pair(posed_machine.project(joint.b, joint.q, k)), symbol, symbol_axis, LOAD_PEN, label)
 
 

@@ -147,7 +147,7 @@ def make_machine_figure(
     view, size, side = posed_machine.view, posed_machine.size, machine_window.side
     loads = loads.drop_slight_moments(side / size)
     drawing = scale_loads(loads, view, size, side)
-    load_items = list(draw_loads(drawing))
+    load_items = list(draw_loads(drawing, machine_window))
     arrows = [item for item in load_items if isinstance(item, Arrow)]
     window = machine_window.extend_to_arrows(arrows)
     labels = make_labels(posed_machine.spec)

@@ -37,6 +37,10 @@ class Window(NamedTuple):
         """Its larger side."""
         return float((self.high - self.low).max())
 
+    def contains(self, place: Array) -> bool:
+        """Return whether a place (2,) lies in the window."""
+        return bool((self.low <= place).all() and (place <= self.high).all())
+
     def extend_to_arrows(self, arrows: Sequence[Arrow]) -> Window:
         """Extend the window so that it contains the arrows, with room for two lines of words at their tips."""
         tips = [(a.x + a.by_x, a.y + a.by_y) for a in arrows]

@@ -23,6 +23,7 @@ from heuncli.study.quantities.digits import (
     OPEN_NOTE,
     UNKNOWN,
     UNKNOWN_NOTE,
+    ZERO_COLUMNS_NOTE,
     ZERO_NOTE,
     StatedErrors,
     Style,
@@ -86,7 +87,7 @@ def _make_envelope(
         columns += [OutputColumn(f"{channel.label} {word}".rstrip(), unit=unit, vector=channel.label) for word in words]
     if not columns:
         return OutputTable("", notes=(*notes, "all values 0"))
-    return _make_cuts_table(series, shown_cuts, columns, cells, [*notes, *[ZERO_NOTE] * left_out])
+    return _make_cuts_table(series, shown_cuts, columns, cells, [*notes, *[ZERO_COLUMNS_NOTE] * left_out])
 
 
 def _make_cuts_table(
@@ -216,7 +217,7 @@ def _drop_zero_columns(series: CutSeries, table: OutputTable) -> OutputTable:
     shown_columns = [i for i in range(n) if i < lead or {format_cell(row[i]) for row in cells} != {"0"}]
     if len(shown_columns) in (lead, n):
         return table
-    return select_columns(table, shown_columns)._replace(notes=(*table.notes, ZERO_NOTE))
+    return select_columns(table, shown_columns)._replace(notes=(*table.notes, ZERO_COLUMNS_NOTE))
 
 
 def _choose_styles(

@@ -190,6 +190,8 @@ def _make_group_rows(
         lines.append((row.label + "*" * partly_open, unit, *cells[i][:2], ends[0], low_at, ends[1], high_at))
     if open_labels:
         notes.add(OPEN_NOTE)
+    if not lines:
+        notes.discard(ZERO_NOTE)  # the group says that all of it is zero
     return lines, open_labels, notes
 
 

@@ -13,7 +13,7 @@ from heuncli.study.quantities.digits import (
     OPEN,
     UNKNOWN,
     UNKNOWN_NOTE,
-    ZERO_NOTE,
+    ZERO_COLUMNS_NOTE,
     StatedErrors,
     format_unclaimed,
     write_times,
@@ -37,7 +37,7 @@ def make_instants_tables(
         units = {row.label: stated_errors.units.find(row.unit)[0] for group in groups for row in group.rows}
         labels = _find_nonzero_labels(groups, cells) if word == OPEN else _order_labels(groups)
         if len(labels) < len(units):
-            notes.append(ZERO_NOTE if labels else f"all values 0: {', '.join(group.name for group in groups)}")
+            notes.append(ZERO_COLUMNS_NOTE if labels else f"all values 0: {', '.join(group.name for group in groups)}")
         vectors = {row.label: row.vector for group in groups for row in group.rows}
         columns = [OutputColumn(label, unit=units[label], vector=vectors[label]) for label in labels]
         lead, rows = layout(block, groups, labels, cells, times)

@@ -216,7 +216,9 @@ def _format_angle(row: SummaryRow, labels: Labels) -> str:
     if row.angle is None or row.is_constant:
         return ""
     unit, size = _find_angle_unit(labels)
-    return f"{size * row.angle:.{1 if unit == 'deg' else 3}f}".replace("-", "−")
+    decimals = 1 if unit == "deg" else 3
+    angle = round(size * row.angle, decimals) + 0.0  # no -0.0
+    return f"{angle:.{decimals}f}".replace("-", "−")
 
 
 # As data, SI

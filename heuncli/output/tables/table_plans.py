@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from heuncli.base.joint_kinds import TYPES
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Results
@@ -83,8 +84,12 @@ def _make_sensor_note(name: str, labels: Labels) -> str:
 
 def _make_force_note(name: str, labels: Labels) -> str:
     info = labels.forces.get(name)
-    kind = LOAD_KINDS[info.type].display_name if info else ""
-    return f"{kind} on {info.joint}" if info and info.joint else kind
+    if info is None or not info.joint:
+        return LOAD_KINDS[info.type].display_name if info else ""
+    joint = labels.joints.get(info.joint)
+    slides = joint is not None and "angle" not in TYPES[joint.type].coordinates
+    kind = "force" if info.type == "torque" and slides else LOAD_KINDS[info.type].display_name
+    return f"{kind} on {info.joint}"
 
 
 def _make_stop_note(name: str, labels: Labels) -> str:
@@ -216,7 +221,9 @@ BUCKLING = TablePlan(
     "sections",
     "section",
     ("buckling",),
-    lambda results, labels: "BUCKLING  Euler's load over the largest compression along the run; 1000: that or more",
+    lambda results, labels: (
+        "BUCKLING  Euler's load over the largest compression along the run; 1000: any larger value, and tension"
+    ),
 )
 ENERGY = TablePlan(
     "energy",

@@ -9,6 +9,7 @@ const MAX_LENGTH = 0.3; // of the scene's radius: the longest arrow of the run
 const MIN_NUMBERED = 4e-3; // of the longest arrow: a shorter one has no number
 const MIN_RANK = 1.5; // of a number among the labels: that of the shortest arrow
 const MAX_RANK = 3; // that of the longest
+const LABEL_GAP = 8; // pixels between a tip and its number
 const SCALE_LENGTH = 90; // pixels: no scale bar in the corner is longer
 
 /** The length of one SI unit [m], for forces (key false) and for moments (key true). */
@@ -19,6 +20,12 @@ function computeScales(choice, view, size) {
   }
   const length = MAX_LENGTH * view.radius * size;
   return new Map([...largest].map(([kind, value]) => [kind, value > 0 ? length / value : 0]));
+}
+
+/** The direction of an arrow on the screen, of unit length; null for one that points at the viewer. */
+function findDirection(dx, dy) {
+  const length = Math.hypot(dx, dy);
+  return length > 1 ? [dx / length, dy / length] : null;
 }
 
 const chooseColour = (row, colours) => (isMoment(row) ? colours.moment : colours.force);
@@ -47,7 +54,8 @@ export function drawArrows(pen, view, poses, options, colours, labels) {
     const share = (norm(vector) * metres) / (MAX_LENGTH * view.radius * size);
     if (!values || text === "0" || share < MIN_NUMBERED) continue;
     const label = `${choice.rows.length > 1 ? `${name} ` : ""}${text} ${row.unit}`;
-    labels.add(`${row.path} ${name}`, label, ...tip, colour, MIN_RANK + (MAX_RANK - MIN_RANK) * share);
+    const rank = MIN_RANK + (MAX_RANK - MIN_RANK) * share;
+    labels.add(`${row.path} ${name}`, label, ...tip, colour, rank, LABEL_GAP, findDirection(dx, dy));
   }
 }
 

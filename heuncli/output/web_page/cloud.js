@@ -18,7 +18,7 @@ function spreadDirections(count) {
 }
 
 /** Split a list of numbers into points of three. */
-function splitPoints(list) {
+export function splitPoints(list) {
   const found = [];
   for (let i = 0; i + 2 < list.length; i += 3) found.push([list[i], list[i + 1], list[i + 2]]);
   return found;

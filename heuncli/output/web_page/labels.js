@@ -4,6 +4,7 @@ import { FONT, drawText } from "./strokes.js";
 
 const MARGIN_TO_RIM = 4; // pixels: words keep so far from the rim of their canvas
 const LINE_HEIGHT = 15; // pixels: of a line of words
+const MIN_ALIGNMENT = 0.6; // cosine: a slot nearer to a direction lies along it
 const LABEL_GAP = 3; // pixels between words
 const STICKINESS = 0.3; // by which rank what was shown last goes before others, so that words do not flicker
 /** The positions of a label about its point: side across, side down, multiple of the gap. */
@@ -23,6 +24,21 @@ function measureWidth(pen, text) {
   return widths.get(text);
 }
 
+/** The cosine between a direction of unit length and that of a slot. */
+function alignSlot([across, down], direction) {
+  return (across * direction[0] + down * direction[1]) / Math.hypot(across, down);
+}
+
+/** Order the slots of a label: the last one first unless a direction has turned away from it, then those along it. */
+function orderSlots({ slots, direction }, last) {
+  const order = slots.map((_, k) => k);
+  const isAlong = (k) => !direction || alignSlot(slots[k], direction) > MIN_ALIGNMENT;
+  order.sort((a, b) => Number(isAlong(b)) - Number(isAlong(a)));
+  const place = order.indexOf(last);
+  if (place > 0 && isAlong(last)) order.unshift(...order.splice(place, 1));
+  return order;
+}
+
 /** The labels of one canvas. */
 export class LabelList {
   constructor() {
@@ -39,9 +55,11 @@ export class LabelList {
   /**
    * Add a label beside a point.
    * @param {string} key of what it names @param {number} rank the greatest is placed first
+   * @param {number[]} [direction] of unit length, in which the label should stand: beyond an arrow's tip, beside a bar
    */
-  add(key, text, x, y, colour, rank, gap = 8) {
-    this.items.push({ key, text, x, y, colour, rank: rank + (this.last.has(key) ? STICKINESS : 0), gap, slots: SLOTS });
+  add(key, text, x, y, colour, rank, gap = 8, direction = null) {
+    const stickiness = this.last.has(key) ? STICKINESS : 0;
+    this.items.push({ key, text, x, y, colour, rank: rank + stickiness, gap, slots: SLOTS, direction });
   }
 
   /** Add a label with one possible position, which is left out if that is taken. */
@@ -57,9 +75,7 @@ export class LabelList {
     this.items.sort((a, b) => b.rank - a.rank);
     for (const item of this.items) {
       const textWidth = measureWidth(this.pen, item.text);
-      const before = this.last.get(item.key);
-      const slotOrder = item.slots.map((_, k) => k);
-      if (before > 0 && before < slotOrder.length) slotOrder.unshift(...slotOrder.splice(before, 1));
+      const slotOrder = orderSlots(item, this.last.get(item.key));
       for (const slot of slotOrder) {
         const box = this.findBox(item, item.slots[slot], textWidth);
         const free = placed.every((b) => box[0] >= b[2] || box[2] <= b[0] || box[1] >= b[3] || box[3] <= b[1]);

@@ -1,40 +1,65 @@
 /** @file Draws the machine: bodies and symbols by depth, then arrows and section loads, then all labels. */
 
 import { drawArrowScales, drawArrows } from "./arrows.js";
+import { splitPoints } from "./cloud.js";
 import { paintLine } from "./load_symbols.js";
 import { drawLoad, drawLoadScale } from "./loads.js";
 import { drawActing, drawMark, nameMark } from "./marks.js";
 import { Painter } from "./painter.js";
-import { drawPaths, computePoses, locatePoint } from "./poses.js";
+import { drawPaths, computePoses, locatePoint, rotateDirection } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { paintBelt, paintRope } from "./ropes.js";
 import { clearCanvas } from "./strokes.js";
 import { drawCorner, drawGroundPoint, paintJoint, paintPath } from "./symbols.js";
+import { add, cross, norm, normalize, scale, subtract } from "./vectors.js";
 
+const MANY_JOINTS = 40; // with more of them symbols are dots
+const MAX_THIN = 22; // pixels: half the thickness of a body whose name stands beside it
+const SLENDER = 4; // its length is more than so many times that
+const NAME_GAP = 8; // pixels between a name and the middle or the edge of its body
 
-const MANY_JOINTS = 40; // joints
+/** The points of what is drawn of a body, body axes [m]. */
+function listPoints(body) {
+  const balls = body.surfaces.flatMap((surface) => (surface.ball ? [surface.ball.center] : []));
+  const lists = body.surfaces.flatMap((surface) => (surface.ball ? [] : [surface.corners]));
+  return [...balls, ...(body.surfaces.length ? lists : body.bars).flatMap(splitPoints)];
+}
 
-/** Get the middle of what is drawn of a body, body axes [m], where its name stands. */
-function getMiddle(body) {
-  if (body.middle) return body.middle;
-  const solid = body.surfaces.map((surface) => surface.ball?.center ?? surface.corners);
-  const clouds = solid.length ? solid : body.bars;
-  const sum = [0, 0, 0];
-  let count = 0;
-  for (const cloud of clouds) {
-    for (let i = 0; i < cloud.length; i += 1) sum[i % 3] += cloud[i];
-    count += cloud.length / 3;
+/**
+ * Get where the name of a body stands: the middle of what is drawn of it, and its longest axis, from one end to the
+ * other, with its thickness across that; body axes [m]. Computed once.
+ */
+function getShape(body) {
+  if (!body.shape) {
+    const points = listPoints(body);
+    const middle = points.reduce((sum, p) => add(sum, scale(p, 1 / points.length)), [0, 0, 0]);
+    const findFarthest = (from) =>
+      points.reduce((far, p) => (norm(subtract(p, from)) > norm(subtract(far, from)) ? p : far), middle);
+    const end = findFarthest(middle);
+    const axis = subtract(findFarthest(end), end);
+    const along = normalize(axis);
+    const thickness = points.reduce((most, p) => Math.max(most, norm(cross(along, subtract(p, middle)))), 0);
+    body.shape = { middle, axis, thickness };
   }
-  body.middle = sum.map((c) => (count ? c / count : 0));
-  return body.middle;
+  return body.shape;
+}
+
+/** Write the name of a body at its middle, or beside it where it is so thin that the name would cover it. */
+function writeBodyName(labels, body, k, poses, view, colours) {
+  const { middle, axis, thickness } = getShape(body);
+  const [x, y] = view.project(locatePoint(poses, k, middle));
+  const [dx, dy] = view.projectVector(rotateDirection(poses, k, axis));
+  const half = thickness * view.scale;
+  const length = Math.hypot(dx, dy);
+  const isThin = half < MAX_THIN && length > SLENDER * half && length > 1;
+  const upward = dx > 0 ? [dy / length, -dx / length] : [-dy / length, dx / length];
+  const gap = isThin ? half + NAME_GAP : NAME_GAP;
+  labels.add(`body ${body.name}`, body.caption, x, y, colours.ink, 1.2, gap, isThin ? upward : null);
 }
 
 /** Write the names of bodies and joints. @param {boolean} areNamed whether the arrows name the joints */
 function drawNames(labels, scene, poses, view, colours, areNamed) {
-  scene.bodies.forEach((body, k) => {
-    const [x, y] = view.project(locatePoint(poses, k, getMiddle(body)));
-    labels.add(`body ${body.name}`, body.caption, x, y, colours.ink, 1.2);
-  });
+  scene.bodies.forEach((body, k) => writeBodyName(labels, body, k, poses, view, colours));
   for (const joint of areNamed ? [] : scene.joints) {
     const [x, y] = view.project(locatePoint(poses, joint.b, joint.q));
     labels.add(`joint ${joint.name}`, joint.caption, x, y, colours.faint, 1, 10);

@@ -35,6 +35,7 @@ LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
 OPEN = "open"
 OPEN_NOTE = "open: statically indeterminate, depends on stiffness"
 ZERO_NOTE = "Rows that are zero at all times are not shown."
+ZERO_COLUMNS_NOTE = "Columns that are zero in every row are not shown."
 UNKNOWN = "?"
 UNKNOWN_NOTE = "?: the estimated error is as large as the number, as past the horizon or near a singular position"
 LOADS: tuple[Literal["reactions", "drives", "foundation", "sections"], ...] = (
