@@ -167,9 +167,7 @@ def is_noise(
     return size <= scene.limits.newton_part * run.control.tolerance or size <= scene.limits.newton_rounding
 
 
-def begin_stages(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
-) -> cython.void:
+def begin_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """Start W and Z with the solution of the linear equations at the start, and find the sizes that corrections are
     compared with.
     """

@@ -200,9 +200,9 @@ class StateSearch:
                 next_states[n] = STICKS
         jam = next(
             (
-                (int(loads["span"][k]), places.load_rows[k])
+                (int(loads["friction_outcome"][k]), places.load_rows[k])
                 for k in range(len(loads))
-                if places.presses[k] and loads["span"][k] != kernel.FOUND
+                if places.presses[k] and loads["friction_outcome"][k] != kernel.FOUND
             ),
             None,
         )
