@@ -319,7 +319,7 @@ def test_blocks_that_break_away_together_or_nearly_so(delta: float, speed: float
         assert not found[:4].any()
 
 
-BELT = """
+SPRUNG_BELT = """
 heun: 1
 gravity: [0, -9.81, 0]
 ground: {{points: {{O: [0, 0, 0], wall: [-1, 0, 0]}}}}
@@ -341,7 +341,7 @@ expect:
 
 def test_sticking_is_an_event_with_its_instants() -> None:
     """It slips after Fs / (k v), for 2/w (pi - atan(A w / v)), and sticks for 2 A / v, with A = (Fs - Fk) / k."""
-    r = solved(BELT.format(events=""))
+    r = solved(SPRUNG_BELT.format(events=""))
     event = r.events["rub_sticks"]
     slips = 0.4 * (math.pi - math.atan(2.0))
     assert event["condition"] == "forces.rub sticks"
@@ -350,11 +350,11 @@ def test_sticking_is_an_event_with_its_instants() -> None:
     wanted = np.array([1.2, 1.2 + slips, 2.0 + slips])
     assert (np.abs(event["time"] - wanted) <= 2.0 * event["error"] + 1e-12).all()
     assert (event["error"] < 1e-7).all()
-    assert "rub_sticks" not in solved(BELT.format(events="").replace("static: 6", "speed: 1e-3")
+    assert "rub_sticks" not in solved(SPRUNG_BELT.format(events="").replace("static: 6", "speed: 1e-3")
                                       .partition("expect")[0]).events  # fmt: skip
 
 
 def test_the_name_of_a_sticking_event_is_reserved() -> None:
     with pytest.raises(SpecError, match="'rub_sticks' is reserved") as error:
-        solved(BELT.format(events=", events: {rub_sticks: t > 1}"))
+        solved(SPRUNG_BELT.format(events=", events: {rub_sticks: t > 1}"))
     assert error.value.problems[0].code == "event-name"

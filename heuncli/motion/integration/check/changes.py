@@ -214,7 +214,7 @@ def find_held_changes_in_run(name: str, run: Trajectory, contacts: Sequence[int]
     """Find when all of some contacts hold in one run; of several changes at one instant, the state after them
     counts.
     """
-    is_held = (run.holding[:, list(contacts)] > 0.0).all(axis=1)
+    is_held = np.asarray((run.holding[:, list(contacts)] > 0.0).all(axis=1))
     begins = np.concatenate([[0.0], run.ends])[: len(is_held)]
     is_last = np.append(begins[1:] != begins[:-1], True)
     begins, is_held = begins[is_last], is_held[is_last]
