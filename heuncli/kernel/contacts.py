@@ -132,7 +132,7 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
         contact.level = 1e300  # no doubt
         if contact.friction and may_change_state(scene, contact, run):
-            contact.level = friction_threshold(scene, contact, fabs(run.end))
+            contact.level = friction_threshold(scene, contact, fabs(run.end), run.late)
             doubt = 2 if row.mode == CARRIES or doubt == 2 else 1
         if contact.sense == 0:
             continue

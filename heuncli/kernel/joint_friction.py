@@ -176,7 +176,7 @@ def find_normal_forces(scene: cython.pointer[Scene]) -> cython.void:
     for k in range(n):
         load: cython.pointer[Load] = cython.address(scene.loads[scene.friction_loads[k]])
         load.normal_force = scene.friction_trial[k] if outcome == FOUND else NAN
-        load.span = outcome if k == failing else FOUND
+        load.friction_outcome = outcome if k == failing else FOUND
 
 
 def factor_friction_bound(scene: cython.pointer[Scene]) -> cython.int:

@@ -113,7 +113,7 @@ def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
                 rate = u
     for i in range(scene.load_count):
         load: cython.pointer[Load] = cython.address(scene.loads[i])
-        inertia = least_inertia(scene, run, load.a, load.b)
+        inertia = least_inertia(scene, run, load)
         u = sum_magnitudes(load.force) + sum_magnitudes(load.moment) / scene.size
         if inertia > 0.0 and u > square * inertia:
             square = u / inertia
@@ -124,17 +124,18 @@ def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
     run.control.is_balanced = run.control.rate < scene.limits.balanced_rate * run.control.imposed_rate
 
 
-def least_inertia(
-    scene: cython.pointer[Scene], run: cython.pointer[Run], a: cython.int, b: cython.int
-) -> cython.double:
-    """Return the lesser mass of two bodies by the size; -1: the ground. One without mass counts as the least of all."""
-    first: cython.double = body_inertia(scene, run, a)
-    second: cython.double = body_inertia(scene, run, b)
+def least_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], load: cython.pointer[Load]) -> cython.double:
+    """Return the lesser mass by the size of the bodies on which a load acts; 1e300 for the ground alone.
+
+    Loads on a body without mass move others: they are taken to act on the lightest.
+    """
+    first: cython.double = body_inertia(scene, run, load.a)
+    second: cython.double = body_inertia(scene, run, load.b)
     return first if first < second else second
 
 
 def body_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], k: cython.int) -> cython.double:
-    """Return the mass of a body by the size; of the ground 1e300, of one without mass the least of all."""
+    """Return the mass of a body by the size; of the ground, -1, 1e300; of one without mass that of the lightest."""
     if k < 0:
         return 1e300
     return scene.bodies[k].mass * scene.size if scene.bodies[k].mass > 0.0 else run.control.least_inertia

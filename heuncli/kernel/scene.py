@@ -156,12 +156,13 @@ class Load(Record):
     place: Vec3  # where on b
     place_on_a: Vec3  # where on a
     value: float
-    span: float  # length of the line, of a rope; of a turn spring its angle; of friction its normal force's outcome
+    span: float  # length of the line, of a rope; of a turn spring its angle
     strain: Vec3  # for a bushing: its shift or its turn, in its axes
     rate: float
     power: float
     unit: Vec3  # for joint friction: force or moment on b for a normal force of 1; of a thread the moment
     normal_force: float  # normal force [N]; of GIVEN friction its size [N], [N m]
+    friction_outcome: float  # what solutions its normal force has: FOUND, JAMS, TWO, UNPROVED
     slip: float  # for friction that may stick: 1 or -1, the sign of its rate while it slips; 0 while it sticks
     reserve: float  # how much more it could take before it slips; 0 while it slips
 

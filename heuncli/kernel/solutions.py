@@ -47,7 +47,8 @@ def write_load(
     offset = write_number(buffer, offset, load.rate)
     offset = write_number(buffer, offset, load.power)
     offset = write_number(buffer, offset, load.reserve)
-    return write_number(buffer, offset, load_potential(scene, load))
+    offset = write_number(buffer, offset, load_potential(scene, load))
+    return write_number(buffer, offset, load.friction_outcome)
 
 
 def write_row(

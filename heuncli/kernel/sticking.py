@@ -87,11 +87,11 @@ def sticking_limit(scene: cython.pointer[Scene], contact: cython.pointer[Contact
 
 
 def friction_threshold(
-    scene: cython.pointer[Scene], contact: cython.pointer[Contact], last: cython.double
+    scene: cython.pointer[Scene], contact: cython.pointer[Contact], last: cython.double, late: cython.bint
 ) -> cython.double:
     """Return the margin above which the state changes, from its rounding over a step whose extremes are known.
 
-    last: the end of the piece [s]
+    last: the end of the piece [s]; late: at twice the rounding, to see how exactly the instant is met
 
     What begins at rest may begin with the rounding of its rate against its slip: in the shortest steps that is more
     than all that it gains.
@@ -100,7 +100,8 @@ def friction_threshold(
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     largest: cython.double = fabs(contact.least) if fabs(contact.least) > fabs(contact.most) else fabs(contact.most)
     if row.mode != APART:
-        return scene.limits.friction_rounding * (largest + sticking_limit(scene, contact))
+        rounding = scene.limits.friction_rounding * (largest + sticking_limit(scene, contact))
+        return 2.0 * rounding if late else rounding
     rounding = find_rate_rounding(scene, row, last)
     if contact.start >= -BEGINS_TO_SLIP * largest or contact.start >= -rounding:
         return BEGINS_TO_SLIP * largest if BEGINS_TO_SLIP * largest > rounding else rounding

@@ -101,7 +101,7 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
     seconds = {"load": options.load_seconds, "build": setup_end - start - rest_seconds, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - motion_end}
     study = Study(spec, options, setup, history, recovery if parts is None else None, results, impulses)
-    if not (conditions or spec.latches):
+    if not (conditions or spec.latches or history.changes):
         return study
     from heuncli.study.queries.events import add_events  # few scenes have them
 

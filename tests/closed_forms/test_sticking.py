@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
-from heuncli.base.errors import SolveError
+from heuncli.base.errors import SolveError, SpecError
 from heuncli.results.results import Results
 from tests.shared.scenes import solved
 
@@ -316,3 +317,44 @@ def test_blocks_that_break_away_together_or_nearly_so(delta: float, speed: float
         found = r.coordinates[f"slip{k}"]["speed"]
         assert found[-2:] == pytest.approx(wanted[-2:], rel=1e-8)
         assert not found[:4].any()
+
+
+SPRUNG_BELT = """
+heun: 1
+gravity: [0, -9.81, 0]
+ground: {{points: {{O: [0, 0, 0], wall: [-1, 0, 0]}}}}
+bodies:
+  belt: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{top: [0, 0, 0]}}}}
+  block: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{base: [0, 0, 0]}}}}
+joints:
+  run: {{type: slide, from: ground.O, to: belt.top, axis: [1, 0, 0]}}
+  contact: {{type: slide, from: belt.top, to: block.base, axis: [1, 0, 0], initial: {{speed: 0}}}}
+drives: {{motor: {{joint: run, speed: 0.1}}}}
+forces:
+  spring: {{type: spring, from: ground.wall, to: block.base, stiffness: 50, length: 1}}
+  rub: {{type: friction, joint: contact, force: 4, static: 6}}
+analysis: {{duration: 3, samples: 4{events}}}
+expect:
+  - {{of: events.rub_sticks.time, is: [1.2, 1.2 + 2/5*(pi - atan(0.04*5/0.1)), 2 + 2/5*(pi - atan(0.04*5/0.1))]}}
+"""
+
+
+def test_sticking_is_an_event_with_its_instants() -> None:
+    """It slips after Fs / (k v), for 2/w (pi - atan(A w / v)), and sticks for 2 A / v, with A = (Fs - Fk) / k."""
+    r = solved(SPRUNG_BELT.format(events=""))
+    event = r.events["rub_sticks"]
+    slips = 0.4 * (math.pi - math.atan(2.0))
+    assert event["condition"] == "forces.rub sticks"
+    assert event["begins"] is True
+    assert event["to"] == [False, True, False]
+    wanted = np.array([1.2, 1.2 + slips, 2.0 + slips])
+    assert (np.abs(event["time"] - wanted) <= 2.0 * event["error"] + 1e-12).all()
+    assert (event["error"] < 1e-7).all()
+    assert "rub_sticks" not in solved(SPRUNG_BELT.format(events="").replace("static: 6", "speed: 1e-3")
+                                      .partition("expect")[0]).events  # fmt: skip
+
+
+def test_the_name_of_a_sticking_event_is_reserved() -> None:
+    with pytest.raises(SpecError, match="'rub_sticks' is reserved") as error:
+        solved(SPRUNG_BELT.format(events=", events: {rub_sticks: t > 1}"))
+    assert error.value.problems[0].code == "event-name"

@@ -1,4 +1,4 @@
-"""Motions that stay exactly in equilibrium between drives, loads and springs take few steps: only rounding moves them."""
+"""Motions that stay exactly in equilibrium between drives and loads take few steps: only rounding moves them."""
 
 from __future__ import annotations
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
+from heuncli.motion.integration.contacts.complementarity import solve_complementarity
 from heuncli.motion.integration.contacts.restitution import (
     MAX_ROUNDS,
     ContactImpulses,
-    solve_complementarity,
     solve_contact_impulses,
 )
 from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts

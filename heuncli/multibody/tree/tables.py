@@ -86,7 +86,9 @@ def _solution_dtype(vectors: str, numbers: str = "") -> np.dtype[np.void]:
 SOLUTION_PARTS = {
     "bodies": _solution_dtype("R r omega v alpha a joint_moment joint_force"),
     "freedoms": _solution_dtype("", "q u udot drive"),
-    "loads": _solution_dtype("force moment at from_at strain", "value span rate power reserve potential"),
+    "loads": _solution_dtype(
+        "force moment at from_at strain", "value span rate power reserve potential friction_outcome"
+    ),
     "rows": _solution_dtype("f m", "multiplier doubt gap chosen closed rate acceleration terms"),
     "parts": _solution_dtype("f m Q on_a on_b", "gap"),
     "whole": _solution_dtype("", "gap idle pivot residual"),

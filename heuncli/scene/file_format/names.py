@@ -12,8 +12,10 @@ from heuncli.base.joint_kinds import TYPES
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import match_misspelt_keys
 from heuncli.scene.expressions.scope import RESERVED
+from heuncli.scene.file_format.couplings import ThreadFriction
 from heuncli.scene.file_format.entries import Entry, keys_of
 from heuncli.scene.file_format.format import BodyEntry, GroundEntry
+from heuncli.scene.file_format.loads import Friction
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.semantics import rotor_name
 
@@ -88,6 +90,33 @@ def collect_scene_names(spec: Spec) -> SceneNames:
     entries["events"] = {condition.name: condition for condition in spec.analysis.conditions}
     points = {name: dict(body.points) for name, body in spec.bodies.items()} | {GROUND: dict(spec.ground.points)}
     return SceneNames(entries, points, {name: joint.kind for name, joint in spec.joints.items()}, {})
+
+
+def name_sticking_event(name: str) -> str:
+    """Return the name of the event that a friction sticks."""
+    return f"{name}_sticks"
+
+
+def list_sticking_names(entries: dict[str, dict[str, Any]]) -> list[str]:
+    """List the names of the frictions, of forces and screws, that may stick: those without a speed.
+
+    entries: of a spec, or plain data that may have errors
+    """
+    names = []
+    for name, load in entries["forces"].items():
+        is_friction = isinstance(load, Friction) or as_mapping(load).get("type") == "friction"
+        if is_friction and get_value(load, "speed") is None:
+            names.append(name)
+    for name, coupling in entries["couplings"].items():
+        friction = get_value(coupling, "friction")
+        if (type(friction) is dict or isinstance(friction, ThreadFriction)) and get_value(friction, "speed") is None:
+            names.append(name)
+    return names
+
+
+def get_value(entry: Any, key: str) -> Any:
+    """Return a value of an entry, of a spec or as plain data; None if it has none."""
+    return entry.get(key) if type(entry) is dict else getattr(entry, key, None)
 
 
 def get_points(owner: Any, model: type[Entry]) -> dict[str, Any]:

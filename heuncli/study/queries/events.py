@@ -25,6 +25,7 @@ from heuncli.results.results import Array, Block, Results, Status
 from heuncli.results.results_paths import find_values
 from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND, EVENTS, SHARES
 from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
+from heuncli.scene.file_format.names import name_sticking_event
 from heuncli.scene.file_format.resolve_couplings import format_rounded_up
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
@@ -317,6 +318,11 @@ def add_event_blocks(study: Study, why: Mapping[str, str]) -> Study:
         for name, stop in study.spec.latches.items():
             if name in study.changes:
                 events[name] = make_event_block(f"{stop.joint}.{stop.quantity} held", study.changes[name])
+        layout = study.setup.runner.layout
+        for path in dict.fromkeys(layout.contacts[i].name for i in layout.friction_contacts):
+            name = name_sticking_event(path.rpartition(".")[2])
+            if name in study.changes:
+                events[name] = make_event_block(f"{path} sticks", study.changes[name])
         results = changed(results, events=events)
     for last in conditions:
         changes = study.changes[last.name]

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from heuncli.base import tolerances
+from heuncli.motion.integration.contacts.complementarity import solve_complementarity
 from heuncli.motion.integration.contacts.restitution import (
     is_short_flight,
-    solve_complementarity,
     solve_contact_impulses,
 )
 from heuncli.motion.integration.contacts.sequential_impacts import find_independent

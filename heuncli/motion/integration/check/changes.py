@@ -1,4 +1,4 @@
-"""Find when the conditions on a motion and its latches change, and estimate the error of these instants.
+"""Find when the conditions on a motion, its latches and its frictions change, and estimate the error of these instants.
 
 The error of an instant follows from that of the motion. The check run, or another neighbouring run, must show the same
 change within an interval d of time. Around the instant, its motion follows from rates and accelerations,
@@ -27,6 +27,7 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.file_format.names import name_sticking_event
 
 # Changes
 
@@ -182,27 +183,38 @@ def make_no_value_error(value: Expression, t: float) -> SolveError:
 UNKNOWN = math.nan  # an unknown error
 
 
-# Latch changes
+# Changes of what latches and frictions hold
 
 
-def find_latch_changes(layout: Layout, runs: Sequence[Trajectory], before_time: float) -> tuple[ConditionChanges, ...]:
-    """Find when each latch catches and releases in the first of several runs, before an instant."""
+def find_held_changes(layout: Layout, runs: Sequence[Trajectory], before_time: float) -> tuple[ConditionChanges, ...]:
+    """Find when each latch catches and releases, and each friction sticks and slips, in the first of several runs,
+    before an instant.
+    """
     found = []
-    for i in layout.latches:
-        latch_changes_of_run, *others = (find_latch_changes_in_run(layout.contacts[i].name, run, i) for run in runs)
-        found.append(
-            replace(latch_changes_of_run, error=estimate_latch_errors(latch_changes_of_run, others)).select_before(
-                before_time
-            )
-        )
+    for name, contacts in list_holding_contacts(layout).items():
+        changes, *others = (find_held_changes_in_run(name, run, contacts) for run in runs)
+        error = estimate_held_errors(changes, others)
+        found.append(replace(changes, error=error).select_before(before_time))
     return tuple(found)
 
 
-def find_latch_changes_in_run(name: str, run: Trajectory, contact: int) -> ConditionChanges:
-    """Find when a latch catches and releases in one run; of several changes at one instant, the state after them
+def list_holding_contacts(layout: Layout) -> dict[str, list[int]]:
+    """List the contacts of each event of this kind by its name: a latch's own, and NAME_sticks for a friction.
+
+    A friction that sticks in several directions, as in a cylinder, has a contact for each.
+    """
+    contacts_by_event = {layout.contacts[i].name: [i] for i in layout.latches}
+    for i in layout.friction_contacts:
+        name = name_sticking_event(layout.contacts[i].name.rpartition(".")[2])
+        contacts_by_event.setdefault(name, []).append(i)
+    return contacts_by_event
+
+
+def find_held_changes_in_run(name: str, run: Trajectory, contacts: Sequence[int]) -> ConditionChanges:
+    """Find when all of some contacts hold in one run; of several changes at one instant, the state after them
     counts.
     """
-    is_held = run.holding[:, contact] > 0.0
+    is_held = np.asarray((run.holding[:, list(contacts)] > 0.0).all(axis=1))
     begins = np.concatenate([[0.0], run.ends])[: len(is_held)]
     is_last = np.append(begins[1:] != begins[:-1], True)
     begins, is_held = begins[is_last], is_held[is_last]
@@ -210,7 +222,7 @@ def find_latch_changes_in_run(name: str, run: Trajectory, contact: int) -> Condi
     return ConditionChanges(name, bool(is_held[0]), begins[changed], is_held[changed], np.zeros(len(changed)))
 
 
-def estimate_latch_errors(changes: ConditionChanges, others: Sequence[ConditionChanges]) -> Array:
+def estimate_held_errors(changes: ConditionChanges, others: Sequence[ConditionChanges]) -> Array:
     """Return twice the time by which other runs have each change earlier or later; nan where one lacks it, (n,)."""
     error = tolerances.EPS * changes.times
     for other in others:

@@ -185,17 +185,17 @@ def make_checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> Ch
 
 
 def find_condition_changes(runs: Runs, best: RunComparison) -> tuple[ConditionChanges, ...]:
-    """Find when the conditions change, and when latches hold, up to the horizon."""
+    """Find when the conditions change, and when latches and frictions hold, up to the horizon."""
     layout, before_time = runs.runner.layout, np.inf if best.horizon is None else best.horizon
     found: tuple[ConditionChanges, ...] = ()
     if layout.mechanism.conditions:
         from heuncli.motion.integration.check.changes import find_changes  # few scenes have them
 
         found = find_changes(runs.runner, best.runs, before_time)
-    if layout.latches:
-        from heuncli.motion.integration.check.changes import find_latch_changes
+    if layout.latches or layout.friction_contacts:
+        from heuncli.motion.integration.check.changes import find_held_changes
 
-        found += find_latch_changes(layout, best.runs, before_time)
+        found += find_held_changes(layout, best.runs, before_time)
     return found
 
 

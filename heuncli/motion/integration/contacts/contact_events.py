@@ -11,6 +11,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import replace
+from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.contact_problem import (
     ContactNotes,
     ContactOutcome,
@@ -43,7 +44,6 @@ from heuncli.motion.integration.contacts.restitution import (
     ContactImpulses,
     estimate_acceleration_noise,
     find_contradicted,
-    find_coupled_groups,
     find_resting,
     is_short_flight,
     solve_contact_impulses,
@@ -81,7 +81,7 @@ def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
     """Return the contacts that are closed at a state, after the impulse that may happen there."""
     contacts = Contacts(evaluator, t)
     contacts.handle_event(GivenImpulse(t, t, (), {}), state, t, None)
-    return contacts.holding
+    return contacts.contact_states
 
 
 class Contacts:
@@ -90,7 +90,7 @@ class Contacts:
     def __init__(self, evaluator: Evaluator, last: float) -> None:
         self.evaluator, self.last = evaluator, last
         self.layout = evaluator.layout
-        self.holding = self.layout.open_contacts
+        self.contact_states = self.layout.open_contacts
         self.latches = Latches(self.layout, last)
         self.friction = FrictionStates(evaluator, last)
         self.notes = ContactNotes(self.layout, last)
@@ -109,11 +109,11 @@ class Contacts:
         latch_conditions: the conditions of latches there; by default evaluated at the state
         """
         latches = self.latches
-        is_closed = (self.holding > 0.0) & ~self.find_opening_redundant(row)
+        is_closed = (self.contact_states > 0.0) & ~self.find_opening_redundant(row)
         require_smooth(self.layout, given_impulse, is_closed)
         latch_conditions = latch_conditions or latches.evaluate_conditions(given_impulse.before_time, state)
         released = latches.release(latch_conditions)
-        sides = make_right_sides(self.evaluator, given_impulse, state, latches.holding())
+        sides = make_right_sides(self.evaluator, given_impulse, state, latches.make_states())
         contacts_touching = find_touching(self.layout, sides.still, is_closed, row, self.last)
         catches = latches.catch(latch_conditions, sides.still, contacts_touching)
         is_free = latches.find_free(contacts_touching)
@@ -127,29 +127,43 @@ class Contacts:
         shared_impulses = self.find_shared(problem, outcome, catches)
         self.notes.add_notes(time, contacts_touching, outcome, shared_impulses)
         self.notes.add_latch_notes(time, released, catches)
-        bearing, n = np.flatnonzero(outcome.impulses.impulses), len(sides.loads)
-        if not len(bearing) and not n:
+        if not outcome.impulses.impulses.any() and not sides.loads:
             return None
-        causes = (*sides.causes, *(self.layout.contacts[i].name for i in contacts_touching.indices[bearing]))
-        used_columns = np.array([*range(n), *(n + bearing)], dtype=int)
-        solution = ImpulseColumns(
-            outcome.columns.select(used_columns), solution.unmet[used_columns], solution.massless_count
-        )
+        result = self.make_result(time, sides, solution, problem, outcome, catches, shared_impulses)
         sides = replace(sides, still=self.with_active_contacts(sides.still, problem, outcome.impulses))
-        struck_names = tuple(
-            self.layout.contacts[i].name for i in contacts_touching.indices[outcome.impulses.takes_part]
-        )
-        struck_names += tuple(self.layout.contacts[catch.contact].name for catch in catches if catch.rate != 0.0)
-        result = ImpulseResult(
-            time, solution, causes, outcome.after_state, outcome.work, self.holding.copy(), struck_names,
-            shared_impulses,
-        )  # fmt: skip
         event = make_impulse_event(self.evaluator, given_impulse, sides, result)
-        energy_scale = 0.5 * float(outcome.impulses.impulses**2 @ np.diag(problem.A)) + free_impulse_energy(
-            self.layout, sides.impulses
-        )
-        require_energy(event, energy_scale)
+        energy_scale = 0.5 * float(outcome.impulses.impulses**2 @ np.diag(problem.A))
+        require_energy(event, energy_scale + free_impulse_energy(self.layout, sides.impulses))
         return event
+
+    def make_result(
+        self,
+        time: float,
+        sides: RightSides,
+        solution: ImpulseColumns,
+        problem: ContactProblem,
+        outcome: ContactOutcome,
+        catches: list[LatchCatch],
+        shared_impulses: tuple[SharedImpulse, ...],
+    ) -> ImpulseResult:
+        """Make the result of an event: what is given and what bears, each with its column, and the state after it."""
+        which, impulses, n = problem.touching.indices, outcome.impulses, len(sides.loads)
+        bearing = np.flatnonzero(impulses.impulses)
+        causes = (*sides.causes, *(self.layout.contacts[i].name for i in which[bearing]))
+        used_columns = np.array([*range(n), *(n + bearing)], dtype=int)
+        columns = outcome.columns.select(used_columns)
+        struck_names = tuple(self.layout.contacts[i].name for i in which[impulses.takes_part])
+        struck_names += tuple(self.layout.contacts[catch.contact].name for catch in catches if catch.rate != 0.0)
+        return ImpulseResult(
+            time,
+            ImpulseColumns(columns, solution.unmet[used_columns], solution.massless_count),
+            causes,
+            outcome.after_state,
+            outcome.work,
+            self.contact_states.copy(),
+            struck_names,
+            shared_impulses,
+        )
 
     def find_outcome(
         self,
@@ -169,31 +183,31 @@ class Contacts:
         self.friction.begin_event()
         for _ in range(MAX_FRICTION_CHANGES):
             outcome = self.solve_event(given_impulse, sides, units, problem, catches)
-            self.holding = self.friction.add_to(self.latches.holding())
-            self.holding[problem.touching.indices] = outcome.holding
-            self.holding[unwatched] = UNWATCHED
+            self.contact_states = self.friction.add_to(self.latches.make_states())
+            self.contact_states[problem.touching.indices] = outcome.contact_states
+            self.contact_states[unwatched] = UNWATCHED
             if not self.friction.places.indices:
                 return outcome
-            before, is_struck = self.holding.copy(), bool(sides.loads) or bool(outcome.impulses.impulses.any())
+            before, is_struck = self.contact_states.copy(), bool(sides.loads) or bool(outcome.impulses.impulses.any())
             sentences = self.friction.decide(given_impulse.after_time, outcome.after_state, before, row, is_struck)
-            self.holding = self.friction.add_to(before)
-            if not len(outcome.holding) or np.array_equal(before, self.holding):
+            self.contact_states = self.friction.add_to(before)
+            if not len(outcome.contact_states) or np.array_equal(before, self.contact_states):
                 self.notes.add(sentences)
                 return outcome
         raise self.friction.unsettled_error(given_impulse.after_time)
 
     def find_opening_redundant(self, row: int | None) -> Mask:
         """Mark the contact (contacts,) that redundant others held closed and whose gap, now beyond rounding, opens."""
-        is_left = np.zeros(len(self.holding), dtype=bool)
+        is_left = np.zeros(len(self.contact_states), dtype=bool)
         for k, contact in enumerate(self.layout.contacts):
-            is_left[k] = contact.row == row and self.holding[k] == CLOSED_BY_OTHERS
+            is_left[k] = contact.row == row and self.contact_states[k] == CLOSED_BY_OTHERS
         return is_left
 
     def make_problem(
         self, given_impulse: GivenImpulse, sides: RightSides, contacts_touching: TouchingContacts
     ) -> tuple[ImpulseColumns, ContactProblem]:
         """Compute the columns of what is given and of each touching contact, and the contact problem they make."""
-        self.evaluator.workspace.hold(self.latches.holding())
+        self.evaluator.workspace.hold(self.latches.make_states())
         n, n_u = len(sides.loads), len(self.layout.freedoms) + len(self.layout.rows)
         loads = np.array([*sides.loads, *contacts_touching.loads]).reshape(-1, len(self.layout.place), 6)
         jumps = np.array([*sides.jumps, *([np.zeros(n_u)] * len(contacts_touching.indices))]).reshape(-1, n_u)
@@ -217,16 +231,16 @@ class Contacts:
         """Solve for the impulses, then for the contacts that stay closed; a rebound too short to be seen does not
         count.
         """
-        contacts_touching, open_holding = problem.touching, self.friction.add_to(self.latches.holding())
+        contacts_touching, open_states = problem.touching, self.friction.add_to(self.latches.make_states())
         at_rest = np.zeros(len(contacts_touching.indices), dtype=bool)
         while True:
             impulses = self.solve_impulses(given_impulse.after_time, problem, at_rest)
             columns = self.scale_columns(units, contacts_touching, impulses.impulses)
             after_state, work = state_after(self.layout, given_impulse, sides, columns)
             after_evaluation = self.evaluator.evaluate(
-                np.array([given_impulse.after_time]), after_state[None, :], holding=open_holding
+                np.array([given_impulse.after_time]), after_state[None, :], holding=open_states
             )
-            holding, acceleration = find_resting(
+            contact_states, acceleration = find_resting(
                 contacts_touching, problem.A, problem.moves, impulses.rate, after_evaluation, self.layout
             )
             noise = estimate_acceleration_noise(self.layout, contacts_touching, problem.A, after_evaluation)
@@ -244,7 +258,7 @@ class Contacts:
                 break
             at_rest = at_rest | is_short
         if self.layout.mechanism.joint_friction or self.friction.places.indices:
-            self.require_decided(given_impulse.after_time, after_state, problem, holding, impulses.rate)
+            self.require_decided(given_impulse.after_time, after_state, problem, contact_states, impulses.rate)
         if impulses.impulses.any():
             bearing = np.flatnonzero(impulses.impulses)
             basis = np.arange(len(bearing))
@@ -256,7 +270,7 @@ class Contacts:
         work += float(impulses.impulses @ (0.5 * (contacts_touching.rate + impulses.rate)))
         work += compute_catch_work(self.layout, catches, columns.multipliers)
         self.bring_to_rest(sides.still.states[0], after_state)
-        return ContactOutcome(impulses, holding, at_rest, columns, after_state, work)
+        return ContactOutcome(impulses, contact_states, at_rest, columns, after_state, work)
 
     def solve_impulses(self, t: float, problem: ContactProblem, at_rest: Mask) -> ContactImpulses:
         """Solve for the impulses of the contacts; at_rest: those that stay closed. Raises SolveError for endless
@@ -306,13 +320,13 @@ class Contacts:
         return tuple(find_shared_impulses(contacts, is_coupled, outcome.columns.multipliers))
 
     def require_decided(
-        self, t: float, after_state: Array, problem: ContactProblem, holding: Array, rate: Array
+        self, t: float, after_state: Array, problem: ContactProblem, contact_states: Array, rate: Array
     ) -> None:
         """Raise SolveError where load-dependent joint friction makes other contacts bear than those that are held."""
-        contacts_touching, full_holding = problem.touching, self.friction.add_to(self.latches.holding())
-        full_holding[contacts_touching.indices] = holding
-        evaluation = self.evaluator.evaluate(np.array([t]), after_state[None, :], holding=full_holding)
-        is_wrong = find_contradicted(contacts_touching, problem.A, holding, rate, evaluation, self.layout)
+        contacts_touching, all_states = problem.touching, self.friction.add_to(self.latches.make_states())
+        all_states[contacts_touching.indices] = contact_states
+        evaluation = self.evaluator.evaluate(np.array([t]), after_state[None, :], holding=all_states)
+        is_wrong = find_contradicted(contacts_touching, problem.A, contact_states, rate, evaluation, self.layout)
         if is_wrong.any():
             names = ", ".join(self.layout.contacts[i].name for i in contacts_touching.indices[is_wrong])
             message = f"at t = {t:.9g} s whether {names} carries load depends on joint friction, and changes it"
@@ -339,9 +353,9 @@ class Contacts:
         jump[len(self.layout.freedoms) + np.array(rows)] -= (
             sense * (impulse_solution.rate - contacts_touching.rate)[basis]
         )
-        holding = self.latches.holding()
-        holding[contacts_touching.indices[basis]] = 1.0
-        self.evaluator.workspace.hold(holding)
+        contact_states = self.latches.make_states()
+        contact_states[contacts_touching.indices[basis]] = 1.0
+        self.evaluator.workspace.hold(contact_states)
         single_column = solve_impulses(
             self.evaluator.workspace, given_impulse.before_time, sides.still.states[0], load[None], jump[None]
         ).columns
@@ -395,16 +409,16 @@ class Contacts:
 
         A sequence determines the impulses of contacts that others could replace; these leave nothing indeterminate.
         """
-        contacts_touching, rows, holding = problem.touching, still.rows.copy(), self.latches.holding()
+        contacts_touching, rows, contact_states = problem.touching, still.rows.copy(), self.latches.make_states()
         is_active = impulses.takes_part
         if self.layout.mechanism.impacts != SIMULTANEOUS:
             bearing = np.flatnonzero(impulses.impulses)
             is_active = impulses.depends.copy()
             is_active[bearing[find_independent(problem.A[np.ix_(bearing, bearing)])]] = True
-        holding[contacts_touching.indices] = is_active
-        if np.array_equal(self.layout.closed_contacts(holding), still.holding[0]):
+        contact_states[contacts_touching.indices] = is_active
+        if np.array_equal(self.layout.closed_contacts(contact_states), still.holding[0]):
             return still
-        active_rows = self.evaluator.evaluate(still.times, still.states, holding=holding).rows
+        active_rows = self.evaluator.evaluate(still.times, still.states, holding=contact_states).rows
         for name in ("chosen", "closed"):
             rows[name] = active_rows[name]
         return replace(still, rows=rows)

@@ -45,7 +45,7 @@ class ContactOutcome:
     """
 
     impulses: ContactImpulses
-    holding: Array
+    contact_states: Array
     at_rest: Mask
     columns: Columns
     after_state: Array

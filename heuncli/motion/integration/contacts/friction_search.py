@@ -20,9 +20,9 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
+from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.contact_problem import make_jamming_problem
 from heuncli.motion.integration.contacts.friction_groups import FrictionGroup, FrictionPlaces, PlaceResponse
-from heuncli.motion.integration.contacts.restitution import find_coupled_groups
 from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array
@@ -200,9 +200,9 @@ class StateSearch:
                 next_states[n] = STICKS
         jam = next(
             (
-                (int(loads["span"][k]), places.load_rows[k])
+                (int(loads["friction_outcome"][k]), places.load_rows[k])
                 for k in range(len(loads))
-                if places.presses[k] and loads["span"][k] != kernel.FOUND
+                if places.presses[k] and loads["friction_outcome"][k] != kernel.FOUND
             ),
             None,
         )

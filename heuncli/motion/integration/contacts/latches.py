@@ -86,12 +86,12 @@ class Latches:
             self.layout, [conditions.evaluate_free(k, t, 0.0, coordinates) for k in range(len(conditions.conditions))]
         )
 
-    def holding(self) -> Array:
-        """Return the holding of all contacts where only the latches that hold do so (Layout.all_open)."""
-        holding, n = self.layout.open_contacts, len(self.layout.contacts)
+    def make_states(self) -> Array:
+        """Return the states of all contacts where only the latches that hold do so (Layout.open_contacts)."""
+        contact_states, n = self.layout.open_contacts, len(self.layout.contacts)
         for i, value in self.held_values.items():
-            holding[i], holding[n + self.layout.latches.index(i)] = 1.0, value
-        return holding
+            contact_states[i], contact_states[n + self.layout.latches.index(i)] = 1.0, value
+        return contact_states
 
     @property
     def unused_names(self) -> list[str]:

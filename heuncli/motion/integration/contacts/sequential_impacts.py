@@ -21,6 +21,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
+from heuncli.motion.integration.contacts.complementarity import is_coupled
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.results.results import Array, Indices, Mask
 
@@ -58,12 +59,6 @@ class ImpactSequence:
     depends: Mask
     count: Indices
     noise: Array
-
-
-def is_coupled(A: Array) -> Mask:
-    """Return whether the impulse of one contact changes the rate of the other, (k, k)."""
-    size = np.sqrt(np.maximum(np.diag(A), 0.0))
-    return np.asarray(np.abs(A) > tolerances.SUM_ROUNDING * size[:, None] * size)
 
 
 class ContactRates:

@@ -145,7 +145,7 @@ def make_half_turn_error(
 
 def find_jammed(mechanism: Mechanism, evaluation: Evaluation, instant: int) -> list[Problem]:
     """Return the problems of such friction at one of the instants."""
-    status = evaluation.loads["span"][instant]
+    status = evaluation.loads["friction_outcome"][instant]
     friction_rows = [
         r for load, rows in mechanism.iter_load_rows() if load in mechanism.joint_friction for r in [rows.start]
     ]

@@ -104,8 +104,8 @@ class Interruptions:
     def begin_segment(self, segment: Segment) -> None:
         """Continue the run from the state reached, with the contacts that are closed there."""
         if self.contacts is not None:
-            self.integrated_scene.workspace.hold(self.contacts.holding)
-            self.progress.steps.record_holding(self.contacts.holding)
+            self.integrated_scene.workspace.hold(self.contacts.contact_states)
+            self.progress.steps.record_holding(self.contacts.contact_states)
         self.progress.kernel.loop.begin(*segment)
 
     def continue_after(self, event: ImpulseEvent) -> None:

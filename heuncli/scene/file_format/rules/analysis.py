@@ -17,7 +17,7 @@ from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.format_couplings import RopeEntry
 from heuncli.scene.file_format.format_joints import CurveJoint, RodJoint
 from heuncli.scene.file_format.methods import find_tolerance_problem, iter_method_problems
-from heuncli.scene.file_format.names import UNTIL, is_name
+from heuncli.scene.file_format.names import UNTIL, is_name, list_sticking_names, name_sticking_event
 from heuncli.scene.file_format.rules.joints import iter_drives
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import (
@@ -67,6 +67,15 @@ def check_event_name(draft: DraftDocument) -> Iterator[Violation]:
         elif name == UNTIL:
             message = f"'{name}' is reserved: in the results it is the event that ended the motion"
             yield Violation(path, message, f"call it {name}_1, for example", key=True)
+    frictions = list_sticking_names(draft.names.entries)
+    for k, name in enumerate(frictions):
+        event = name_sticking_event(name)
+        if event in draft.document.analysis.events:
+            message = f"'{event}' is reserved: the friction's own event has this name"
+            yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
+        if name in frictions[:k]:
+            message = f"{name} is also the name of a friction in forces; both would have the event {event}"
+            yield Violation(("couplings", name), message, "give one of them another name", key=True)
 
 
 @rule("event-motion")

@@ -22,7 +22,7 @@ from heuncli.results.path_words import (  # fmt: skip
     split_path,
 )
 from heuncli.results.results_schema import CUT, IMPULSES, INSTANT, Quantity, Shape, parse_index
-from heuncli.scene.file_format.names import GROUND, SceneNames
+from heuncli.scene.file_format.names import GROUND, SceneNames, list_sticking_names, name_sticking_event
 from heuncli.scene.file_format.profiles import STRESS_POINTS
 from heuncli.scene.file_format.rules.registry import DraftDocument
 from heuncli.scene.file_format.rules.sections import is_cut_series
@@ -310,7 +310,8 @@ def expand_schema_word(word: str, names: SceneNames, is_impact: bool = False) ->
         case "FORCE":
             return list(entries["forces"])
         case "EVENT":
-            return [*entries["events"], *entries["latches"]]
+            sticking = [name_sticking_event(name) for name in list_sticking_names(entries)]
+            return [*entries["events"], *entries["latches"], *sticking]
         case "CAUSE":
             if is_impact:  # causes of impacts: impulses, drives, and joints, stops and couplings that close
                 blocks = ("impulses", "joints", "stops", "latches", "couplings")
