@@ -28,7 +28,8 @@ REPAIRS = frozenset(READERS[0].repairs)
 COUNTS = {"airo-models": (7, 15, 16), "example-robot-data": (37, 67, 69), "icub-models": (13, 16, 16)}
 MODELS = {"robosuite": 21, "robosuite-models": 18}  # of MuJoCo that hold themselves by drives alone
 REASONS = {  # of mechanics, and a file that describes nothing
-    "import-inertia", "import-joint", "import-mass", "import-massless", "import-mimic", "import-missing", "import-part", "import-tree",
+    "import-inertia", "import-joint", "import-mass", "import-massless", "import-mimic", "import-missing",
+    "import-part", "import-tree",
 }  # fmt: skip
 
 
