@@ -51,6 +51,8 @@ PASSED = {  # what stands beside the links, in the joint, in the link; how it is
                    "1 safety_controller in joints, 1 drake:color in joints"),
     "in a link": ({"part": "<contact/><drake:looks/><origin/>"},
                   "1 contact in links, 1 drake:looks in links, 1 origin in links"),
+    "what is so anyway": ({"part": "<gravity>1</gravity><kinematic>0</kinematic>"},
+                          "1 gravity in links, 1 kinematic in links"),
 }  # fmt: skip
 
 
@@ -73,6 +75,7 @@ REFUSED = {  # what stands there; words of the hint
     "joint": ({"top": '<drake:joint name="j" type="ball"/>'}, "three revolute"),
     "screw": ({"inner": '<drake:screw_thread_pitch value="1"/>'}, "coupling to the spec"),
     "spring of a joint": ({"inner": "<springStiffness/>"}, "add the load to the spec"),
+    "weightless": ({"part": "<gravity>0</gravity>"}, "correct the spec"),
     "rotor": ({"inner": "<drake:rotor_inertia/>"}, "correct the spec"),
     "force in a link": ({"part": "<thruster/>"}, "add the load to the spec"),
     "unknown": ({"top": "<whatever/>"}, "delete it if it says nothing of the mechanics"),

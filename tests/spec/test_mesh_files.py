@@ -191,7 +191,7 @@ def test_a_file_that_breaks_off_is_refused(name: str) -> None:
 @pytest.mark.parametrize(
     ("content", "name", "told"),
     [
-        (b"ISO-10303-21;", "rod.step", "STEP cannot be read"), (b"\0\1", "rod.xyz", "cannot be identified"),
+        (b"ISO-10303-21;", "rod.step", "states no unit of length"), (b"\0\1", "rod.xyz", "cannot be identified"),
         (b"ply\nformat ascii 1.0\nelement vertex 99999999999\nend_header\n", "a.ply", "more elements than"),
         (t.binary_stl(UNIT).replace(b"\0\0\x80?", b"\0\0\xc0\x7f"), "a.stl", "not a finite number"),
         (t.obj(UNIT).replace("f 1 ", "f 9 ").encode(), "a.obj", "outside 1 to 8"),

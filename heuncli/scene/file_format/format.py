@@ -265,6 +265,7 @@ class TableEntry(Entry):
     y_unit: str | None = None
     period: Anything | None = None
     smooth: CutOff | None = None
+    resample: CutOff | None = None
     derivative: Count | None = None
     integral: Count | None = None
     drift: Literal["keep", "rest", "mean"] | None = None

@@ -29,6 +29,7 @@ from heuncli.scene.file_format.format import TableEntry
 from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.quantity import Scope, read_number
+from heuncli.scene.file_format.resampling import resample_table
 from heuncli.scene.file_format.table_signals import SignalKeyError, check_signal_keys, has_signal_keys, prepare_signal
 
 # hints
@@ -102,9 +103,10 @@ def build_table(
     curve = entry.ends if entry.ends == "natural" else entry.interpolation
     table = interpolate_points(name, x, y, curve, entry.outside, entry.period)
     table = replace(table, dimensions=(units[0].dimension, units[1].dimension))
-    if has_signal_keys(entry):
+    if has_signal_keys(entry) or entry.resample is not None:
         try:
             table, warnings = prepare_signal(table, entry)
+            table = table if entry.resample is None else resample_table(table, entry)
         except SignalKeyError as error:
             return None, [*problems, TableProblem((error.key,), error.finding)]
         problems += [TableProblem((key,), finding, is_warning=True) for key, finding in warnings]

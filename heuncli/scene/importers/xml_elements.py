@@ -26,7 +26,7 @@ LFS_POINTER = b"version https://git-lfs"
 BROKEN_HINT = "the file is truncated, or was damaged by hand editing near this place"
 XACRO_HINT = "expand the macros first: xacro robot.urdf.xacro > robot.urdf"
 ROOT_HINT = "a URDF file begins with <robot name=...>, an SDF file with <sdf version=...>, a MuJoCo model with <mujoco>"
-TEXT_ROOTS = frozenset({"sdf"})  # formats that write values as text of elements
+TEXT_ROOTS = frozenset({"sdf", "robot"})  # formats that write values, or extensions of them, as text of elements
 DOCTYPE_HINT = "delete the DOCTYPE and replace its entities by their text"
 
 

@@ -45,9 +45,9 @@ class StepSolid(NamedTuple):
 
 def read_step_solids(content: bytes) -> list[StepSolid]:
     """Read the solids of a STEP file. Raises Finding [missing-extra, mesh-file, mesh-crosses-itself, too-large]."""
-    occ = _import_opencascade()
     if UNIT_WORD not in content:
         raise mesh_file_finding("the file states no unit of length", SAVE_HINT)
+    occ = _import_opencascade()
     reader = occ.STEPControl.STEPControl_Reader()
     if reader.ReadStream("file", io.BytesIO(content)) != occ.IFSelect.IFSelect_ReturnStatus.IFSelect_RetDone:
         raise mesh_file_finding("OpenCASCADE cannot read it as STEP", SAVE_HINT)

@@ -25,6 +25,7 @@ NON_MECHANICAL_TAGS = frozenset({
     "group", "group_state", "end_effector", "passive_joint", "author", "comment", "description", "license", "date",
     "version", "metadata", "verbose", "camera", "light", "color", "texture", "rviz",
 })  # fmt: skip
+DEFAULT_TEXTS = {"gravity": ("1", "true"), "kinematic": ("0", "false")}  # of Gazebo: what is so anyway
 COMMON_TAGS = ("gazebo", "material", "mujoco", "transmission", "sensor", "plugin", "ros2_control", "safety_controller")
 OBSERVES = re.compile(r"sensor|controller|collision|contact|visual|state|publisher|limit|filter", re.IGNORECASE)
 CLOSES = re.compile(r"loop|constraint|closure|weld", re.IGNORECASE)
@@ -62,8 +63,9 @@ def leave_out_part(
     place: the words that follow its name in the list of what is left out, such as " in joints"
     """
     is_foreign = ":" in part.tag
-    hint = None if part.tag in NON_MECHANICAL_TAGS else find_mechanical_hint(part.tag)
-    if part.tag in NON_MECHANICAL_TAGS or (is_foreign and hint is None):
+    says_nothing = part.tag in NON_MECHANICAL_TAGS or part.text.strip().lower() in DEFAULT_TEXTS.get(part.tag, ())
+    hint = None if says_nothing else find_mechanical_hint(part.tag)
+    if says_nothing or (is_foreign and hint is None):
         ignored_tags[part.tag + place] += 1
         _report_gravity(part, path, fields)
         return True
