@@ -184,8 +184,8 @@ ROWS: tuple[Quantity, ...] = (
     *rows("joints.JOINT", "mean pressure in its `bearing`: force (`radial` if the joint has an axis) / "
         "(diameter · width)",
         scalar("pressure", "Pa")),
-    *rows("joints.JOINT.bearings.BEARING", "of its two [bearings](format.md#bearings), 0 the first: its point, its load "
-        "ON `to` across the axis, the magnitude of that, and its load along the axis",
+    *rows("joints.JOINT.bearings.BEARING", "of its two [bearings](format.md#bearings), 0 the first: its point, its "
+        "load ON `to` across the axis, the magnitude of that, and its load along the axis",
         vector("point", "m"), vector("radial_force", "N"), scalar("radial", "N"), scalar("axial", "N")),
     *rows("joints.JOINT.bearings.BEARING", OPEN, words("open")),
     *shares("joints.JOINT.bearings.BEARING", vector("radial_force", "N"), scalar("axial", "N")),

@@ -11,6 +11,8 @@ import pytest
 
 from heuncli.base.errors import SpecError
 from heuncli.results.results import Results
+from heuncli.results.results_paths import find_values
+from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.digits import find_stated_errors
 from heuncli.study.quantities.labels import make_labels
@@ -227,3 +229,25 @@ def test_what_means_nothing_is_refused(wrong: str, right: str, code: str, words:
     (problem,) = refused.value.problems
     assert problem.code == code
     assert words in f"{problem.message}; {problem.hint}"
+
+
+PATHS = (
+    "sensors.own.force", "sensors.cut.moment", "joints.main.force", "foundation.force", "sections.mid.N",
+    "impulses.0.sensors.cut.force",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_what_is_not_asked_for_need_not_be_cut(heun: Heun, folder: Path, path: str) -> None:
+    """A sensor of a cut keeps its section where it is asked for, and goes with it elsewhere: all tell the same."""
+    text = ROTOR.replace("JOINTS", PIN).replace("BLOW", BLOW).replace("times: [0, 0.02, 0.05, 0.1]", "times: [0, 0.1]")
+    piece = "piece: {mass: 1, center: [0, 0, 0.6], inertia: [0.01, 0.01, 0.01]}"
+    text = text.replace("    mass: 2\n", f"    mass: 2\n    {piece}\n")
+    text += "sections: {mid: {body: rotor, at: [0, 0, 0.4], normal: [0, 0, 1]}}\n"
+    text += "sensors: {own: {of: joints.main}, cut: {of: sections.mid, point: rotor.rim, axes: rotor}}\n"
+    (folder / "rotor.yaml").write_text(text)
+    alone = heun("run", "rotor.yaml", "--measure", path if path.startswith("impulses") else f"first {path}")
+    assert alone.returncode == 0, alone.stderr
+    whole = find_values(solved(text, requested_reports=frozenset(REPORTS)), path)
+    first = whole.values[0] if whole.is_timed else whole.values
+    assert float(alone.stdout) == pytest.approx(float(np.linalg.norm(first) if first.size > 1 else first), rel=1e-9)

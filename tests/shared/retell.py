@@ -42,7 +42,7 @@ def plain(tree: Tree) -> Tree:
 
 
 BLOCKS = (
-    "ground", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "analysis",
+    "ground", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "sensors", "analysis",
     "foundation", "couplings", "rolling", "latches",
 )  # fmt: skip
 
@@ -139,6 +139,8 @@ def turned(tree: Tree, Q: Array) -> Tree:
             raise NotTold("an axis with two senses")
         turn(joint, "from", "to", "normal")
         turn(joint, "axis", "to_axis", axial=joint.get("type") not in POLAR_AXES)
+        if "bearings" in joint and np.linalg.det(Q) < 0.0:
+            raise NotTold("places along an axis, in a mirror")
         if isinstance(joint.get("stiffness"), dict) and any(isinstance(s, list) for s in joint["stiffness"].values()):
             raise NotTold("stiffness by direction")
     for block in ("forces", "impulses"):
@@ -152,6 +154,8 @@ def turned(tree: Tree, Q: Array) -> Tree:
         if "piece" in cut:
             turn(cut["piece"], "center")
             _turn_mass(cut["piece"], Q)
+    for _, sensor in entries(tree, "sensors"):
+        turn(sensor, "point")
     turn(tree.get("foundation", {}), "about")
     if any(isinstance(what, dict) and str(what.get("of"))[-2:] in COMPONENTS for what in _conditions(tree)):
         raise NotTold("a condition on a component")
@@ -252,6 +256,7 @@ def in_units(tree: Tree, mass: float = 1.0, length: float = 1.0, time: float = 1
             raise NotTold("stiffness of a joint")
         tell(joint, {**ENDS, "length": LENGTH})
         tell(joint.get("initial", {}), COORDINATES)
+        tell(joint.get("bearings", {}), {"at": LENGTH})
     for block in ("drives", "stops", "latches"):
         for _, entry in entries(tree, block):
             tell(entry, COORDINATES)
@@ -269,6 +274,8 @@ def in_units(tree: Tree, mass: float = 1.0, length: float = 1.0, time: float = 1
             raise NotTold("a cross-section")
         tell(cut, {**ENDS, "modulus": (1, -1, -2)})
         tell(cut.get("piece", {}), BODY)
+    for _, sensor in entries(tree, "sensors"):
+        tell(sensor, ENDS)
     tell(tree.get("foundation", {}), {"about": LENGTH})
     if any(isinstance(value, dict) and "of" in value for value in _conditions(tree)):
         raise NotTold("a condition on results")
@@ -379,6 +386,7 @@ def reordered(tree: Tree, random: Random) -> Tree:
         "impulses",
         "stops",
         "sections",
+        "sensors",
         "tables",
         "couplings",
         "rolling",
@@ -406,7 +414,7 @@ NAMED_BLOCKS = ("bodies", "joints", "drives", "forces", "impulses", "stops", "se
 def renamed(tree: Tree, random: Random) -> tuple[Tree, dict[str, str]]:
     """The entries under other names and in another order, and the new names by the old."""
     names = [name for block in NAMED_BLOCKS for name, _ in entries(tree, block)]
-    if len(set(names)) < len(names) or "tables" in tree:
+    if len(set(names)) < len(names) or {"tables", "sensors"} & set(tree):
         raise NotTold("one name for two")
     new = dict(zip(names, (f"{random.choice('aZkx')}n{k}" for k in random.sample(range(900), len(names))), strict=True))
     words = re.compile(r"(?<![\w.])(?:" + "|".join(map(re.escape, names)) + r")(?![\w])|(?<=\.)(?:"

@@ -15,7 +15,9 @@ from tests.oracle.turns import Array
 Tree: TypeAlias = Any  # mappings, lists, numbers and words
 Tell = Callable[[Any, dict[str, tuple[int, int, int]]], None]
 LENGTH, SPEED, FORCE, MOMENT, RATE = (0, 1, 0), (0, 1, -1), (1, 1, -2), (1, 2, -2), (0, 0, -1)
-COUPLING = {"at": LENGTH, "lead": LENGTH, "radii": LENGTH, "radius": LENGTH, "pretension": FORCE, "length": LENGTH}
+COUPLING = {"at": LENGTH, "lead": LENGTH, "radii": LENGTH, "radius": LENGTH, "pretension": FORCE, "length": LENGTH,
+    "tension": FORCE,
+}  # fmt: skip
 # laws of what a load acts between, by its own names: key, what they stand for, what it is
 OWN_LAWS = {
     "motor": ("curve", {"rate": RATE}, MOMENT), "spring": ("force", {"length": LENGTH, "rate": SPEED}, FORCE),

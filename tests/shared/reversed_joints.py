@@ -98,13 +98,15 @@ def joints_with_fixed_ends(tree: Tree) -> set[str]:
     kept = {word for _, entry in entries(tree, "couplings") if entry["type"] == "cam" for word in entry["of"]}
     in_joints = [load for _, load in entries(tree, "forces") if "joint" in load]
     kept |= {load["joint"] for load in in_joints if {"rotor", "length"} & set(load)}
+    kept |= {str(sensor["of"]).partition(".")[2] for _, sensor in entries(tree, "sensors")}
     return kept | as_written(tree) | {name for name, joint in entries(tree, "joints") if "stiffness" in joint}
 
 
 def as_written(tree: Tree) -> set[str]:
-    """Universals with a spring about the axis that their `from` body has: the other one has none."""
+    """Joints with bearings along their axis; universals with a spring about that of `from`: the other has none."""
+    paired = {name for name, joint in entries(tree, "joints") if "bearings" in joint}
     sprung = {load["joint"] for _, load in entries(tree, "forces") if load["type"] == "turn_spring"}
-    return {name for name in sprung if tree["joints"][name]["type"] == "universal"}
+    return paired | {name for name in sprung if tree["joints"][name]["type"] == "universal"}
 
 
 def reverse_axis(tree: Tree, name: str, joint: dict[str, Any]) -> None:

@@ -319,8 +319,12 @@ def restrict_spec(spec: Spec, selection: Selection, *, reduce: bool = True) -> S
     is_read = selection.names_in("sensors").__contains__ if "joints" in selection.partial else spec.sensors.__contains__
     if "joints" in selection.reports:
         cut |= {own.section for name, own in spec.sensors.items() if own.section is not None and is_read(name)}
+    readable = {name: own for name, own in spec.sensors.items() if own.section is None or own.section in cut}
     if len(needed_bodies) == len(spec.bodies):
-        return spec if len(cut) == len(spec.sections) else spec._replace(sections=select_items(spec.sections, cut))
+        if len(cut) == len(spec.sections):
+            return spec
+        return spec._replace(sections=select_items(spec.sections, cut), sensors=readable)
+    spec = spec._replace(sensors=readable)
     entries: dict[str, Any] = {
         "bodies": select_items(spec.bodies, needed_bodies),
         "sections": select_items(spec.sections, cut),
