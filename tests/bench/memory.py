@@ -8,7 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-SCENES = Path(__file__).parent / "scenes"
+SCENES, SPECS = Path(__file__).parent / "scenes", Path(__file__).parents[2] / "specs"
 CHIMNEY = """\
 heun: 1
 gravity: [0, 0, -9.81]
@@ -29,7 +29,11 @@ def memory() -> None:
         chimney = Path(folder) / "chimney.yaml"
         chimney.write_text(CHIMNEY)
         many = ["--set", "analysis.samples=100000"]
-        scenes = {"100,000 samples of double": [str(SCENES / "double.yaml"), *many], "10,000 cuts": [str(chimney)]}
+        scenes = {
+            "100,000 samples of double": [str(SCENES / "double.yaml"), *many],
+            "100,000 of a closed chain": [str(SPECS / "four_bar.yaml"), *many, "--only", "joints,motion"],
+            "10,000 cuts": [str(chimney)],
+        }
         for name, words in scenes.items():
             for form in ("json", "csv"):
                 written = ["--format", form, "-o", str(Path(folder) / "out")]

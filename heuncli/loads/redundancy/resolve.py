@@ -26,7 +26,14 @@ from heuncli.loads.redundancy.indeterminate_components import (
     mask_indeterminate,
     select_coordinate_share,
 )
-from heuncli.loads.redundancy.self_stress import CachedStress, SelfStress, find_neighbour_poses, find_self_stress
+from heuncli.loads.redundancy.self_stress import (
+    CachedStress,
+    RankMargins,
+    SelfStress,
+    find_margins,
+    find_neighbour_poses,
+    find_self_stress,
+)
 from heuncli.loads.redundancy.split import SelfStressChoice, apply_choices, split_self_stress
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
@@ -60,13 +67,15 @@ class Resolution:
         """
         return apply_choices(self.choices, joints, states)
 
-    def describe_singular_poses(self, times: Array, redundant: Array) -> list[str]:
+    def describe_singular_poses(
+        self, runner: Runner, evaluation: Evaluation, states: BodyStates, redundant: Array
+    ) -> list[str]:
         """Return sentences on instants with more self-stresses than `redundant`, or nearly so."""
-        return (
-            describe_singular_poses(self.found_self_stress, times, redundant)
-            if self.found_self_stress is not None
-            else []
-        )
+        stress = self.found_self_stress
+        if stress is None:
+            return []
+        margins = stress.margins or find_margins(runner, evaluation, states)
+        return describe_singular_poses(stress.count, margins, evaluation.times, redundant)
 
     @property
     def has_marks(self) -> bool:
@@ -123,27 +132,31 @@ def resolve_redundancy(
     )
 
 
-def describe_singular_poses(stress: SelfStress, times: Array, redundant: Array) -> list[str]:
-    """Describe where the rank of the closures drops below the generic one, and where it comes close to that."""
+def describe_singular_poses(count: Array, margins: RankMargins, times: Array, redundant: Array) -> list[str]:
+    """Describe where the rank of the closures drops below the generic one, and where it comes close to that.
+
+    count, redundant (n_t,): numbers of self-stresses, and outside singular poses
+    """
     sentences = []
-    extra_instants = np.flatnonzero(stress.count > redundant)
+    extra_instants = np.flatnonzero(count > redundant)
     if len(extra_instants):
         times_text = ", ".join(f"{t:.6g}" for t in times[extra_instants[:5]]) + (
             " ..." if len(extra_instants) > 5 else ""
         )
         when = "this instant" if len(extra_instants) == 1 else "these instants"
         sentences.append(f"singular position at t = {times_text} s: some components are indeterminate at {when} only")
-    near_values = np.where(stress.count <= redundant, stress.largest_dropped, 0.0)
+    near_values = np.where(count <= redundant, margins.largest_dropped, 0.0)
     if near_values.max(initial=0.0) > tolerances.NEARLY_DEPENDENT:
         sentences.append(
             f"some joint constraints depend on others only to within {near_values.max():.1e}: treated as "
             "redundant; exactly as specified they would remove one more degree of freedom"
         )
-    near_instants = np.flatnonzero((stress.least < tolerances.NEARLY_SINGULAR) & (stress.count <= redundant))
+    least = margins.smallest_kept
+    near_instants = np.flatnonzero((least < tolerances.NEARLY_SINGULAR) & (count <= redundant))
     if len(near_instants):
-        k = near_instants[int(np.argmin(stress.least[near_instants]))]
+        k = near_instants[int(np.argmin(least[near_instants]))]
         sentences.append(
-            f"nearly singular position at t = {times[k]:.6g} s (smallest singular value {stress.least[k]:.1e}): "
+            f"nearly singular position at t = {times[k]:.6g} s (smallest singular value {least[k]:.1e}): "
             "reactions and their errors grow without bound there"
         )
     return sentences

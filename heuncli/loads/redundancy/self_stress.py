@@ -40,8 +40,7 @@ class SelfStress:
     largest (n_t, k): the largest share of each, in couplings too, moments divided by `length`
     count (n_t,): number of self-stresses
     length [m]: divisor of moments
-    least (n_t,): the smallest relative singular value that counts towards the rank
-    largest_dropped (n_t,): the largest one that does not, if it is more than the closure gap may simulate
+    margins: how clear the rank is; None where no row depends on others and it was not needed (`find_margins`)
     dependent (n_t,): number of rows that depend on others, in a planar scene including those across the plane
     """
 
@@ -49,8 +48,7 @@ class SelfStress:
     largest: Array
     count: Array
     length: float
-    least: Array
-    largest_dropped: Array
+    margins: RankMargins | None
     dependent: Array
     multipliers: Array  # (n_t, rows, k) of the closure rows
     coupling_scale: (
@@ -63,6 +61,13 @@ class SelfStress:
         """
         limit = tolerances.OPEN_SHARE * np.where(self.largest > 0.0, self.largest, np.inf)
         return np.asarray((np.abs(shares) / length > limit[:, None, :]).any(axis=-1))
+
+
+class RankMargins(NamedTuple):
+    """The smallest relative singular value of J that counts towards the rank, and the largest that does not, (n_t,)."""
+
+    smallest_kept: Array
+    largest_dropped: Array
 
 
 @record
@@ -119,6 +124,8 @@ def find_self_stress(
 ) -> SelfStress | None:
     """Find all self-stresses at evaluated states, island by island; None where there can be none (no closed chain).
 
+    Where the kernel finds all rows independent, there are none, and no singular values are computed.
+
     cached_stress: of the same scene, with any loads; it is used where the poses are equal to the bit
     """
     if not runner.layout.rows:
@@ -126,30 +133,25 @@ def find_self_stress(
     poses = make_stress_poses(runner.layout, evaluation, states)
     if cached_stress is not None and is_same(poses, cached_stress.poses):
         return cached_stress.stress
+    if not (poses.is_active - poses.is_independent).any():
+        return make_no_stress(runner.layout, len(poses.times))
     return find_stress_of_poses(runner, poses)
+
+
+def make_no_stress(layout: Layout, n_t: int) -> SelfStress:
+    """Make the self-stresses of instants that have none."""
+    length = mean_lever(layout, range(len(layout.mechanism.joints)))
+    shares, multipliers = np.zeros((len(layout.mechanism.joints), n_t, 6, 0)), np.zeros((n_t, len(layout.rows), 0))
+    none = np.zeros(n_t, dtype=int)
+    scale = find_coupling_scale(layout, length)
+    return SelfStress(shares, np.zeros((n_t, 0)), none, length, None, none, multipliers, scale)
 
 
 def find_stress_of_poses(runner: Evaluator, poses: SelfStressPoses) -> SelfStress:
     """Find all self-stresses of poses."""
-    layout, n_t = runner.layout, len(poses.times)
-    J = jacobian(runner.workspace, layout, poses.times, poses.states)
-    columns: list[Array] = []
-    counts = np.zeros(n_t, dtype=int)
-    smallest_kept, largest_dropped = np.ones(n_t), np.zeros(n_t)
-    for island in layout.islands:
-        is_active, is_independent = poses.is_active[:, island.rows], poses.is_independent[:, island.rows]
-        null, values = _null_space(J.block(island.rows, island.freedoms), island, is_active, is_independent)
-        counts += (is_active - is_independent).sum(axis=1).astype(int)
-        smallest_kept = np.minimum(smallest_kept, values.smallest_kept)
-        simulated = tolerances.RANK_OF_GAP * poses.gap / island.length
-        largest_dropped = np.maximum(
-            largest_dropped, np.where(values.largest_dropped > simulated, values.largest_dropped, 0.0)
-        )
-        Z = np.zeros((n_t, len(layout.rows), null.shape[2]))
-        Z[:, island.rows] = null
-        columns.append(Z)
-    Z = np.concatenate(columns, axis=2)
-    dependent = counts
+    layout = runner.layout
+    Z, margins = find_null_vectors(runner, poses)
+    dependent = counts = (poses.is_active - poses.is_independent).sum(axis=1).astype(int)
     length = mean_lever(layout, range(len(layout.mechanism.joints)))
     shares = _find_shares(runner, poses, Z)
     coupling_scale = find_coupling_scale(layout, length)
@@ -163,7 +165,35 @@ def find_stress_of_poses(runner: Evaluator, poses: SelfStressPoses) -> SelfStres
     largest = (np.abs(shares).max(axis=0, initial=0.0) / size).max(axis=1)
     largest = np.maximum(largest, np.abs(Z * coupling_scale[:, None]).max(axis=1, initial=0.0))
     largest = np.where(largest > tolerances.NO_SELF_STRESS, largest, 0.0)
-    return SelfStress(shares, largest, counts, length, smallest_kept, largest_dropped, dependent, Z, coupling_scale)
+    return SelfStress(shares, largest, counts, length, margins, dependent, Z, coupling_scale)
+
+
+def find_margins(runner: Evaluator, evaluation: Evaluation, states: BodyStates) -> RankMargins:
+    """Find how clear the rank of the closures is at evaluated states."""
+    return find_null_vectors(runner, make_stress_poses(runner.layout, evaluation, states))[1]
+
+
+def find_null_vectors(runner: Evaluator, poses: SelfStressPoses) -> tuple[Array, RankMargins]:
+    """Find the null vectors of J' at poses, island by island, (n_t, rows, k), and the margins of its rank.
+
+    What the closure gap may simulate does not count as dropped.
+    """
+    layout, n_t = runner.layout, len(poses.times)
+    J = jacobian(runner.workspace, layout, poses.times, poses.states)
+    columns: list[Array] = []
+    smallest_kept, largest_dropped = np.ones(n_t), np.zeros(n_t)
+    for island in layout.islands:
+        is_active, is_independent = poses.is_active[:, island.rows], poses.is_independent[:, island.rows]
+        null, margins = _null_space(J.block(island.rows, island.freedoms), island, is_active, is_independent)
+        smallest_kept = np.minimum(smallest_kept, margins.smallest_kept)
+        simulated = tolerances.RANK_OF_GAP * poses.gap / island.length
+        largest_dropped = np.maximum(
+            largest_dropped, np.where(margins.largest_dropped > simulated, margins.largest_dropped, 0.0)
+        )
+        Z = np.zeros((n_t, len(layout.rows), null.shape[2]))
+        Z[:, island.rows] = null
+        columns.append(Z)
+    return np.concatenate(columns, axis=2), RankMargins(smallest_kept, largest_dropped)
 
 
 def find_coupling_scale(layout: Layout, length: float) -> Array:
@@ -174,14 +204,7 @@ def find_coupling_scale(layout: Layout, length: float) -> Array:
     return np.where(is_coupling, np.where(find_couples(layout), 1.0 / length, 1.0), 0.0)
 
 
-class SingularValues(NamedTuple):
-    """The smallest singular value of an island's J that is kept, and the largest that is not, relative, (n_t,)."""
-
-    smallest_kept: Array
-    largest_dropped: Array
-
-
-def _null_space(J: Array, island: Island, is_active: Array, is_independent: Array) -> tuple[Array, SingularValues]:
+def _null_space(J: Array, island: Island, is_active: Array, is_independent: Array) -> tuple[Array, RankMargins]:
     """Return null vectors of J' on the island's rows (n_t, m, k_max); is_independent (n_t, m) marks as many rows as its
     rank.
 
@@ -208,16 +231,16 @@ def _null_space(J: Array, island: Island, is_active: Array, is_independent: Arra
     return Z / unit * measure, values
 
 
-def _find_null_vectors(J: Array, rank: Indices) -> tuple[Array, SingularValues]:
+def _find_null_vectors(J: Array, rank: Indices) -> tuple[Array, RankMargins]:
     """Return null vectors of J' (n_t, m, k_max) for J (n_t, m, n), rows up to 1, of given rank (n_t,)."""
     n_t, m = J.shape[:2]
     if m == 0:
-        return np.zeros((n_t, 0, 0)), SingularValues(np.ones(n_t), np.zeros(n_t))
+        return np.zeros((n_t, 0, 0)), RankMargins(np.ones(n_t), np.zeros(n_t))
     S = np.linalg.svd(J, compute_uv=False)
     top = np.maximum(S.max(axis=1, initial=0.0), 1.0)
     S = np.concatenate([np.ones((n_t, 1)), S / top[:, None], np.zeros((n_t, m))], axis=1)
     smallest_kept, largest_dropped = (np.take_along_axis(S, rank[:, None] + i, axis=1)[:, 0] for i in (0, 1))
-    values = SingularValues(np.asarray(smallest_kept), np.asarray(largest_dropped))
+    values = RankMargins(np.asarray(smallest_kept), np.asarray(largest_dropped))
     k_max = int((m - rank).max(initial=0))
     if k_max == 0:  # the vectors cost several times the values
         return np.zeros((n_t, m, 0)), values

@@ -306,6 +306,14 @@ class Recovery:
         newly_closed = (self.solutions.holding[:, own] > 0.0) & ~(start_holding[own] > 0.0)
         return np.asarray(self.setup.model["redundant"] + newly_closed.sum(axis=1))
 
+    def describe_singular_poses(self) -> list[str]:
+        """Return sentences on instants at singular poses, or close to them, where the results depend on it."""
+        if not self.needs_indeterminacy or self.decided is None:
+            return []
+        return self.decided.describe_singular_poses(
+            self.setup.runner, self.solutions, self.states, self.generic_self_stress_count
+        )
+
     @property
     def indeterminate(self) -> SelfStress | None:
         """The self-stresses that no split has resolved."""

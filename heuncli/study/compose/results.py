@@ -307,12 +307,8 @@ def compose_parts(
 
 def depends_on_all_instants(recovery: Recovery) -> bool:
     """Return whether a closed chain is indeterminate at some instants, or singular, or nearly so."""
-    if not recovery.needs_indeterminacy or recovery.decided is None:
-        return False
-    decided = recovery.decided
-    return decided.has_marks or bool(
-        decided.describe_singular_poses(recovery.solutions.times, recovery.generic_self_stress_count)
-    )
+    is_marked = recovery.needs_indeterminacy and recovery.decided is not None and recovery.decided.has_marks
+    return is_marked or bool(recovery.describe_singular_poses())
 
 
 def allocate_like(

@@ -55,11 +55,6 @@ def collect_warnings(
     setup: Setup, history: History, recovery: Recovery, joints: Mapping[str, JointBlock], residual: float
 ) -> tuple[str, ...]:
     """Collect the warnings at the instants of `recovery`; joints: their block, residual: of d'Alembert's principle."""
-    singular = []
-    if recovery.needs_indeterminacy and recovery.decided is not None:
-        singular = recovery.decided.describe_singular_poses(
-            recovery.solutions.times, recovery.generic_self_stress_count
-        )
     return (
         *warn_unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
@@ -71,7 +66,7 @@ def collect_warnings(
             if history.checked_run is not None
             else warn_of_ropes(setup, recovery, joints)
         ),
-        *singular,
+        *recovery.describe_singular_poses(),
         *format_slant_warnings(setup.scene.layout, recovery.solutions),
     )
 
