@@ -179,7 +179,7 @@ class Channel(NamedTuple):
 
 def compute_lengths(vectors: Array) -> Array:
     """Compute the magnitudes of vectors (n, 3)."""
-    return np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
+    return np.asarray(np.sqrt(np.einsum("ij,ij->i", vectors, vectors)))
 
 
 def make_path_channel(numbers: PathValues) -> Channel:
