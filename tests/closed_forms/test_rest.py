@@ -79,6 +79,7 @@ def test_beside_a_ridge_the_way_goes_to_its_side(beside: float) -> None:
 
 
 @pytest.mark.parametrize("beside", [1e-9, -1e-9, 1e-12, -1e-12])
+@pytest.mark.third
 def test_on_a_ridge_the_other_pose_is_told(beside: float) -> None:
     results = ridge(beside)
     side = float(results.coordinates["ux"]["travel"][0])
@@ -302,7 +303,7 @@ def stays(run: Study, within: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.third
+@pytest.mark.sixth
 def test_what_rests_stays(seed: int) -> None:
     run = study(tree(np.random.default_rng(seed)))
     assert not unstable(run.results)
@@ -463,6 +464,7 @@ def test_a_slider_that_does_not_rest_is_told_in_its_unit(force: str, said: str) 
 
 
 @pytest.mark.parametrize("cube", ["100", "1e-3"])
+@pytest.mark.third
 def test_what_bends_alone_is_not_told_as_stable(cube: str) -> None:
     """At the flat point of -k x^3 the slope is the rounding of the pose."""
     slide = "u: {type: slide, from: ground.O, to: b.c, axis: [1, 0, 0], initial: {travel: 0.5}}"

@@ -71,6 +71,7 @@ def test_a_thread_that_is_too_steep_runs_down(mu: float) -> None:
 )
 @pytest.mark.parametrize("senses", SENSES[::3])
 @pytest.mark.parametrize("raises", [True, False])
+@pytest.mark.third
 def test_a_jack_starts_at_the_torque_of_the_static_friction(
     mu: float, static: float, flank: float, senses: Any, raises: bool
 ) -> None:
