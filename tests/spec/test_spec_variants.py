@@ -114,7 +114,7 @@ def outcome(read: Callable[[], Spec]) -> Any:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
-@pytest.mark.third
+@pytest.mark.sixth
 def test_every_variant_is_read_as_if_it_were_the_first(path: Path) -> None:
     variants = SpecVariants(path)
     names = [*variants.spec.parameters]
