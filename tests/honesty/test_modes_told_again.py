@@ -22,7 +22,7 @@ ALL_CASES = [
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "seed", "way"), ALL_CASES)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_it_swings_as_told_before(kind: str, seed: int, way: str) -> None:
     """As many of each kind, frequencies and growths within what both tellings state; refused where the first is."""
     found, *_ = judged(kind, seed, way)
