@@ -379,6 +379,7 @@ def test_a_trapdoor_rests_on_its_buffer() -> None:
 
 
 @pytest.mark.parametrize("more", ["", ", restitution: 0.5"])
+@pytest.mark.third
 def test_a_rope_that_bears_and_one_that_hangs_slack(more: str) -> None:
     """A mass of 2 kg hangs on 1 m of rope; with a second rope from 1 m beside it between both, if that is short."""
     body = f"bodies: {{d: {{{BALL}, position: [0.3, 0, -0.2]}}}}\n"
@@ -403,6 +404,7 @@ def carriage(angle: str) -> str:
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.third
 def test_a_level_bar_on_a_free_carriage_falls(off: float) -> None:
     """Drawn level it is pushed, but no slope turns it back: A = [[0, 0], [k, 0]], and nearly so beside."""
     found = solved(carriage(repr(math.pi / 2.0 - off)))

@@ -185,6 +185,7 @@ def test_cuts_stand_where_the_results_say(file: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["double", "engine", "jib", "whirling_rod", "hammered_four_bar", "compressor"])
+@pytest.mark.third
 def test_no_largest_load_is_missed(name: str) -> None:
     """Among the frames are those at which a search between the samples finds a load largest."""
     study, page = shown(SPECS / f"{name}.yaml")

@@ -156,6 +156,7 @@ def test_idle_parameters_are_those_on_which_nothing_hangs(scene: Path) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
+@pytest.mark.third
 def test_idle_parameters_change_nothing(path: Path) -> None:
     variants = SpecVariants(path, checking=False)
     parameters = variants.spec.parameters
