@@ -72,7 +72,7 @@ def test_no_command_is_missed() -> None:
 @pytest.mark.heavy
 @pytest.mark.usefixtures("beside_specs")
 @pytest.mark.parametrize("shown", SHOWN.values(), ids=SHOWN)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_shown_output_is_the_output(shown: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     command, *lines = shown
     assert command.startswith("$ heun ")
