@@ -6,6 +6,7 @@ import gc
 import io
 import os
 import sys
+from collections import defaultdict
 from collections.abc import Generator
 from pathlib import Path
 
@@ -25,10 +26,9 @@ from tests.shared.seeds import list_long_cases
 JUDGED = {"closed_forms", "convergence", "honesty", "limits"}
 SHOWN = {"browser", "pictures", "report", "reporting", "show"}
 SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_api"}
-# Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
-# folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
-SHARE = 2
-SHARES = {"laws": 1, "oracle": 1, "references": 1}
+# Of every other family of cases it runs one: enough to see what only plain Python does otherwise. These folders judge
+# numbers, too, but random scenes pass every line of the kernel: of each file every second family.
+DRAWN = {"laws", "oracle", "references"}
 
 
 @pytest.fixture(autouse=True)
@@ -103,21 +103,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     keep(config, items, {item for item in items if item not in long})
     if KERNEL == "compiled":
         return
-    families: dict[str, list[pytest.Item]] = {}
+    files: defaultdict[Path, dict[str, pytest.Item]] = defaultdict(dict)  # a case of each family of a file
     for item in items:
         if not item.get_closest_marker("heavy") and not is_spared(item.path.parent):
-            families.setdefault(item.nodeid.split("[")[0], []).append(item)
-    kept = {item for family in families.values() for item in share_of(family)}
-    keep(config, items, kept)
+            files[item.path].setdefault(item.nodeid.split("[")[0], item)
+    shares = ([*cases.values()][:: 2 if file.parent.name in DRAWN else 1] for file, cases in files.items())
+    keep(config, items, {case for share in shares for case in share})
 
 
 def keep(config: pytest.Config, items: list[pytest.Item], kept: set[pytest.Item]) -> None:
     """Deselect all others."""
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])
     items[:] = [item for item in items if item in kept]
-
-
-def share_of(family: list[pytest.Item]) -> list[pytest.Item]:
-    """The cases that the plain kernel runs of a family."""
-    share = SHARES.get(family[0].path.parent.name, SHARE)
-    return family[:: max(1, -(-len(family) // share))]

@@ -210,6 +210,7 @@ def whole_by_laws() -> Results:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", LAW_PATHS)
+@pytest.mark.third
 def test_loads_by_laws_follow_the_whole(path: str, whole_by_laws: Results) -> None:
     """Laws of a load's own line, joint or shift, of a table, of another part's coordinate or point."""
     part = asked(load("scene.yaml", LAWS), [path]).results

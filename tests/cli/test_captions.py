@@ -112,6 +112,7 @@ def test_markup_is_not_interpreted(form: str, spec: str, capsys: pytest.CaptureF
         assert text.count(r"A\|B \<b>bold\</b> \& \*\*c\*\*") == text.count("bold") == 3
 
 
+@pytest.mark.heavy
 def test_pictures_and_pages_take_them(spec: str, tmp_path: Path) -> None:
     words = ["--title", EVIL, "--label", f"joints.main_pin={EVIL}"]
     assert enter(["plot", spec, "joints.main_pin.force", "-o", "a.svg", *words]) == 0

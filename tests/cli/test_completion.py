@@ -80,6 +80,7 @@ def test_a_shell_asks_a_process(beside: Path) -> None:
         ("heun run scene.yaml --set m", {"m="}), ("heun model scene.yaml --case h", {"heavy"}),
     ],
 )  # fmt: skip
+@pytest.mark.third
 def test_a_shell_completes(asked: Asked, shell: str, line: str, expected: set[str]) -> None:
     found = asked(shell, line)
     if shell == "zsh":

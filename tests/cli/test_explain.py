@@ -187,6 +187,7 @@ def test_a_code_is_told_with_its_example_and_cure(heun: Heun) -> None:
 @pytest.mark.parametrize(
     "row", [row for row in ROWS if row.path.split(".")[0] not in ("model", "work")], ids=lambda row: row.path
 )
+@pytest.mark.third
 def test_every_path_of_the_results_is_explained(heun: Heun, row: Quantity) -> None:
     path = ".".join(
         "0" if word == "NUMBER" else "a.b" if word == "POINT" else "abc" if word in NAMES else word

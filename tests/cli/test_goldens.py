@@ -197,6 +197,7 @@ def of_another_spec(text: str) -> str:
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("update", [False, True])
+@pytest.mark.third
 def test_a_file_that_cannot_be_used_is_told_and_nothing_is_written(
     heun: Heun, folder: Path, spoilt: Any, told: str, update: bool
 ) -> None:

@@ -54,6 +54,7 @@ CASES = [  # the command, the scene, what is told: line, path and code
 ]  # fmt: skip
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("command", "scene", "told"), CASES, ids=lambda word: word.split(" ")[-1][-24:])
 def test_what_cannot_be_solved_is_told_where_it_stands(heun: Heun, command: str, scene: str, told: str) -> None:
     done = heun(command, "-", text=scene)

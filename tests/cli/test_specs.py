@@ -68,6 +68,7 @@ def test_it_says_what_to_look_at(name: str) -> None:
 
 
 @each
+@pytest.mark.third
 def test_it_is_as_it_expects(name: str) -> None:
     study = study_of(name)
     cases = [compare(study, item) for item in study.spec.expect]
@@ -86,7 +87,7 @@ def test_it_is_as_accurate_as_asked(name: str) -> None:
 
 
 @each
-@pytest.mark.third
+@pytest.mark.sixth
 def test_its_tables_print(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", path_of(name)]) == 0
     printed = capsys.readouterr()
@@ -127,7 +128,7 @@ def same(read: Any, written: Any, where: str) -> None:
 
 
 @each
-@pytest.mark.third
+@pytest.mark.sixth
 def test_its_csv_says_the_same(name: str) -> None:
     study = study_of(name)
     rows = list(csv.DictReader(io.StringIO(to_csv(study.results, make_labels(study.spec)))))

@@ -127,6 +127,7 @@ def test_a_worker_that_is_killed_costs_nothing(
     assert answers == here(recipe, plan())
 
 
+@pytest.mark.long
 def test_what_is_done_stands_when_the_scheduler_goes(tmp_path: Path, recipe: Recipe) -> None:
     """And a sweep that begins before there is a worker waits for one."""
     dask, told, answers = DaskCluster(tmp_path), [], {}

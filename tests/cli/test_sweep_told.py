@@ -91,6 +91,7 @@ def test_csv_json_and_parquet_agree(heun: Heun, folder: Path) -> None:
     assert "statistics" not in found
 
 
+@pytest.mark.heavy
 def test_a_value_is_that_of_the_single_run(heun: Heun, folder: Path) -> None:
     rows, _, _ = swept(heun, folder, "L=1200,1400mm")
     for row in rows:
@@ -406,6 +407,7 @@ def test_a_sobol_sequence_that_is_cut_off_is_warned_of(heun: Heun, folder: Path)
     assert heun(*words, "-q").stderr == ""
 
 
+@pytest.mark.heavy
 def test_a_jump_over_the_last_parameter_is_told_between_its_variants(heun: Heun, folder: Path) -> None:
     """The mass takes F to one side of 2.5 N, and 4 F beyond; at half the mass it jumps there, too."""
     text = """

@@ -132,6 +132,7 @@ def test_negative_masses_are_variants_that_cannot_be_solved(heun: Heun) -> None:
     assert told["goal"]["best"]["value"] == pytest.approx(9.81) and told["unsolved"]["not-positive"] > 3
 
 
+@pytest.mark.heavy
 def test_the_budget_is_kept_and_said(heun: Heun) -> None:
     words = ("tune", "gable.yaml", "b=1.05:1.9m", "m=1:4kg", "--minimise", "joints.k.force", "--evaluations", "20")
     done = heun(*words)
@@ -276,6 +277,7 @@ analysis: {{type: state}}
 """
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("law", "place"),
     [

@@ -164,6 +164,7 @@ forces: {tool: LOAD}
         ("{type: spring, from: ground.B, to: a.o, stiffness: 100, length: 0.1}", 1, True),
     ],
 )
+@pytest.mark.third
 def test_a_load_that_takes_longer_than_the_cycle_is_told(load: str, turns: int, back: bool) -> None:
     """Where it comes back its orders are its own; else they are those of a law that jumps, and a note says so."""
     told = balance_of(GEARED.replace("LOAD", load), turns=turns)

@@ -327,6 +327,7 @@ def random_term(random: Random) -> str:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(5))
+@pytest.mark.third
 def test_conditions_at_random_against_dense_samples(seed: int) -> None:
     """Between the instants told every condition is, as its coordinates say, what the last change made it."""
     random = Random(seed)

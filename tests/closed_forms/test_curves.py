@@ -299,6 +299,7 @@ PLANAR, DRIVEN = "heun: 1\nspace: planar", "drives: {go: {joint: wire, travel: '
     ("[0, 0, 1]", 0.7, "", "heun: 1"), ("[0, 0, 1]", 0.7, DRIVEN, PLANAR),
     ("[0, 0, -3]", 1.3, "", PLANAR), ("[0, 0, -3]", 1.3, DRIVEN, "heun: 1"),
 ])  # fmt: skip
+@pytest.mark.third
 def test_a_roller_beside_a_circle(normal: str, radius: float, drive: str, head: str) -> None:
     """Within or outside of a ring it runs on a ring, in the plane and in space, on an arm that turns, and driven."""
     ring = [table(f, 0.0, 2.0 * math.pi, 240, ROUND) for f in (np.cos, np.sin)]

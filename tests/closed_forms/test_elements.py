@@ -12,6 +12,7 @@ SPECS = sorted((Path(__file__).parent / "elements").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.stem)
+@pytest.mark.third
 def test_a_spec_is_as_it_expects(spec: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert enter(["run", str(spec), "--strict"]) == 0
     assert enter(["check", str(spec)]) == 0

@@ -282,7 +282,7 @@ def test_a_fall_onto_a_spring(k: float, c: float, samples: int) -> None:
 @pytest.mark.parametrize(("load", "periods"), [
     ("-8*sign(shaft.angle)", 3), ("-8*sign(shaft.angle)", 25),
     ("8 - 16*step(shaft.angle)", 25), ("-8 if shaft.angle > 0 else 8", 25),
-    ("-8*abs(shaft.angle)/(shaft.angle if shaft.angle != 0 else 1)", 25),
+    ("-8*abs(shaft.angle)/(shaft.angle if shaft.angle != 0 else 1)", 3),
 ])  # fmt: skip
 def test_a_spring_of_constant_torque(load: str, periods: int) -> None:
     """-8 sign(angle): parabolas between passages at the rate of the start, for ever."""

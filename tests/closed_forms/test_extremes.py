@@ -63,6 +63,7 @@ def thrown(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("samples", [2, 21])
+@pytest.mark.third
 def test_the_highest_of_many_summits_between_few_samples(samples: int) -> None:
     """Driven rotors need no steps: their loads turn all the same."""
     run = rotors(samples=samples)

@@ -98,6 +98,7 @@ NAMED = ("IPE 80", "IPE 200", "IPE 600", "HEA 100", "HEA 200", "HEB 300", "HEM 3
 
 
 @pytest.mark.parametrize(("family", "sizes"), [*MEASURED, *((None, (name,)) for name in NAMED)])
+@pytest.mark.third
 def test_torsion_constant(family: Family | None, sizes: tuple[float, ...]) -> None:
     if family is None:
         profile = find_profile(str(sizes[0]))

@@ -141,6 +141,7 @@ def integrate(inside: Callable[[Array, Array], Array], m: Measures, low: float, 
 
 
 @pytest.mark.parametrize(("family", "m"), OWN)
+@pytest.mark.third
 def test_area_and_moments_by_lines(family: Family, m: Measures) -> None:
     """An integral over lines, without the outline's corners and arcs."""
     left = 0.0 if family in ("C", "L") else -0.5 * m.width

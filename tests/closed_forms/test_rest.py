@@ -79,6 +79,7 @@ def test_beside_a_ridge_the_way_goes_to_its_side(beside: float) -> None:
 
 
 @pytest.mark.parametrize("beside", [1e-9, -1e-9, 1e-12, -1e-12])
+@pytest.mark.third
 def test_on_a_ridge_the_other_pose_is_told(beside: float) -> None:
     results = ridge(beside)
     side = float(results.coordinates["ux"]["travel"][0])
@@ -302,7 +303,7 @@ def stays(run: Study, within: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.third
+@pytest.mark.sixth
 def test_what_rests_stays(seed: int) -> None:
     run = study(tree(np.random.default_rng(seed)))
     assert not unstable(run.results)
@@ -378,6 +379,7 @@ def test_a_trapdoor_rests_on_its_buffer() -> None:
 
 
 @pytest.mark.parametrize("more", ["", ", restitution: 0.5"])
+@pytest.mark.third
 def test_a_rope_that_bears_and_one_that_hangs_slack(more: str) -> None:
     """A mass of 2 kg hangs on 1 m of rope; with a second rope from 1 m beside it between both, if that is short."""
     body = f"bodies: {{d: {{{BALL}, position: [0.3, 0, -0.2]}}}}\n"
@@ -402,6 +404,7 @@ def carriage(angle: str) -> str:
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.third
 def test_a_level_bar_on_a_free_carriage_falls(off: float) -> None:
     """Drawn level it is pushed, but no slope turns it back: A = [[0, 0], [k, 0]], and nearly so beside."""
     found = solved(carriage(repr(math.pi / 2.0 - off)))
@@ -463,6 +466,7 @@ def test_a_slider_that_does_not_rest_is_told_in_its_unit(force: str, said: str) 
 
 
 @pytest.mark.parametrize("cube", ["100", "1e-3"])
+@pytest.mark.third
 def test_what_bends_alone_is_not_told_as_stable(cube: str) -> None:
     """At the flat point of -k x^3 the slope is the rounding of the pose."""
     slide = "u: {type: slide, from: ground.O, to: b.c, axis: [1, 0, 0], initial: {travel: 0.5}}"

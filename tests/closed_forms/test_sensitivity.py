@@ -63,6 +63,7 @@ def test_a_bar_held_at_its_root(heun: Heun) -> None:
     assert one["derivative"] == pytest.approx(1e3 * one["derivative_si"], rel=1e-15) and one["unit"] == "kN"
 
 
+@pytest.mark.long
 def test_a_bearing(heun: Heun) -> None:
     """(7850 pi r^2 L + M) g/2 + 2/3 m (g + e n^2): specs/rotor.yaml."""
     found = told(heun, (SPECS / "rotor.yaml").read_text(), "max joints.right.radial")

@@ -49,7 +49,20 @@ def ishigami(x: Array) -> Array:
     return found
 
 
+def test_the_indices_of_ishigamis_function() -> None:
+    """As below, without a sweep."""
+    laws = [RandomVariable(name, "sobol", -math.pi, math.pi, "") for name in "xyz"]
+    own = compute_sobol_indices(ishigami(make_draws(laws, 512, 0, indices=True).values).reshape(-1, 5))
+    assert own is not None
+    for one, first, total in zip(own, FIRST, TOTAL, strict=True):
+        for told, truth in ((one.first, first), (one.total, total)):
+            assert told.low is not None and told.high is not None
+            half = 0.5 * (told.high - told.low)
+            assert abs(told.value - truth) < 3.0 * half and half < 0.16
+
+
 @pytest.mark.heavy
+@pytest.mark.long
 def test_a_sweep_finds_the_indices_of_ishigamis_function(heun: Heun, folder: Path) -> None:
     """Within three times what it states, which a true interval passes once in 10^8; and what it states is small."""
     (folder / "ishigami.yaml").write_text(ISHIGAMI)

@@ -81,6 +81,7 @@ def four_bar(crank: float, torque: str, axes: dict[str, float], turn: float, **e
         (1, {"C": -1}, 2.0, "auto"),
     ],
 )
+@pytest.mark.third
 def test_a_four_bar_starts_where_the_torque_is_the_sum_of_its_limits(
     crank: float, sign: int, axes: dict[str, float], turn: float, space: str
 ) -> None:
@@ -176,6 +177,7 @@ class CrankStepper:
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.third
 def test_slider_cranks_with_friction_everywhere_swing_and_stop_as_by_time_stepping(seed: int) -> None:
     """Random limits and starts; some stop and stay, some turn back: the stepper errs by a part of its step."""
     rng = np.random.default_rng(seed)

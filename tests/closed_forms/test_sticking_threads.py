@@ -38,6 +38,7 @@ def up_sign(senses: tuple[tuple[float, float], tuple[int, int], int]) -> float:
 
 @pytest.mark.parametrize("excess", [-1e-6, 1e-6])
 @pytest.mark.parametrize("senses", SENSES)
+@pytest.mark.third
 def test_a_thread_holds_its_load_up_to_the_angle_of_friction(senses: Any, excess: float) -> None:
     """It sticks if tan(lambda) <= mu; else the nut falls with (W - friction) of its inertia and the spindle's."""
     mu = SLOPE * (1 + excess)
@@ -71,6 +72,7 @@ def test_a_thread_that_is_too_steep_runs_down(mu: float) -> None:
 )
 @pytest.mark.parametrize("senses", SENSES[::3])
 @pytest.mark.parametrize("raises", [True, False])
+@pytest.mark.third
 def test_a_jack_starts_at_the_torque_of_the_static_friction(
     mu: float, static: float, flank: float, senses: Any, raises: bool
 ) -> None:

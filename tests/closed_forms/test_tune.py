@@ -93,6 +93,7 @@ def test_counterweight_of_an_engine(heun: Heun, folder: Path) -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_half_of_what_goes_to_and_fro(heun: Heun, folder: Path) -> None:
     """With a long rod the weight balances what rotates and half of what reciprocates, as all books have it."""
     (folder / "engine.yaml").write_text(ENGINE)

@@ -119,6 +119,7 @@ def test_two_tones_are_counted_between_the_samples() -> None:
         ("top", "energy.kinetic"), ("struck_door", "joints.high.force.y"),
     ],
 )  # fmt: skip
+@pytest.mark.third
 def test_machines_looked_at_closely_have_the_same_cycles(name: str, path: str) -> None:
     """Solved with two samples, against 40,000 instants of the same run, which miss summits by some 1e-6 of them."""
     solved = heuncli.solve(SPECS / f"{name}.yaml", set={"analysis.samples": 2})

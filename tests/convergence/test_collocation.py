@@ -110,6 +110,7 @@ def places(results: Results) -> Array:
 @pytest.mark.heavy
 @pytest.mark.parametrize("scene", ["governor, 10 s", "friction of 1e-6"])
 @pytest.mark.parametrize("method", NAMES)
+@pytest.mark.third
 def test_what_is_told_of_a_stiff_motion_is_right(scene: str, method: str) -> None:
     """The true error is below the one told, which is below the tolerance asked for; sizes are 1 m."""
     exact = places(solved(STIFF_SCENES[scene], method="Radau9", tolerance=1e-13))
@@ -145,6 +146,7 @@ def test_friction_that_sticks(method: str) -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("method", NAMES)
 @pytest.mark.parametrize("scene", EVENTS)
+@pytest.mark.third
 def test_events_and_contacts(scene: str, method: str) -> None:
     """Branches that turn, pulses, stops and ropes are met as by an explicit method."""
     ours, theirs = (solved(EVENTS[scene], method=name) for name in (method, "DOP853"))

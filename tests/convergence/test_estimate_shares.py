@@ -50,6 +50,7 @@ def shares(found: Results) -> dict[tuple[str, str], list[Array]]:
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.third
 def test_never_below_the_true_error(name: str) -> None:
     made, told = studied(name, LOOSE)
     finest, exact = studied(name, 1e-13)

@@ -13,6 +13,7 @@ from tests.shared.scenes import instants, moving, near, solved
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("gravity", "rate"), [(0.0, 6.0), (-9.81, 6.0), (-9.81, 12.0)])
+@pytest.mark.third
 def test_four_bar_for_a_hundred_seconds(gravity: float, rate: float) -> None:
     """At a tolerance of 1e-10: gap below 1e-12 of its size, energy within 1e-9; the oracle's gaps agree."""
     scene = crank_rocker(0.5, rate) | {"gravity": [0, gravity, 0]}

@@ -151,6 +151,7 @@ def test_the_run_itself(name: str, kept: int, monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.mark.parametrize("name", MOVING)
+@pytest.mark.third
 def test_each_instant_is_recovered_by_itself(name: str) -> None:
     """The same bits whatever is asked with it: alone, among others, after one far away."""
     setup = scene(name)

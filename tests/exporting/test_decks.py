@@ -182,6 +182,7 @@ DIGITS = {"nastran": 1e-11}  # large fields have twelve digits
 
 @pytest.mark.parametrize("form", READERS)
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_a_deck_has_the_numbers(form: str, seed: int) -> None:
     """Forces at nodes add up to those of the case at their places, the accelerations are those of the case."""
     for cases in written_cases(seed):

@@ -47,6 +47,7 @@ def sums_of_points(body: LoadedBody, case: LoadCase) -> tuple[Array, Array]:
 
 
 @pytest.mark.parametrize(("make", "seed"), SCENES, ids=IDS)
+@pytest.mark.third
 def test_every_body_balances(make: Any, seed: int) -> None:
     """Of random trees and closed chains with loads and drives of all kinds; also with the inertia of point masses."""
     scene, _ = make(seed)

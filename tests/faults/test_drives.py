@@ -98,6 +98,7 @@ def refusal(scene: dict[str, Any], times: tuple[float, ...] = (0.0, 0.5, 1.0)) -
     return raised.value
 
 
+@pytest.mark.heavy
 def test_two_drives_of_one_freedom() -> None:
     """In the pose, in the rate, in the acceleration, and later on: each refused; the first three name both drives."""
     A, D = angles()["A"], angles()["D"]

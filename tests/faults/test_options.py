@@ -47,6 +47,7 @@ def test_a_command_with_all_its_options(command: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.long
 def test_every_scene_that_moves(tmp_path: Path) -> None:
     _, moving = texts()
     for number, (name, text) in enumerate(moving.items()):

@@ -55,6 +55,7 @@ def direction(draw: random.Random) -> Array:
 
 
 @pytest.mark.parametrize("bodies", [(2, 5), (8, 12)])
+@pytest.mark.third
 def test_what_rounding_alone_reaches_is_no_false_alarm(bodies: tuple[int, int]) -> None:
     for seed in range(30):
         found = study(pressed_on_stops(seed, bodies)).results

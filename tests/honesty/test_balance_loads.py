@@ -20,6 +20,7 @@ def test_orders_means_and_wheels_are_within_what_is_told(seed: int) -> None:
 @pytest.mark.parametrize(
     "told", [{"rate": -RATE}, {"axis": -1}, {"begin": ELSEWHERE}], ids=["backwards", "axis reversed", "elsewhere"]
 )
+@pytest.mark.third
 def test_a_shaft_told_otherwise_has_the_same_numbers(told: dict[str, float]) -> None:
     for own in compared(drawn(3), **told):
         assert own.share <= 1.0, own

@@ -9,6 +9,7 @@ from tests.honesty.carried_spins import drawn, judged, tellings
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.third
 def test_coupled_spins_turn_the_carrier(seed: int) -> None:
     """Frequencies, damping and the verdict "steady" are those of the same motion, whichever shaft has the rate."""
     one = drawn(seed)

@@ -138,6 +138,7 @@ def test_one_crossing_of_a_smooth_rise_takes_few_runs() -> None:
 
 @pytest.mark.parametrize("relation", ["<", ">="])
 @pytest.mark.parametrize("seed", range(40))
+@pytest.mark.third
 def test_where_an_inequality_is_met(relation: Relation, seed: int) -> None:
     """Everywhere in the stretches told, nowhere between them, but within the errors of their ends."""
     rng = np.random.default_rng([11, seed])

@@ -267,6 +267,7 @@ analysis: {duration: 1, samples: 11}
 
 
 @pytest.mark.parametrize("name", ["double", "top", "lamp", "wingnut", "four_bar", "slider_crank", "cardan", "stiff"])
+@pytest.mark.third
 def test_every_digit_of_a_table_is_right(name: str) -> None:
     """Against a run at 1e-13, at instants of no meaning: to one unit of the last place of either."""
     text = STIFF if name == "stiff" else (SPECS / f"{name}.yaml").read_text()

@@ -26,6 +26,7 @@ SCENES = (
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
+@pytest.mark.third
 def test_unit_and_error_are_those_of_the_tables(scene: object) -> None:
     study = solve(load(str(scene)), Options())
     numbers = take_run_snapshot(study, frozenset(REPORTS)).numbers

@@ -85,6 +85,7 @@ def test_the_reference(t: int) -> None:
 @pytest.mark.parametrize("joint", ["pin", "ball"])
 @pytest.mark.parametrize("reduce", [True, False])
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-9])
+@pytest.mark.third
 def test_nothing_before_the_horizon_is_off_by_more_than_is_said(joint: str, reduce: bool, tolerance: float) -> None:
     text = rods([2.5, 2.5], [0.0, 0.0], f"{{duration: {LAST}, samples: {LAST * EVERY + 1}, tolerance: {tolerance}}}")
     if joint == "ball":

@@ -46,7 +46,7 @@ def short_by(run: Study, samples: int, slack: float = 0.0) -> list[tuple[str, fl
 
 
 @pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_of_every_spec(path: Path) -> None:
     spec = load(str(path))
     if spec.analysis.type != "motion":

@@ -26,6 +26,7 @@ def test_so_it_is_by_the_whole_command(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", [1068, 1097, 1104, 1110, 1123, 1240, 1263, 1353, 1595, 1938])
+@pytest.mark.third
 def test_narrow_peaks_flat_touches_and_near_pairs_are_not_passed_over(seed: int) -> None:
     """Each was told as met nowhere, at a place out of its stated ends, or as met throughout."""
     course, relation, verdict = judged(seed, direct=True)
@@ -33,6 +34,7 @@ def test_narrow_peaks_flat_touches_and_near_pairs_are_not_passed_over(seed: int)
 
 
 @pytest.mark.parametrize("seed", [592, 729, 2003, 152, 620, 971, 958, 1565])
+@pytest.mark.third
 def test_gaps_at_ends_beside_poles_and_touches_of_zero_are_searched(seed: int) -> None:
     """A law that breaks in the last gap; a pole and a zero in one gap; touches whose error vanishes there."""
     course, relation, verdict = judged(seed, direct=True)

@@ -11,6 +11,7 @@ CASES = [*(f"rows {seed}" for seed in range(20)), *(f"bodies {seed}" for seed in
 
 
 @pytest.mark.parametrize("case", spared(CASES, CASES[1:3] + CASES[-2:]))
+@pytest.mark.third
 def test_it_ends_as_the_reference(case: str) -> None:
     """Jumps, impulses, energy, what is said."""
     kind, seed = case.split()[0], int(case.split()[1])

@@ -128,7 +128,7 @@ def test_independent_checks(row: MethodRow, seed: int) -> None:
 
 @pytest.mark.parametrize("scene", WRITTEN)
 @pytest.mark.parametrize("row", [*OWN, FOREIGN[0]], ids=lambda row: row.name)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_contacts_blows_and_conditions(row: MethodRow, scene: str) -> None:
     require_honest(row, scene, reduce=True)
 

@@ -22,7 +22,7 @@ ALL_CASES = [
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "seed", "way"), ALL_CASES)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_it_swings_as_told_before(kind: str, seed: int, way: str) -> None:
     """As many of each kind, frequencies and growths within what both tellings state; refused where the first is."""
     found, *_ = judged(kind, seed, way)
@@ -30,6 +30,7 @@ def test_it_swings_as_told_before(kind: str, seed: int, way: str) -> None:
 
 
 @pytest.mark.parametrize("seed", range(2))
+@pytest.mark.third
 def test_what_is_held_has_the_error_of_rounding_alone(seed: int) -> None:
     """A pose in which all is held is known to its rounding, and so are the modes: another billionth is seen."""
     tree = scene("plane", seed)

@@ -24,6 +24,7 @@ IDEAL = 3e-9  # below, hinges may count as in line: RANK, and what a length in t
 
 
 @pytest.mark.parametrize("seed", spared(range(SCENES), range(80)))
+@pytest.mark.third
 def test_right_or_marked(seed: int) -> None:
     family, near, (scene, rates) = near_scene(seed)
     try:

@@ -53,6 +53,7 @@ def found(scene: str, tolerance: float) -> Study:
 @pytest.mark.parametrize(
     ("scene", "path"), [*((JOINED, path) for path in OF_JOINED), *((SMALL, path) for path in OF_SMALL)]
 )
+@pytest.mark.third
 def test_each_has_its_error(scene: str, path: str, tolerance: float) -> None:
     own, exact = found(scene, tolerance), found(scene, 1e-11)
     it, its = (find_values(study.results, path) for study in (own, exact))

@@ -31,6 +31,7 @@ def test_the_rates_of_a_chain(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(16))
+@pytest.mark.third
 def test_the_dead_centres_of_a_slider_crank(seed: int) -> None:
     """The bore, which passes beside the pin, stands where crank and rod are in line: sin(phi) (r +- l) = e."""
     draw = random.Random(seed)

@@ -47,7 +47,7 @@ FAMILIES: dict[str, tuple[Callable[[int], dict[str, Any]], range, int]] = {
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_random(family: str) -> None:
     make, seeds, least = FAMILIES[family]
     fewer = 0

@@ -25,7 +25,7 @@ SPECIAL = [*FAR_OPEN, *CREEPING, *CARRIED, *NEARLY_DEAD, *TURN_ABOUT, *ALIKE]
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "seed"), SPECIAL)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_the_damped_motion_comes_to_what_was_once_missed(kind: str, seed: int) -> None:
     require_rest_of_the_motion(kind, seed)
 

@@ -9,6 +9,7 @@ from tests.honesty.short_loads import FACTOR, judged, scene, tells_chatter
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(60))
+@pytest.mark.third
 def test_none_is_missed(seed: int) -> None:
     """Places within what the run tells, and the loads' work; where no motion goes on, that is told with its instant."""
     drawn = scene(seed)

@@ -8,6 +8,7 @@ from tests.honesty.splits import SAME, differences
 
 
 @pytest.mark.parametrize("seed", range(2000, 2040))
+@pytest.mark.third
 def test_a_split_by_stiffness(seed: int) -> None:
     for against, off in differences(seed).items():
         assert off <= SAME, against

@@ -16,6 +16,7 @@ pytestmark = pytest.mark.heavy  # a family at random: with the compiled kernel, 
 
 
 @pytest.mark.parametrize("seed", range(15))
+@pytest.mark.third
 def test_right_before_the_horizon(seed: int) -> None:
     """A point of some body, by 1 to 3 N s, in the first half of the run."""
     _, scene = chaotic_scene(seed)

@@ -16,7 +16,7 @@ WAYS = list(TELLINGS)
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", [*range(21), *ON_THE_EDGE])
-@pytest.mark.third
+@pytest.mark.sixth
 def test_it_is_struck_as_told_before(seed: int) -> None:
     """As many blows, and all numbers of them and of the motion within what both tellings state."""
     way = WAYS[seed % len(WAYS)]

@@ -31,6 +31,7 @@ MASS = "<inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</i
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.third
 def test_a_robot_gives_the_same_spec_from_both_formats(seed: int) -> None:
     rng = np.random.default_rng(seed)
     robot = random_robot(rng, 3 + 4 * seed, right=seed % 3 == 2)

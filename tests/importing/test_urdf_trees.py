@@ -24,6 +24,7 @@ REPORTS = frozenset({"motion", "points", "joints"})
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.third
 def test_an_imported_robot_is_where_its_own_kinematics_has_it(seed):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng, 3 + 4 * seed, right=seed % 3 == 2)

@@ -55,6 +55,7 @@ def told(s: Mechanism) -> Any:
         return error.problems
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(24))
 @pytest.mark.third
 def test_a_proof_changes_no_word_and_no_bit(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:

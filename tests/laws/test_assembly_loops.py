@@ -288,6 +288,7 @@ def test_random_loops_close(seed: int, noise: float) -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
+@pytest.mark.third
 def test_the_order_of_the_file_does_not_matter_in_loops(seed: int) -> None:
     s = random_loop(seed, 0.1, TURNING)
     rng = np.random.default_rng(seed)
@@ -301,6 +302,7 @@ def test_the_order_of_the_file_does_not_matter_in_loops(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
+@pytest.mark.third
 def test_turning_the_world_turns_the_loop(seed: int) -> None:
     Q = rotation_from_vector(np.random.default_rng(seed).normal(size=3))
     s = random_loop(seed, 0.1, TURNING)

@@ -88,6 +88,7 @@ def test_a_cam_told_otherwise(seed: int, way: str) -> None:
     near(two.couplings["cam"]["pressure_angle"], one.couplings["cam"]["pressure_angle"], 1.0, 1e-8)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(6))
 def test_a_groove_is_told_from_either_side(seed: int) -> None:
     """The follower's axis turned round, and the lift with it: the same motion and force, the contact's sign turns."""

@@ -91,6 +91,7 @@ def free_motions(layout: Layout, at: Poses) -> list[tuple[int, Array, Array]]:
     return found
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("of", CASES)
 @pytest.mark.sixth
 def test_the_jacobian_is_the_rate_of_the_gaps(of: tuple[Callable[[int], Case], int]) -> None:

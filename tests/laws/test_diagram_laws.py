@@ -55,6 +55,7 @@ def plain() -> Study:
     return flail()
 
 
+@pytest.mark.heavy
 def test_the_world_turned_leaves_them_as_they_are(plain: Study) -> None:
     """All that is drawn, to a pixel; the curves at an instant to the error of the motion."""
     turned = flail(R)

@@ -109,6 +109,7 @@ def every_body_balances(scene: dict[str, Any], found: Results) -> None:
 
 
 @pytest.mark.parametrize("kind", kinds())
+@pytest.mark.third
 def test_elements_exert_nothing_on_the_whole_and_give_no_power(kind: str) -> None:
     found = run(kind, 100 + list(ELEMENTS).index(kind))[1].results
     nothing_and_no_power(found)

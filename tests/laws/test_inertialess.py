@@ -67,6 +67,7 @@ def test_random_loops(seed: int) -> None:
     as_the_oracle(scene, study(scene), 1e-9)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", (0, 3, 4, 7, 9, 10))
 @pytest.mark.third
 def test_they_move(seed: int) -> None:

@@ -99,6 +99,7 @@ SCENES = {
 }
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("scene", SCENES)
 def test_a_small_mass_differs_in_first_order(scene: str) -> None:
     def solve_with(frame: str) -> tuple[Array, Array]:

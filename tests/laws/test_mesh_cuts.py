@@ -92,6 +92,7 @@ def clipped(triangles: Array, n: Array, d: float, density: float) -> Array:
 
 
 @pytest.mark.parametrize("name", BODIES)
+@pytest.mark.third
 def test_a_piece_is_that_of_tetrahedra_clipped_one_by_one(name: str) -> None:
     triangles, rng = BODIES[name], np.random.default_rng(3)
     f = body(triangles)

@@ -65,7 +65,9 @@ def told_and_found(found: Study) -> tuple[Array, Array, int]:
     return told, looked, int(columns.grid_verdicts.covers(found.find_recovery(at, WANTED).solutions).sum())
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["bricard", "four_bar", "flat_four_bar", "engine", "press", "hammered_four_bar"])
+@pytest.mark.third
 def test_specs_with_closed_chains(name: str) -> None:
     """Every number and every `open` of the worked examples, at instants that nobody asked for."""
     told, looked, followed = told_and_found(solve(load(str(SPECS / f"{name}.yaml"))))

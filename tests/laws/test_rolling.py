@@ -31,6 +31,7 @@ def bare(seed: int) -> dict[str, Any]:
     return {key: value for key, value in scene.items() if key != "forces"} | {"bodies": bodies}
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_world_turned(seed: int) -> None:
     """Everything turns with it, what the plane exerts, too; its numbers stay."""
@@ -81,6 +82,7 @@ def turned_joint(joint: dict[str, Any], R: Any) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
 def test_all_faster(seed: int) -> None:
     """Speeds c times, gravity c^2 times: the same ways in 1 / c of the time, loads c^2 times."""

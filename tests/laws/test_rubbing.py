@@ -53,6 +53,7 @@ def pendulum_by_scipy(times: np.ndarray) -> np.ndarray:
     return np.asarray(found.y)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("method", ["DOP853", "Radau5", "Radau9", "DOPRI5"])
 @pytest.mark.parametrize("space", ["planar", "spatial"])
 @pytest.mark.third

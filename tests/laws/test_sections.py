@@ -195,6 +195,7 @@ def cylinder_points(low: float, high: float, radius: float, bore: float, density
     return np.stack([R * np.cos(A), R * np.sin(A), Z], axis=1), density * W
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", BARS)
 def test_against_dalembert_forces_along_the_bar(name: str) -> None:
     """Σ' m (g − ẍ) over the bar's own volume, and the lower joint's load; over two seconds of the double pendulum."""
@@ -401,6 +402,7 @@ sections: {{run: {{body: bar, from: a, to: b, count: 3}}}}
     assert heading.startswith("body y") and ("closest to body x" in heading) == (abs(slope) > 1e-9)
 
 
+@pytest.mark.heavy
 def test_a_run_says_where_it_is() -> None:
     """s from `from` to `to`, points and rows alike; single cuts have neither."""
     found: dict[str, Any] = solved(DOUBLE).sections["up"]

@@ -77,6 +77,7 @@ def test_a_tree(seed: int, way: str) -> None:
 
 @pytest.mark.heavy
 @each(("other ends",), seeds(8))
+@pytest.mark.third
 def test_a_tree_from_its_other_ends(seed: int, way: str) -> None:
     scene, first = tree(seed, kinds=EITHER_END)
     other = told(scene, way, seed)

@@ -51,7 +51,7 @@ WARNED = ("flat_four_bar.yaml: singular positions at t = ", "rigid bodies do not
 @pytest.mark.heavy
 @pytest.mark.usefixtures("beside_specs")
 @pytest.mark.parametrize("words", TYPED.values(), ids=TYPED)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_commands_run(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     """Each once, however often it stands there; not those whose output is shown, which run below.
 
@@ -72,7 +72,7 @@ def test_no_command_is_missed() -> None:
 @pytest.mark.heavy
 @pytest.mark.usefixtures("beside_specs")
 @pytest.mark.parametrize("shown", SHOWN.values(), ids=SHOWN)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_shown_output_is_the_output(shown: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     command, *lines = shown
     assert command.startswith("$ heun ")

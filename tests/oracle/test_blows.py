@@ -89,6 +89,7 @@ def test_energy(make: type, name: str) -> None:
 
 
 @NAMED
+@pytest.mark.third
 def test_mass_effects(make: type, name: str) -> None:
     """Jumps of Σ m ẋ and of both parts of the moment of momentum."""
     c = make(name)

@@ -39,6 +39,7 @@ def test_motion_and_loads_of_what_a_cam_moves(seed: int) -> None:
         near(block["contact"][k], multiplier * np.sign(leaves(own, state)), c.force[k])
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", ALL)
 def test_a_follower_neither_leaves_its_cam_nor_takes_power(seed: int) -> None:
     """All rows' rates vanish on the way, the coordinate is the lift; the energies add up."""

@@ -55,7 +55,7 @@ def dense(seed: int) -> tuple[Study, list[dict[str, Placed]]]:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_no_gap_is_negative(seed: int) -> None:
     """At no instant does a coordinate pass its limit, or a rope its length."""
     run = run_of(seed)
@@ -67,6 +67,7 @@ def test_no_gap_is_negative(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_nothing_pulls(seed: int) -> None:
     """Stops push inward, ropes pull; what is free carries nothing."""
     found, states = dense(seed)

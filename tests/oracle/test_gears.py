@@ -26,6 +26,7 @@ from tests.shared.trees import ABOUT, Case, case
 ALL = spared(range(15), frozenset({1, 2, 3}))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", ALL)
 def test_motion_and_loads_of_what_meshes(seed: int) -> None:
     """Accelerations of all bodies, reactions of joints, and what one member exerts ON the other."""

@@ -117,6 +117,7 @@ def test_catches_are_the_blows_of_drives_that_stop(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_what_latches_exert_is_what_standing_drives_do(seed: int) -> None:
     """Accelerations, the loads of joints and of latches at every instant; nothing of those that are open."""
     found, states = run_of(seed)

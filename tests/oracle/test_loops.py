@@ -24,6 +24,7 @@ def test_reactions_and_what_is_open(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", ALL)
+@pytest.mark.third
 def test_parts_of_a_reaction(seed: int) -> None:
     checks.same_parts(loop(seed))
 

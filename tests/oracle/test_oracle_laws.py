@@ -148,6 +148,7 @@ def momentum(scene: dict, state: State) -> Array:
     return total
 
 
+@pytest.mark.heavy
 def test_energy_holds_without_losses() -> None:
     scene, state = some_scene(4, loads=("spring",), drives=0, loops=1)
     scene["forces"]["f_spring"]["damping"] = 0.0
@@ -221,6 +222,7 @@ def on_axis(s: Placed, rod: dict, spin: Array) -> Array:
     return cross(spin, s.rotation @ np.array(rod["from"]))
 
 
+@pytest.mark.heavy
 def test_an_angle_is_read_as_it_was_turned() -> None:
     """coordinates: the drive of a random scene starts at its own value, whichever axes the bodies have."""
     for seed in range(6):

@@ -49,6 +49,7 @@ def given(scene: dict[str, Any], found: Results) -> dict[str, Any]:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "loops", "drives", "count"), CASES, ids=[case[0] for case in CASES])
+@pytest.mark.third
 def test_what_presses_is_what_rubs(kind: str, loops: int, drives: int, count: int) -> None:
     told = 0
     for seed in range(count):

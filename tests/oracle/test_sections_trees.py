@@ -89,6 +89,7 @@ def test_both_sides_add_to_nothing(seed: int) -> None:
             near(found[f"one_{name}"]["moment"][k], -found[f"two_{name}"]["moment"][k], M)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("side", ["before", "beyond"])
 @pytest.mark.parametrize("seed", seeds(6))
 @pytest.mark.third

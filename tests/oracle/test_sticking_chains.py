@@ -94,7 +94,9 @@ def tell(c: Chains, k: int) -> str:
     return "\n".join([*blocks, f"analysis: {{duration: {DURATION}, samples: {SAMPLES}}}"])
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("n", "count"), [(1, 10), (2, 25), (3, 15)])
+@pytest.mark.third
 def test_chains_move_as_moreaus_steps_take_them(n: int, count: int, request: pytest.FixtureRequest) -> None:
     if request.config.getoption("--all-cases"):
         count *= 20

@@ -18,6 +18,7 @@ INSTANTS = list(enumerate(TIMES))
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_accelerations(seed: int) -> None:
     c = tree(seed)
     found = c.study.results.bodies

@@ -51,6 +51,7 @@ def test_scenes_are_what_they_should_be() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.third
 def test_scenes_are_far_from_the_thresholds(seed: int) -> None:
     """Singular values and shares are rounding or plainly there, so that a verdict is no matter of a threshold."""
     c = redundant(seed)

@@ -94,6 +94,7 @@ def test_a_trolley_that_stands_still() -> None:
 
 
 @pytest.mark.parametrize("drive", [f"{L / 2.0}*(1 + tanh(200*(t - 1)))", f"{L / 2.0}*t", f"{L / 2.0}*(1 - cos(pi*t))"])
+@pytest.mark.third
 def test_no_shear_is_larger_than_the_load(drive: str) -> None:
     """Nor where it comes to a support, or begins there: the extremes searched along the beam and in time."""
     run = study(SCENE.replace("DRIVE", drive))

@@ -140,6 +140,7 @@ def volume(shape: Shape) -> float:
 
 
 @pytest.mark.parametrize("name", FILES)
+@pytest.mark.third
 def test_up_is_y_and_lengths_are_metres(name: str) -> None:
     """A point of a body through the nodes as readers stack them: gravity pulls along -y."""
     spec, machine, _, content = drawn(name)

@@ -47,6 +47,7 @@ def report(*arguments: Any, **options: Any) -> bool:
         ),
     ],
 )  # fmt: skip
+@pytest.mark.third
 def test_the_file_is_that_of_the_command(
     name: str, options: dict[str, Any], words: list[str], heun: Heun, tmp_path: Path
 ) -> None:

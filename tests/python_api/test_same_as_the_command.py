@@ -42,7 +42,7 @@ def leaves(node: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, .
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", EVERY, ids=lambda path: path.stem)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_numbers_are_those_of_the_json(heun: Heun, path: Path) -> None:
     written = json.loads(heun("run", str(path), "--format", "json", "-q").stdout)
     study = solved(path)

@@ -141,6 +141,7 @@ def test_what_no_disk_would_hold_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("write", [to_json, lambda results: to_csv(results, LABELS)], ids=["json", "csv"])
+@pytest.mark.third
 def test_cost_grows_no_faster_than_the_numbers(write: Any) -> None:
     def seconds(n: int) -> float:
         results = pendulum(np.linspace(0.0, 2.0, n))

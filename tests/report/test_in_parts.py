@@ -243,6 +243,7 @@ def test_a_sample_takes_its_states_and_nothing_else(form: str, little: None) -> 
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("form", ["json", "csv"])
+@pytest.mark.third
 def test_cuts_times_samples_take_nothing(form: str, little: None) -> None:
     """400 cuts at 50 instants more are 20,000 more places, each of 15 numbers."""
     few, many = (swinging(n, 400) for n in (20, 70))

@@ -112,6 +112,7 @@ def test_extremes_of_samples_alone_are_told_first(heun: Heun, folder: Path, monk
     assert said in read_of(heun, folder, SWING).by_tag["header"][0]
 
 
+@pytest.mark.long
 def test_few_samples_of_many_turns_hide_no_load(heun: Heun, folder: Path) -> None:
     """Seven cycles of an engine, told at eight instants: more than a million numbers to look at."""
     text = (SPECS / "engine.yaml").read_text().partition("\nexpect")[0]

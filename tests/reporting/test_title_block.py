@@ -48,6 +48,7 @@ def test_the_paper(words: tuple[str, ...], size: str, heun: Heun) -> None:
 
 
 @pytest.mark.parametrize("form", ["html", "md"])
+@pytest.mark.third
 def test_decimal_commas_in_text_tables_and_figures(form: str, heun: Heun) -> None:
     words = ("report", str(SPECS / "jib.yaml"), "-o", "-", "--format", form, "-q", "--author", "Part 1.5")
     plain, comma = heun(*words).stdout, heun(*words, "--decimal-comma").stdout

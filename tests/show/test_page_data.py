@@ -107,6 +107,7 @@ def _impulse_numbers(document: Any, path: str) -> Array:
 
 
 @ANY
+@pytest.mark.third
 def test_what_is_0_throughout_is_named(file: Path) -> None:
     """Nothing of joints, foundation and sections is missing without a word."""
     study, page = shown(file)
@@ -125,6 +126,7 @@ def test_what_is_0_throughout_is_named(file: Path) -> None:
 
 
 @ANY
+@pytest.mark.third
 def test_the_poses_are_those_of_the_machine(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
@@ -164,6 +166,7 @@ def test_a_belts_strands_touch_both_pulleys() -> None:
 
 
 @ANY
+@pytest.mark.third
 def test_cuts_stand_where_the_results_say(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
@@ -182,6 +185,7 @@ def test_cuts_stand_where_the_results_say(file: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["double", "engine", "jib", "whirling_rod", "hammered_four_bar", "compressor"])
+@pytest.mark.third
 def test_no_largest_load_is_missed(name: str) -> None:
     """Among the frames are those at which a search between the samples finds a load largest."""
     study, page = shown(SPECS / f"{name}.yaml")

@@ -64,6 +64,7 @@ def test_what_is_open_is_told() -> None:
 
 @pytest.mark.parametrize("gravity", [[0, 0, -9.81], [0, -9.81, 0], [9.81, 0, 0], [0, 0, 0]])
 @pytest.mark.parametrize("normal", [None, [0, 0, 1], [1, 0, 0], [0, -1, 0]])
+@pytest.mark.third
 def test_a_view_is_rigid_and_up_is_up(gravity: list[float], normal: list[float] | None) -> None:
     code = """
       const view = new view_js.View(given);

@@ -84,6 +84,7 @@ def test_every_file_says_what_to_see() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", [path for path in FILES if not is_in_words(path)], ids=lambda path: path.stem)
+@pytest.mark.third
 def test_each_is_mended_by_its_cure(path: Path) -> None:
     """Read and solved without an error or a warning."""
     spec = load(str(path), cured(path))

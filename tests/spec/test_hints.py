@@ -257,7 +257,10 @@ PLACE_OF_HINT = {"Problem": 3, "Finding": 2, "Violation": 2}
 
 def without_hint(path: Path) -> Iterator[str]:
     """The errors that a module constructs without a word on what to do next."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    text = path.read_text(encoding="utf-8")
+    if not any(f"{name}(" in text for name in PLACE_OF_HINT):
+        return
+    for node in ast.walk(ast.parse(text)):
         name = getattr(node.func, "id", getattr(node.func, "attr", "")) if isinstance(node, ast.Call) else ""
         if not isinstance(node, ast.Call) or name not in PLACE_OF_HINT:
             continue

@@ -85,6 +85,7 @@ def test_labels_on_everything_change_no_scene(path: Path) -> None:
 SCHEMA = make_spec_schema()
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", SOLVED)
 @pytest.mark.third
 def test_labels_change_no_result(name: str) -> None:

@@ -76,6 +76,7 @@ def by_python(text: str, t: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
+@pytest.mark.heavy
 @given(EXPRESSIONS, st.floats(-3.0, 3.0))
 @settings(max_examples=EXAMPLES, deadline=None, derandomize=True)
 def test_values_are_pythons(text: str, t: float) -> None:
@@ -209,7 +210,8 @@ def test_compiled_and_plain_give_the_same_bits(text: str, t: float) -> None:
     compiled = answers(COMPILED, expression.pack, expression.count, [t])
     assert compiled == answers(PLAIN, expression.pack, expression.count, [t])
     if "nan" not in compiled:
-        behind = float.hex(expression.value(math.nextafter(t, math.inf)))  # at a tie derivatives are of what begins
+        # At a tie derivatives are of what begins; beside 0 that is seen where powers are no 0 yet.
+        behind = float.hex(expression.value(max(math.nextafter(t, math.inf), t + 1e-30)))
         assert compiled[1] in (compiled[0], behind)
 
 

@@ -114,7 +114,7 @@ def outcome(read: Callable[[], Spec]) -> Any:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
-@pytest.mark.third
+@pytest.mark.sixth
 def test_every_variant_is_read_as_if_it_were_the_first(path: Path) -> None:
     variants = SpecVariants(path)
     names = [*variants.spec.parameters]
@@ -156,6 +156,7 @@ def test_idle_parameters_are_those_on_which_nothing_hangs(scene: Path) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
+@pytest.mark.third
 def test_idle_parameters_change_nothing(path: Path) -> None:
     variants = SpecVariants(path, checking=False)
     parameters = variants.spec.parameters

@@ -324,8 +324,9 @@ def test_the_integral_of_a_periodic_table_needs_its_mean_taken_out() -> None:
     )  # fmt: skip
 
 
+@pytest.mark.heavy
 def test_a_cut_off_of_more_steps_than_digits_allow_is_refused() -> None:
-    x = np.linspace(0.0, 1.0, 3 * 10**5)
+    x = np.linspace(0.0, 1.0, 21 * 10**4)
     with pytest.raises(SpecError, match="longer than 100000 of its steps"):
         read(x, x, "smooth: 0.5")
 
