@@ -174,5 +174,5 @@ def test_no_run_is_timed_again_beyond_the_limit(monkeypatch: pytest.MonkeyPatch)
 
     runs = ChartRunner(cast(Any, motion), cast(Any, SimpleNamespace(seconds=1.0)), lambda done, of, what: None)
     rows = [ChartRow("RK4", "quaternion", True, 1e-3)] * 4
-    monkeypatch.setattr(runs, "one", lambda row: TimedRun(ChartRun(row, COMPLETED, 0.01), run, [0.01]))
+    monkeypatch.setattr(runs, "run_row", lambda row: TimedRun(ChartRun(row, COMPLETED, 0.01), run, [0.01]))
     assert len(runs.run_all(rows)) == 4 and len(again) == 2

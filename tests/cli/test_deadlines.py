@@ -105,7 +105,7 @@ def foreign(*_: Any, **__: Any) -> Any:
         ),
         ("heuncli.app.commands.run.scene.make_query", "run swinging.yaml", "before the work was finished"),
         (
-            "heuncli.analyses.motion_diagnostics.study.growing",
+            "heuncli.analyses.motion_diagnostics.study.find_integrated_growth",
             "probe swinging.yaml",
             "while disturbances of the motion were examined",
         ),
