@@ -37,7 +37,7 @@ PRIVATE_WORDS = {
 ENDS_IN_ED = {"speed", "seed", "need", "embed", "exceed", "feed", "proceed"}  # and is no participle
 # Fields of these files are names that users write or read: keys of specs, options, JSON; so are those of requests.
 FILES_OF_KEYS = re.compile(
-    r"scene/file_format/(format\w*|entries|fields|models|loads|couplings|segments)\.py|app/python/\w+\.py"
+    r"scene/file_format/(format\w*|entries|fields|models|loads|couplings|segment_entries)\.py|app/python/\w+\.py"
     r"|analyses/(balancing/results|lagrange/study)\.py"
 )
 # Others that strings refer to, or whose name a protocol of Python's prescribes.
