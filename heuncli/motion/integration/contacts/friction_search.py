@@ -51,7 +51,7 @@ class StateSearch:
 
     groups: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
     broken: the group that has reached what it can hold; None: none has
-    kept: groups that slipped before and are too slow yet to show it: their number, and the sign of their slip
+    earlier_slips: groups that slipped before and are too slow yet to show it: their number, and the sign of their slip
     response: of all places, without their loads
     """
 
@@ -65,12 +65,12 @@ class StateSearch:
         slip: Array,
         coordinates: Array,
         broken: int | None,
-        kept: dict[int, int],
+        earlier_slips: dict[int, int],
         response: PlaceResponse,
     ) -> None:
         self.places, self.t, self.state, self.holding = places, t, state, holding
         self.groups, self.slip, self.coordinates = groups, slip, coordinates
-        self.broken, self.kept = broken, kept
+        self.broken, self.earlier_slips = broken, earlier_slips
         self.leaders = [group.leader for group in groups]
         self.trials: dict[Choice, StateTrial] = {}
         self.noise, self.slack = response.noise, response.slack
@@ -127,7 +127,9 @@ class StateSearch:
 
     def find_by_steps(self) -> Choice | None:
         """Return an agreeing choice, from what there was on, by changing what does not agree; None if that repeats."""
-        choice = tuple(self.pushed if n == self.broken else self.kept.get(n, STICKS) for n in range(len(self.groups)))
+        choice = tuple(
+            self.pushed if n == self.broken else self.earlier_slips.get(n, STICKS) for n in range(len(self.groups))
+        )
         while choice not in self.trials:
             trial = self.solve_trial(choice)
             if trial.agrees:
@@ -166,7 +168,7 @@ class StateSearch:
 
     def goes_on_slipping(self, n: int, choice: Choice) -> bool:
         """Return whether in a choice a group slips on as it did before, or as it is pushed."""
-        return n == self.broken or (n in self.kept and choice[n] == self.kept[n])
+        return n == self.broken or (n in self.earlier_slips and choice[n] == self.earlier_slips[n])
 
     def solve_trial(self, choice: Choice) -> StateTrial:
         """Solve the motion of a choice and compare it with that."""
@@ -193,7 +195,7 @@ class StateSearch:
             elif n == self.broken:
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = -choice[n]
-            elif choice[n] == self.kept.get(n):
+            elif choice[n] == self.earlier_slips.get(n):
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = STICKS
             elif not choice[n] * acceleration > noise[k]:

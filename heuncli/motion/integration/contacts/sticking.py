@@ -4,7 +4,7 @@
 
 The frictions of one freedom are one group, which sticks or slips as a whole (friction_groups.py). Which states agree
 with the motion is searched for in friction_search.py. The forms that friction may have are listed in the manual
-(manual/format.md, "Friction") and in scene/file_format/format_loads.py, FrictionEntry.
+(manual/format.md, "friction") and in scene/file_format/format_loads.py, FrictionEntry.
 
 How a friction comes here, from the scene's text to the kernel and back:
 
@@ -116,16 +116,16 @@ class FrictionStates:
         at_rest = np.flatnonzero(is_at_rest).tolist()
         can_join = np.full(len(places.indices), places.is_given)  # no friction depends on how it shares
         groups = make_groups(response, at_rest, can_join, earlier_groups)
-        broken, kept = None, {}
+        broken, earlier_slips = None, {}
         for n, group in enumerate(groups):
             is_event = places.has_row(group, row)
             if is_event and stuck[group.leader] and broken is None:
                 broken = n
             sign = find_common_sign(group, coordinate_or_sign)
             if not (is_event or is_struck or stuck[list(group.members)].any()) and sign:
-                kept[n] = sign
+                earlier_slips[n] = sign
         coordinates = np.where(stuck, coordinate_or_sign, opened.rows["gap"][0, places.rows])
-        return StateSearch(places, t, state, contact_states, groups, slip, coordinates, broken, kept, response)
+        return StateSearch(places, t, state, contact_states, groups, slip, coordinates, broken, earlier_slips, response)
 
     def describe_changes(self, t: float) -> list[str]:
         """Return sentences on what begins to stick or to slip."""
