@@ -36,7 +36,6 @@ MAX_CUT_OFF_STEPS = 1e5  # beyond, the smoothed values lose more than eight digi
 TIMES = {1: "once", 2: "twice"}
 FINE_HINT = "give a longer period (a lower frequency), or leave smooth out"
 NOISE_HINT = "give smooth: a lower cut-off frequency; or measure more finely"
-NATURAL_HINT = "write ends: not-a-knot: the second derivative of a natural spline is 0 at its ends"
 
 KeyedFinding = tuple[str, Finding]
 
@@ -100,8 +99,7 @@ def prepare_signal(table: TableFunction, entry: TableEntry) -> tuple[TableFuncti
     size = f"error of the derivative {amount}, of at most {format_amount(largest, dimension)}"
     warnings = []
     if error is None or error > tolerances.DERIVATIVE_ERROR * largest:
-        hint = NATURAL_HINT if curve == "natural" and order > 1 else NOISE_HINT
-        warnings.append(("derivative", Finding("table-derivative", f"table {table.name}: {size}", hint)))
+        warnings.append(("derivative", Finding("table-derivative", f"table {table.name}: {size}", NOISE_HINT)))
     notes.append(f"table {table.name}: differentiated {TIMES[order]}; {size}")
     made = rebuild_table(table, entry, derivative)
     return replace(made, dimensions=(table.dimensions[0], dimension), notes=tuple(notes)), warnings
