@@ -17,21 +17,19 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from heuncli.base.errors import Problem, SpecError
-from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import list_words
 from heuncli.multibody.mechanism.loads import GROUND, JointLoad, PairLoad
 from heuncli.multibody.mechanism.model import Body, Joint, scene_size
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.multibody.tree.starts import body_state, compute_joint_start, joint_direction
-from heuncli.output.mjcf_parts import JointElement, MjcfConnections, format_inertial, format_place, iter_geom
+from heuncli.output.mjcf_joints import LOOSE_KINDS, SCALAR_PARTS, JointElement, JointElements
+from heuncli.output.mjcf_parts import MjcfConnections, format_inertial, format_place, iter_geom
 from heuncli.output.robot_tree import (
     PIN_KINDS,
     WORLD,
     PlacedJoint,
     choose_name,
     find_attitude,
-    find_axis,
     find_limits,
     format_numbers,
     grow_forest,
@@ -47,15 +45,6 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.scene.shapes.rotations import quaternion_from_matrix
 
 CODE = "export-mjcf"
-SCALAR_PARTS = {  # elements of a joint, nearest to the parent first: its type in MJCF, heun's quantity
-    **dict.fromkeys(PIN_KINDS, (("hinge", "angle"),)),
-    "slide": (("slide", "travel"),),
-    "cylinder": (("slide", "travel"), ("hinge", "angle")),
-    "universal": (("hinge", ""), ("hinge", "")),
-    "ball": (("ball", ""),),
-    "weld": (),
-}
-LOOSE_KINDS = ("line", "plane", "flat line", "flat plane")  # slides and a rotation, counted from the start
 # of the joints that can close a loop, how late they go into the tree; None: never
 CLOSING_RANKS = {"weld": 1, **dict.fromkeys(PIN_KINDS, 1), "ball": 2, "rod": None}
 MIN_MASS = 1e-15  # [kg] MuJoCo's own mjMINVAL, which also moments of inertia have to exceed
@@ -94,7 +83,7 @@ class _MjcfWriter:
         self.names = [choose_name(WORLD, spec.bodies) if body.name == WORLD else body.name
                       for body in self.mechanism.bodies]  # fmt: skip
         self.elements: list[JointElement] = []  # in the order of the file, which is that of qpos
-        self.joint_names = set(spec.joints)
+        self.joint_elements = JointElements(scene, set(spec.joints))
         self.q: list[float] = []
         self.v: list[float] = []
         closed = {joint.name for joint in self.closures}  # nothing can act in their coordinates
@@ -252,15 +241,14 @@ class _MjcfWriter:
         R, p = np.eye(3), np.zeros(3)  # of a body of the chain in the parent, with all joints at 0
         places: list[tuple[PlacedJoint, Array, Array]] = []  # joint, point in the parent, attitude after it
         for placed in chain:
-            point = p + R @ (placed.parent_point + self.find_offset(placed))
+            point = p + R @ (placed.parent_point + self.joint_elements.find_offset(placed))
             R = R @ find_attitude(placed, self.scene)
             p = point - R @ placed.child_point
             places.append((placed, point, R))
         elements: list[JointElement] = []
         for placed, point, attitude in places:
             pos = placed.child_point if placed is chain[-1] else R.T @ (point - p)
-            make = self.make_loose_elements if placed.joint.kind in LOOSE_KINDS else self.make_elements
-            elements += make(placed, pos, R.T @ attitude, chain[-1].child)
+            elements += self.joint_elements.make_elements(placed, pos, R.T @ attitude, chain[-1].child)
         for element in elements:
             self.q += element.q
             self.v += element.v
@@ -288,73 +276,6 @@ class _MjcfWriter:
         yield f"{pad}</body>"
 
     # Joints
-
-    def make_elements(self, placed: PlacedJoint, pos: Array, turn: Array, end: int) -> Iterator[JointElement]:
-        """Yield the elements of a joint. pos: its point, turn: the axes of its child, both in the body at the end of
-        the chain.
-        """
-        joint, start = placed.joint, self.scene.start
-        values = compute_joint_start(self.mechanism, start, joint)
-        parts = SCALAR_PARTS[joint.kind]
-        attitude = find_attitude(placed, self.scene)
-        axis = turn @ find_axis(placed, attitude)
-        names = [joint.name]
-        if len(parts) > 1:
-            names.append(choose_name(f"{joint.name}_2", self.joint_names))
-            self.joint_names.add(names[1])
-        (_, _, _, wp), (_, Rc, _, wc) = body_state(start, placed.parent), body_state(start, placed.child)
-        if joint.kind == "ball":
-            rates = start.rotation[end].T @ (wc - wp)  # in the axes of the body that carries it
-            yield JointElement(names[0], "ball", joint, "", pos, axis, (1.0, 0.0, 0.0, 0.0), tuple(map(float, rates)))
-        elif joint.kind == "universal":
-            # the axis that the parent carries comes first; in the axes of the child, with all joints at 0
-            first, second = (joint.to_axis, joint.axis) if placed.is_reversed else (joint.axis, joint.to_axis)
-            axes = attitude.T @ first, second
-            rates = np.linalg.lstsq(np.column_stack([Rc @ own_axis for own_axis in axes]), wc - wp, rcond=None)[0]
-            for name, own_axis, rate in zip(names, axes, rates, strict=True):
-                yield JointElement(name, "hinge", joint, "", pos, turn @ own_axis, (0.0,), (float(rate),))
-        else:
-            coordinates = {"angle": (values.angle, values.rate), "travel": (values.travel, values.speed)}
-            for name, (kind, quantity) in zip(reversed(names), parts, strict=False):
-                q, v = coordinates[quantity]
-                yield JointElement(name, kind, joint, quantity, pos, axis, (q,), (v,))
-
-    def find_offset(self, placed: PlacedJoint) -> Array:
-        """Return the vector from the parent's point of a joint to the child's, with all joints at 0, in the axes of the
-        parent: as at the start, where the joint has no coordinates.
-        """
-        if placed.joint.kind not in LOOSE_KINDS:
-            return np.zeros(3)
-        start = self.scene.start
-        (xp, Rp, _, _), (xc, Rc, _, _) = body_state(start, placed.parent), body_state(start, placed.child)
-        return np.asarray(Rp.T @ (xc + Rc @ placed.child_point - xp) - placed.parent_point)
-
-    def make_loose_elements(self, placed: PlacedJoint, pos: Array, turn: Array, end: int) -> list[JointElement]:
-        """Return the slides and the rotation of a joint that holds a point on a line or in a plane of `from`.
-
-        The rotation is about that point, so it comes after the slides if the parent is `from`, else before them.
-        """
-        joint, start, kind = placed.joint, self.scene.start, JOINTS[placed.joint.kind]
-        attitude = find_attitude(placed, self.scene)
-        (xa, Ra, va, wa), (xb, Rb, vb, wb) = body_state(start, joint.a), body_state(start, joint.b)
-        arm = Rb @ joint.q
-        velocity = Ra.T @ (vb + np.cross(wb, arm) - va - np.cross(wa, arm + xb - xa))
-        spin = -(wb - wa) if placed.is_reversed else wb - wa
-        slides = []
-        for shift in kind.hold.shifts:
-            direction = joint_direction(joint, shift)
-            axis = turn @ (-direction if placed.is_reversed else attitude.T @ direction)
-            name = choose_name(f"{joint.name}_2", self.joint_names)
-            self.joint_names.add(name)
-            slides.append(JointElement(name, "slide", joint, "", pos, axis, (0.0,), (float(direction @ velocity),)))
-        pivot = pos - turn @ attitude.T @ self.find_offset(placed) if placed.is_reversed else pos
-        if kind.turn.ball and not self.mechanism.planar:
-            rates = tuple(map(float, start.rotation[end].T @ spin))
-            rotation = JointElement(joint.name, "ball", joint, "", pivot, np.zeros(3), (1.0, 0.0, 0.0, 0.0), rates)
-        else:
-            axis = np.array([0.0, 0.0, 1.0])
-            rotation = JointElement(joint.name, "hinge", joint, "", pivot, axis, (0.0,), (float(spin[2]),))
-        return [rotation, *slides] if placed.is_reversed else [*slides, rotation]
 
     def format_joint(self, element: JointElement) -> str:
         """Format a joint with its springs, dampers and limits."""

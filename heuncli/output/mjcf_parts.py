@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.base.named_tuples import NamedTuple
 from heuncli.multibody.mechanism.loads import GROUND, PairLoad
 from heuncli.multibody.mechanism.model import Body, Joint, scene_size
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.starts import body_state, point_distance
+from heuncli.output.mjcf_joints import JointElement
 from heuncli.output.robot_tree import (
     PIN_KINDS,
     PlacedJoint,
@@ -27,23 +27,6 @@ from heuncli.scene.file_format.models import Shape
 from heuncli.scene.shapes.rotations import quaternion_from_matrix
 
 TRIANGLE_ROUNDING = 1e-12  # excess of a moment over the sum of the others that is rounding
-
-
-class JointElement(NamedTuple):
-    """A joint of MJCF, in the frame of the body that carries it, with all joints at 0.
-
-    joint, quantity: heun's
-    q, v: its coordinates and rates at the start
-    """
-
-    name: str
-    type: str
-    joint: Joint
-    quantity: str
-    pos: Array
-    axis: Array
-    q: tuple[float, ...]
-    v: tuple[float, ...]
 
 
 class MjcfConnections:
