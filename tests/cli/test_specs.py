@@ -102,7 +102,7 @@ def test_its_tables_print(name: str, capsys: pytest.CaptureFixture[str]) -> None
 
 
 @each
-@pytest.mark.third
+@pytest.mark.sixth
 def test_its_json_says_the_same(name: str) -> None:
     results = study_of(name).results
     parsed = json.loads(to_json(results))
@@ -143,7 +143,7 @@ def test_its_csv_says_the_same(name: str) -> None:
 
 
 @each
-@pytest.mark.third
+@pytest.mark.sixth
 def test_every_result_may_be_expected(name: str) -> None:
     """When a spec is read every path into the results is known, with the shape and the dimension that are found."""
     results = study_of(name).results

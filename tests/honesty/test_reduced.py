@@ -13,6 +13,6 @@ SPECS = sorted(path.name for path in Path("specs").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("name", SPECS)
-@pytest.mark.third
+@pytest.mark.sixth
 def test_specs(name: str) -> None:
     same(pair(load(f"specs/{name}")))

@@ -70,7 +70,7 @@ def assert_same(column: Array, found: Array, wanted: Array, path: str) -> None:
 
 
 @ANY
-@pytest.mark.third
+@pytest.mark.sixth
 def test_the_numbers_are_those_of_the_json(file: Path) -> None:
     study, page = shown(file)
     data, document = data_of(page), json.loads(to_json(study.results))
@@ -107,7 +107,7 @@ def _impulse_numbers(document: Any, path: str) -> Array:
 
 
 @ANY
-@pytest.mark.third
+@pytest.mark.sixth
 def test_what_is_0_throughout_is_named(file: Path) -> None:
     """Nothing of joints, foundation and sections is missing without a word."""
     study, page = shown(file)
@@ -126,7 +126,7 @@ def test_what_is_0_throughout_is_named(file: Path) -> None:
 
 
 @ANY
-@pytest.mark.third
+@pytest.mark.sixth
 def test_the_poses_are_those_of_the_machine(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
@@ -166,7 +166,7 @@ def test_a_belts_strands_touch_both_pulleys() -> None:
 
 
 @ANY
-@pytest.mark.third
+@pytest.mark.sixth
 def test_cuts_stand_where_the_results_say(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
