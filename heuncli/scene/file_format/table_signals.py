@@ -38,6 +38,7 @@ MAX_CUT_OFF_STEPS = 1e5  # median steps of x; beyond, the smoothed values lose m
 ORDER_WORDS = {1: "once", 2: "twice"}
 FINE_HINT = "give a longer period (a lower frequency), or leave smooth out"
 NOISE_HINT = "give smooth: a lower cut-off frequency; or measure more finely"
+NATURAL_HINT = "write ends: not-a-knot: the second derivative of a natural spline is 0 at its ends"
 
 KeyedFinding = tuple[str, Finding]  # the key of the entry, and its problem
 
@@ -122,7 +123,8 @@ def differentiate_entry(
     size = f"error of the derivative {amount}, of at most {format_amount(largest, dimension)}"
     warnings = []
     if error is None or error > tolerances.DERIVATIVE_ERROR * largest:
-        warnings.append(("derivative", Finding("table-derivative", f"table {table.name}: {size}", NOISE_HINT)))
+        hint = NATURAL_HINT if curve == "natural" and order > 1 else NOISE_HINT
+        warnings.append(("derivative", Finding("table-derivative", f"table {table.name}: {size}", hint)))
     made = replace(rebuild_table(table, entry, derivative), dimensions=(table.dimensions[0], dimension))
     return made, f"table {table.name}: differentiated {ORDER_WORDS[order]}; {size}", warnings
 
