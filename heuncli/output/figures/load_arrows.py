@@ -82,14 +82,14 @@ def scale_loads(loads: ActingLoads, view: SceneView, size: float, side: float) -
 
 
 def draw_loads(drawing: LoadDrawing, window: Window) -> Iterator[Arrow | Strokes | Symbol]:
-    """Draw the arrows, without reactions on bodies outside the window, such as on a far anchor on the ground."""
+    """Draw the arrows, without reactions far outside the window, such as on a far anchor on the ground."""
     for distributed in drawing.loads.distributed:
         yield from _draw_distributed_load(distributed, drawing)
     for load in drawing.loads.loads:
         place, arrow = drawing.find_place(load), drawing.find_arrow(load)
         depth, length = float(drawing.view.compute_depth(load.vector)), drawing.find_scale(load) * load.magnitude
         description = f"{'moment' if load.is_moment else 'force'}: {load.name}"
-        if load.is_reaction and (length < MIN_REACTION * drawing.side or not window.contains(place)):
+        if load.is_reaction and (length < MIN_REACTION * drawing.side or not window.is_near(place)):
             continue
         if drawing.faces_viewer(load):
             symbol = "turning" if depth > 0.0 else "turning back"

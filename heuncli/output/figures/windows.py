@@ -21,6 +21,7 @@ from heuncli.scene.file_format.names import GROUND
 MAX_EXTENT_RATIO = 12.0  # times the extent of joints and centres: a larger machine is drawn in part
 ROUNDING = 1e-9  # share of the figure: joints and centres that are closer coincide
 CORE_MARGIN = 0.8  # of the extent of joints and centres, around them in a partial figure
+NEAR_DISTANCE = 0.4  # of the larger side: a reaction that acts farther away is not shown
 MARGIN = 0.05  # share of the larger side, around all
 MIN_SIDES = np.array([0.4, 0.25])  # minimum sides as shares of the larger one, for labels
 
@@ -37,9 +38,10 @@ class Window(NamedTuple):
         """Its larger side."""
         return float((self.high - self.low).max())
 
-    def contains(self, place: Array) -> bool:
-        """Return whether a place (2,) lies in the window."""
-        return bool((self.low <= place).all() and (place <= self.high).all())
+    def is_near(self, place: Array) -> bool:
+        """Return whether a place (2,) lies in the window, or not far from it."""
+        distances = np.maximum(self.low - place, place - self.high)
+        return bool((distances <= NEAR_DISTANCE * self.side).all())
 
     def extend_to_arrows(self, arrows: Sequence[Arrow]) -> Window:
         """Extend the window so that it contains the arrows, with room for two lines of words at their tips."""
