@@ -206,7 +206,7 @@ def make_actions(mechanism: Mechanism, jumps: Sequence[ImpulseEvent]) -> list[Ac
         force, moment, position = np.zeros((3, len(jumps), 3))
         for k, jump in enumerate(jumps):
             for applied_impulse in jump.impulses:
-                if applied_impulse.blow == i:
+                if applied_impulse.number == i:
                     force[k], moment[k], position[k] = (
                         applied_impulse.force,
                         applied_impulse.moment,

@@ -39,13 +39,13 @@ class GivenImpulse:
     """What happens at one instant by prescription: impulses, and drives whose rates jump.
 
     before_time, after_time: the last instant before it and the first after it [s]
-    blows: indices in mechanism.blows
+    numbers: indices in mechanism.impulses
     drives: for each driven joint, the rates before and after
     """
 
     before_time: float
     after_time: float
-    blows: tuple[int, ...]
+    numbers: tuple[int, ...]
     drives: dict[int, tuple[float, float]]
 
     @property
@@ -71,20 +71,20 @@ class GivenImpulse:
         """Merge with another one, which begins at the same time or later."""
         drives = {**self.drives, **other.drives}
         return GivenImpulse(
-            self.before_time, max(self.after_time, other.after_time), (*self.blows, *other.blows), drives
+            self.before_time, max(self.after_time, other.after_time), (*self.numbers, *other.numbers), drives
         )
 
     def list_names(self, mechanism: Mechanism) -> tuple[str, ...]:
         """Return the names of what acts."""
         laws = {law.owner: law.name for law in mechanism.laws}
-        return (*(mechanism.impulses[i].name for i in self.blows), *(laws[k] for k in self.drives))
+        return (*(mechanism.impulses[i].name for i in self.numbers), *(laws[k] for k in self.drives))
 
 
 @record
 class BodyImpulse:
     """A given impulse on a body: force [N s], moment [N m s] about the world position `position`; (3,), world axes."""
 
-    blow: int
+    number: int
     force: Array
     moment: Array
     position: Array
@@ -138,10 +138,10 @@ def schedule_impulses(mechanism: Mechanism, last: float) -> list[GivenImpulse]:
         for law in mechanism.laws
         for before, after, first, then in find_rate_jumps(law.value, last)
     ]
-    for i, blow in enumerate(mechanism.impulses):
-        if blow.when is None:  # else it acts where its condition becomes true (run/triggers.py)
-            before = just_before(blow.time) if blow.time > 0.0 else 0.0
-            given.append(GivenImpulse(before, blow.time, (i,), {}))
+    for i, impulse in enumerate(mechanism.impulses):
+        if impulse.when is None:  # else it acts where its condition becomes true (run/triggers.py)
+            before = just_before(impulse.time) if impulse.time > 0.0 else 0.0
+            given.append(GivenImpulse(before, impulse.time, (i,), {}))
     merged: list[GivenImpulse] = []
     for one in sorted(given, key=lambda one: one.before_time):
         if (merged and one.before_time < merged[-1].after_time) or (merged and one.after_time == merged[-1].after_time):
@@ -176,7 +176,7 @@ def make_right_sides(evaluator: Evaluator, given_impulse: GivenImpulse, state: A
     """
     layout, mechanism = evaluator.layout, evaluator.layout.mechanism
     still = evaluator.evaluate(np.array([given_impulse.before_time]), state[None, :], holding=holding)
-    impulses = tuple(make_body_impulse(layout, still.bodies[0], i) for i in given_impulse.blows)
+    impulses = tuple(make_body_impulse(layout, still.bodies[0], i) for i in given_impulse.numbers)
     n_b, n_u = len(layout.place), len(layout.freedoms) + len(layout.rows)
     loads, jumps = (
         [find_impulse_column(layout, still.bodies[0], one) for one in impulses],
@@ -185,7 +185,7 @@ def make_right_sides(evaluator: Evaluator, given_impulse: GivenImpulse, state: A
     if given_impulse.drives:
         loads.append(np.zeros((n_b, 6)))
         jumps.append(find_prescribed_jumps(layout, given_impulse))
-    causes = tuple(mechanism.impulses[i].name for i in given_impulse.blows) + (
+    causes = tuple(mechanism.impulses[i].name for i in given_impulse.numbers) + (
         (DRIVES,) if given_impulse.drives else ()
     )
     return RightSides(still, impulses, loads, jumps, causes)
@@ -280,19 +280,19 @@ def make_impulse_event(
 
 def make_body_impulse(layout: Layout, bodies: Table, number: int) -> BodyImpulse:
     """Return a given impulse in world axes; bodies: their present results."""
-    given_blow = layout.mechanism.impulses[number]
-    place = layout.place[given_blow.body]
+    impulse = layout.mechanism.impulses[number]
+    place = layout.place[impulse.body]
     R, r = bodies["R"][place], bodies["r"][place]
-    point = given_blow.point if given_blow.point is not None else layout.mechanism.bodies[given_blow.body].center
-    vector = R @ given_blow.vector if given_blow.in_body else given_blow.vector
+    point = impulse.point if impulse.point is not None else layout.mechanism.bodies[impulse.body].center
+    vector = R @ impulse.vector if impulse.in_body else impulse.vector
     none = np.zeros(3)
-    force, moment = (none, vector) if given_blow.kind == "couple" else (vector, none)
+    force, moment = (none, vector) if impulse.kind == "couple" else (vector, none)
     return BodyImpulse(number, force, moment, r + R @ (point - layout.reference[place]))
 
 
 def find_impulse_column(layout: Layout, bodies: Table, impulse: BodyImpulse) -> Array:
     """Return an impulse as a column of loads, (n_b, 6): moment about the body's joint point, force."""
-    place = layout.place[layout.mechanism.impulses[impulse.blow].body]
+    place = layout.place[layout.mechanism.impulses[impulse.number].body]
     loads = np.zeros((len(bodies), 6))
     loads[place, :3] = impulse.moment + cross_rows(impulse.position - bodies["r"][place], impulse.force)
     loads[place, 3:] = impulse.force
@@ -328,7 +328,7 @@ def compute_impulse_work(layout: Layout, bodies: Table, jump: Columns, impulses:
     """Return the work of given impulses [J]: each with the mean of the velocities before and after, where it acts."""
     work = 0.0
     for impulse in impulses:
-        place = layout.place[layout.mechanism.impulses[impulse.blow].body]
+        place = layout.place[layout.mechanism.impulses[impulse.number].body]
         body, velocity_jump = bodies[place], jump.bodies[place]
         omega = body["omega"] + 0.5 * velocity_jump["alpha"]
         v = body["v"] + 0.5 * velocity_jump["a"] + cross_rows(omega, impulse.position - body["r"])
@@ -369,7 +369,7 @@ def free_impulse_energy(layout: Layout, impulses: Sequence[BodyImpulse]) -> floa
     """Return the energy [J] that given impulses would give to their bodies' mass if no joint held them."""
     energy = 0.0
     for impulse in impulses:
-        mass = float(layout.mechanism.scale_masses[layout.mechanism.impulses[impulse.blow].body])
+        mass = float(layout.mechanism.scale_masses[layout.mechanism.impulses[impulse.number].body])
         arm = impulse.moment / layout.size
         energy += 0.5 * float(impulse.force @ impulse.force + arm @ arm) / mass
     return energy

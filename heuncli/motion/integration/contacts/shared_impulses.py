@@ -120,13 +120,13 @@ def make_shared_impulse(contacts: Sequence[LoadedContact]) -> SharedImpulse:
     )
 
 
-def format_sharing(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel) -> list[str]:
-    """Format a sentence for each group of contacts that share impulses; blows: their instants and the groups of
+def format_sharing(impulses: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel) -> list[str]:
+    """Format a sentence for each group of contacts that share impulses; impulses: their instants and the groups of
     each.
     """
     first: dict[tuple[object, ...], tuple[float, SharedImpulse]] = {}
     count: dict[tuple[object, ...], int] = {}
-    for time, groups in blows:
+    for time, groups in impulses:
         for shared in groups:
             key = replace(shared, impacts=0).names, shared.bilateral_names, shared.resting_names
             first.setdefault(key, (time, shared))
@@ -165,16 +165,18 @@ def format_sharing_sentence(time: float, shared_group: SharedImpulse, count: int
     return lead + "; ".join(parts)
 
 
-def format_sharing_warning(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel) -> list[str]:
+def format_sharing_warning(
+    impulses: Sequence[tuple[float, Sequence[SharedImpulse]]], impacts: ImpactModel
+) -> list[str]:
     """Warn where contacts share impulses, because their values depend on a model."""
-    shared_blows = [(time, groups[0]) for time, groups in blows if groups]
-    if not shared_blows:
+    shared_events = [(time, groups[0]) for time, groups in impulses if groups]
+    if not shared_events:
         return []
-    time, first_group = shared_blows[0]
+    time, first_group = shared_events[0]
     lead = (
         f"in the impact at t = {time:.6g} s,"
-        if len(shared_blows) == 1
-        else f"in {len(shared_blows)} impacts, the first at t = {time:.6g} s,"
+        if len(shared_events) == 1
+        else f"in {len(shared_events)} impacts, the first at t = {time:.6g} s,"
     )
     assumed = f"rigid bodies do not determine the split, impacts: {impacts} is assumed (heun explain impacts)"
     return [f"{lead} {join_names(first_group.names)} share the impulse: {assumed}"]
