@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.app.cli import output
 from heuncli.app.cli.output import emit
 from heuncli.base.errors import OutputError
 from heuncli.base.files import ReaderGoneError, find_target
@@ -231,3 +232,12 @@ def test_a_folder_that_is_gone_is_5(words: str, folder: Path, heun: Heun) -> Non
     gone(folder)
     done = heun(*(word.format(folder / "hanging.yaml") for word in words.split()))
     assert (done.returncode, done.stdout) == (5, "") and "No such file or directory" in done.stderr
+
+
+def test_output_that_nobody_reads_leaves_no_file_open() -> None:
+    """The limit passes between the last piece and the first that is written."""
+    pieces = output._collect(["a", "b"])
+    store = pieces.gi_frame.f_locals["store"]  # type: ignore[attr-defined]
+    del pieces
+    assert store.closed
+    assert "".join(output._collect(["a", "b"])) == "ab"

@@ -74,12 +74,15 @@ def _collect(pieces: Iterable[str]) -> Iterator[str]:
     except BaseException:
         store.close()
         raise
-    return _read_blocks(store)
+    blocks = _read_blocks(store)
+    next(blocks)  # once begun it closes the file, even if nobody reads on because the limit has passed
+    return blocks
 
 
 def _read_blocks(store: IO[str]) -> Iterator[str]:
     """Yield the content of a temporary file, and close it."""
     with store:
+        yield ""
         while block := store.read(BLOCK):
             yield block
 
