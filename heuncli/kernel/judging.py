@@ -113,6 +113,8 @@ def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
                 rate = u
     for i in range(scene.load_count):
         load: cython.pointer[Load] = cython.address(scene.loads[i])
+        if load.a == load.b:  # within one body
+            continue
         inertia = least_inertia(scene, run, load)
         u = sum_magnitudes(load.force) + sum_magnitudes(load.moment) / scene.size
         if inertia > 0.0 and u > square * inertia:

@@ -26,7 +26,7 @@ from heuncli.scene.file_format.models import ResultCondition, Spec, Stop
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
 from heuncli.study.model.model_note import explain_restart
-from heuncli.study.model.options import Options, apply_options, require_memory
+from heuncli.study.model.options import Options, apply_options, has_few_numbers, require_memory
 from heuncli.study.model.selection import select_for_conditions
 from heuncli.study.model.setup import Setup, attach_locations, set_up
 from heuncli.study.queries.study import Study
@@ -88,8 +88,8 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
         from heuncli.study.compose.results import compose_in_parts  # only for exports
 
         parts = compose_in_parts(setup, history, options.reports, options.least_norm)
-        if parts is None and options.memory_budget is not None:
-            require_memory(setup, options.memory_budget)
+        if parts is None and options.memory_budget is not None and not has_few_numbers(setup, len(history.times)):
+            require_memory(setup, options.memory_budget)  # a chain that turned out to need all instants
     recovery = (
         recover(setup, history.solutions, options.least_norm, history.state_instants)
         if parts is None

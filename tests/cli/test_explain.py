@@ -71,7 +71,7 @@ def test_a_page_goes_into_a_file(heun: Heun, tmp_path: Path) -> None:
         ("side", "## Sections\n", ""),
         ("force", "### force\n", "format forces"),
         ("spring", "### spring\n", "format turn_spring"),
-        ("axes", "## heun run\n", "signs joints"),
+        ("axes", "## Sensors\n", "commands heun run"),
         ("rpm", "### Units\n", "format expressions"),
         ("RK4", "## The list\n", ""),
         ("redundant supports", "# Open reactions\n", ""),

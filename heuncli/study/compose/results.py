@@ -46,7 +46,7 @@ from heuncli.study.compose.warnings import (
     warn_near_singular,
 )
 from heuncli.study.model.model_note import explain_restart
-from heuncli.study.model.options import can_compose_in_parts, count_numbers_per_instant
+from heuncli.study.model.options import can_compose_in_parts, count_numbers_per_instant, has_few_numbers
 from heuncli.study.model.selection import select_sums
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
@@ -249,7 +249,6 @@ def make_method_change(setup: Setup, history: History) -> Block:
 
 AT_ONCE = 400_000  # numbers of a part, including the solutions
 BLOCK = 8  # largest number of rows that BLAS multiplies together; remaining rows are rounded differently
-FEW = 2_000_000  # numbers that fit into memory without parts
 
 
 def compose_in_parts(
@@ -260,10 +259,9 @@ def compose_in_parts(
     That is also the case where a part fails, as it is judged by its own sizes and may fail where the whole does not, or
     where a closed chain shows what all instants decide.
     """
-    numbers = count_numbers_per_instant(setup)
-    if not can_compose_in_parts(setup) or numbers * len(history.times) <= FEW:
+    if not can_compose_in_parts(setup) or has_few_numbers(setup, len(history.times)):
         return None
-    parts = divide_instants(len(history.times), int(AT_ONCE // numbers))
+    parts = divide_instants(len(history.times), int(AT_ONCE // count_numbers_per_instant(setup)))
     try:
         return compose_parts(setup, history, reports, least_norm, parts)
     except SolveError:

@@ -91,6 +91,7 @@ def collect_results(calls: Iterable[Callable[[], T]]) -> list[T]:
 
 SOLUTION_COPIES = 3.0  # times the kernel's solution at an instant: those of both runs, and what is derived from them
 STATE_COPIES = 3.0  # times the state at an instant: those of both runs, those of all compared instants, and the times
+FEW = 2_000_000  # numbers that fit into memory without parts
 RUNS = 3  # whose steps are in memory at once: the run, its check run, the one from a perturbed start
 BYTES_PER_STEP = 150.0  # bytes of a step besides its start state: its end, its segment, its index among the jumps
 CAUSES_WITHOUT_LOAD = 3  # causes other than loads: gravity, drives, motion
@@ -174,6 +175,11 @@ def can_compose_in_parts(setup: Setup) -> bool:
     if setup.method is None or (layout.rows and may_be_indeterminate) or SHARES in setup.selection.reports:
         return False
     return not any(isinstance(condition, ResultCondition) for condition in setup.spec.analysis.conditions)
+
+
+def has_few_numbers(setup: Setup, instants: int) -> bool:
+    """Return whether the numbers of all instants are so few that they are composed at once."""
+    return count_numbers_per_instant(setup) * instants <= FEW
 
 
 def count_numbers_per_instant(setup: Setup) -> float:
