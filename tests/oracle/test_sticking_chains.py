@@ -31,6 +31,10 @@ class Chains(NamedTuple):
     push: Array
     frequency: Array
 
+    def select(self, k: int) -> Chains:
+        """Return chain k alone."""
+        return Chains(*(values[k : k + 1] for values in self))
+
 
 def random_chains(seed: int, count: int, n: int) -> Chains:
     rng = np.random.default_rng(seed)
@@ -73,6 +77,12 @@ def step_chains(c: Chains, h: float) -> Array:
     return np.array(out)
 
 
+def extrapolate_steps(c: Chains, h: float) -> tuple[Array, Array]:
+    """Return the angles of steps of h/2, and those extrapolated to steps of no length."""
+    coarse, fine = step_chains(c, h), step_chains(c, 0.5 * h)
+    return fine, 2.0 * fine - coarse
+
+
 def tell(c: Chains, k: int) -> str:
     """Write chain k as a spec."""
     bodies, joints, forces = [], [], []
@@ -101,12 +111,13 @@ def test_chains_move_as_moreaus_steps_take_them(n: int, count: int, request: pyt
     if request.config.getoption("--all-cases"):
         count *= 20
     chains = random_chains(100 * n, count, n)
-    coarse, fine = step_chains(chains, 1e-3), step_chains(chains, 5e-4)
-    wanted, seen = 2.0 * fine - coarse, 0
+    fine, wanted = extrapolate_steps(chains, 1e-3)
+    seen = 0
     for k in range(count):
         r = solved(tell(chains, k))
         angles = np.cumsum([r.coordinates[f"p{i}"]["angle"] for i in range(n)], axis=0).T
-        assert angles == pytest.approx(wanted[:, k], abs=2e-3), k
+        if np.abs(angles - wanted[:, k]).max() > 2e-3:  # events near the ends of steps: a smaller step decides
+            assert angles == pytest.approx(extrapolate_steps(chains.select(k), 1e-4)[1][:, 0], abs=5e-4), k
         assert np.abs(angles - fine[:, k]).max() < 2e-2, k
         seen += sum(bool((r.forces[f"f{i}"]["reserve"] > 0.0).any()) for i in range(n))
         energy = r.energy["kinetic"] + r.energy["potential"] - r.energy["work"]
