@@ -23,6 +23,7 @@ from heuncli.motion.integration.contacts.contact_problem import (
     require_yielding,
 )
 from heuncli.motion.integration.contacts.impulses import (
+    SINGLE_INSTANT,
     GivenImpulse,
     ImpulseEvent,
     ImpulseResult,
@@ -78,8 +79,11 @@ MAX_FRICTION_CHANGES = 8  # of friction that sticks beside touching contacts, wh
 
 
 def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
-    """Return the contacts that are closed at a state, after the impulse that may happen there."""
-    contacts = Contacts(evaluator, t)
+    """Return the contacts that are closed at a state, after the impulse that may happen there.
+
+    There is no run: rounding counts as it does in one of a second.
+    """
+    contacts = Contacts(evaluator, SINGLE_INSTANT)
     contacts.handle_event(GivenImpulse(t, t, (), {}), state, t, None)
     return contacts.contact_states
 
@@ -283,9 +287,7 @@ class Contacts:
             )
         except EndlessImpacts as endless:
             names = [self.layout.contacts[i].name for i in contacts_touching.indices.tolist()]
-            raise make_endless_impacts_error(
-                t, [names[k] for k in endless.contacts.tolist()], names[endless.most_struck]
-            ) from None
+            raise make_endless_impacts_error(t, names, endless, self.layout.mechanism.impacts) from None
 
     def find_shared(
         self, problem: ContactProblem, outcome: ContactOutcome, catches: list[LatchCatch]

@@ -22,8 +22,9 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.touching import find_free_response, unit_load
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import solve_impulses
-from heuncli.multibody.tree.layout import Contact
+from heuncli.multibody.tree.layout import Contact, Layout
 from heuncli.results.results import Array, Mask
+from heuncli.scene.shapes.rotations import quaternion_from_vector, quaternion_product
 
 SEED = 58  # fixed: the same scene gives the same verdicts
 SAMPLES = 8  # poses and instants at which the transmissions must be those of the present pose
@@ -191,11 +192,7 @@ def has_fixed_transmissions(
     last: the end of the run [s]
     """
     layout, t = evaluator.layout, float(opened.times[0])
-    rng = np.random.default_rng(SEED)
-    states = np.repeat(opened.states, SAMPLES, axis=0)
-    for freedom in layout.freedoms:
-        if freedom.q >= 0:
-            states[:, freedom.q] += DISPLACEMENT * rng.uniform(-1.0, 1.0, SAMPLES) / layout.weights[freedom.u]
+    states = displace_freedoms(layout, opened.states[0])
     times = np.linspace(t, max(t, last), SAMPLES + 1)[1:] if layout.has_laws else np.full(SAMPLES, t)
     poses = evaluator.evaluate(times, states, holding=sticking_states)
     if not (poses.gap <= tolerances.OPEN_GAP * layout.size).all():
@@ -211,6 +208,20 @@ def has_fixed_transmissions(
                 if change > tolerances.DEPENDENT_SHARES * abs(transmission):
                     return False
     return True
+
+
+def displace_freedoms(layout: Layout, state: Array) -> Array:
+    """Return states (SAMPLES, n) displaced at random along all scalar freedoms and turned in all balls."""
+    rng = np.random.default_rng(SEED)
+    states = np.repeat(state[None, :], SAMPLES, axis=0)
+    for freedom in layout.freedoms:
+        if freedom.q >= 0:
+            states[:, freedom.q] += DISPLACEMENT * rng.uniform(-1.0, 1.0, SAMPLES) / layout.weights[freedom.u]
+    for place in layout.bodies["attitude_at"][layout.bodies["ball"] == 1].tolist():
+        attitudes = slice(place, place + 4)
+        turns = quaternion_from_vector(DISPLACEMENT * rng.uniform(-1.0, 1.0, (SAMPLES, 3)))
+        states[:, attitudes] = quaternion_product(turns, states[:, attitudes])
+    return states
 
 
 def list_group_numbers(groups: Sequence[FrictionGroup], contacts: Sequence[int]) -> Array:

@@ -32,6 +32,7 @@ from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.shapes.rotations import cross_rows
 
 DRIVES = "drives"  # the cause besides the given impulses
+SINGLE_INSTANT = 0.0  # end of the run [s] where there is none
 
 
 @record
@@ -51,7 +52,7 @@ class GivenImpulse:
     @property
     def written_time(self) -> float:
         """Of the instants that rounding does not separate, the one with the shortest decimal form, which a user
-        means.
+        means: 0.3, not 0.30000000000000004.
         """
         double_count = (
             int(np.diff(np.array([self.before_time, self.after_time]).view(np.int64))[0])
@@ -69,7 +70,9 @@ class GivenImpulse:
 
     def merge(self, other: GivenImpulse) -> GivenImpulse:
         """Merge with another one, which begins at the same time or later."""
-        drives = {**self.drives, **other.drives}
+        drives = dict(self.drives)
+        for owner, (before, after) in other.drives.items():  # of two jumps of one drive: from before the first
+            drives[owner] = (self.drives[owner][0] if owner in self.drives else before, after)
         return GivenImpulse(
             self.before_time, max(self.after_time, other.after_time), (*self.numbers, *other.numbers), drives
         )
@@ -139,7 +142,8 @@ def schedule_impulses(mechanism: Mechanism, last: float) -> list[GivenImpulse]:
         for before, after, first, then in find_rate_jumps(law.value, last)
     ]
     for i, impulse in enumerate(mechanism.impulses):
-        if impulse.when is None:  # else it acts where its condition becomes true (run/triggers.py)
+        # without a time it acts where its condition becomes true (run/triggers.py)
+        if impulse.when is None and impulse.time <= last:
             before = just_before(impulse.time) if impulse.time > 0.0 else 0.0
             given.append(GivenImpulse(before, impulse.time, (i,), {}))
     merged: list[GivenImpulse] = []

@@ -16,7 +16,7 @@ How a friction comes here, from the scene's text to the kernel and back:
     6. Layout.friction_contacts  multibody/tree/layout.py: which contacts those are; `open_contacts`: the states
     7. FrictionStates.decide     here, at each event: the states
     8. set_friction_mode         kernel/sticking.py: closes the row, or gives the load its sign
-    9. friction_margin           kernel/sticking.py: followed in each step, it causes the next event
+    9. measure_friction_margin   kernel/sticking.py: followed in each step, it causes the next event
 
 With given sizes, static ones equal to kinetic, the accelerations are those of a convex problem and unique (Moreau 1988;
 Brogliato, Nonsmooth Mechanics (2016), 5.5): then the first agreeing choice is the one.
