@@ -19,7 +19,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.contacts.touching import find_free_response, unit_load
+from heuncli.motion.integration.contacts.touching import find_free_response, make_unit_load
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import solve_impulses
 from heuncli.multibody.tree.layout import Contact, Layout
@@ -134,7 +134,7 @@ def measure_response(
     contacts: of the places; open_states: contact states in which no friction sticks; opened: the results with these
     """
     layout, rows = evaluator.layout, [contact.row for contact in contacts]
-    units = np.array([unit_load(layout, opened, contact, 1.0) for contact in contacts])
+    units = np.array([make_unit_load(layout, opened, contact, 1.0) for contact in contacts])
     units = units.reshape(len(contacts), len(layout.place), 6)
     jumps = np.zeros((len(units), len(layout.freedoms) + len(layout.rows)))
     evaluator.workspace.hold(layout.closed_contacts(open_states))
@@ -181,7 +181,7 @@ def has_fixed_transmissions(
     open_states: Array,
     opened: Evaluation,
     groups: Sequence[FrictionGroup],
-    last: float,
+    end_time: float,
 ) -> bool:
     """Return whether the transmissions within groups stay what they are while these stick, whatever else moves.
 
@@ -189,11 +189,11 @@ def has_fixed_transmissions(
 
     sticking_states, open_states: contact states in which the groups stick, and in which no friction does
     opened: the results at the state with the latter
-    last: the end of the run [s]
+    end_time: of the run [s]
     """
     layout, t = evaluator.layout, float(opened.times[0])
     states = displace_freedoms(layout, opened.states[0])
-    times = np.linspace(t, max(t, last), SAMPLES + 1)[1:] if layout.has_laws else np.full(SAMPLES, t)
+    times = np.linspace(t, max(t, end_time), SAMPLES + 1)[1:] if layout.has_laws else np.full(SAMPLES, t)
     poses = evaluator.evaluate(times, states, holding=sticking_states)
     if not (poses.gap <= tolerances.OPEN_GAP * layout.size).all():
         return False

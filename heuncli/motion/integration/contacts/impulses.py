@@ -205,7 +205,7 @@ def solve_impulse(evaluator: Evaluator, given_impulse: GivenImpulse, state: Arra
         np.array(sides.loads),
         np.array(sides.jumps),
     )
-    after_state, work = state_after(evaluator.layout, given_impulse, sides, solution.columns)
+    after_state, work = find_state_after(evaluator.layout, given_impulse, sides, solution.columns)
     loaded_contacts = select_loaded(list_bilateral_contacts(evaluator.layout), solution.columns.multipliers)
     shared = find_shared_impulses(
         loaded_contacts,
@@ -218,7 +218,7 @@ def solve_impulse(evaluator: Evaluator, given_impulse: GivenImpulse, state: Arra
     return make_impulse_event(evaluator, given_impulse, sides, impulse_result)
 
 
-def state_after(
+def find_state_after(
     layout: Layout, given_impulse: GivenImpulse, sides: RightSides, columns: Columns
 ) -> tuple[Array, float]:
     """Return the state after columns of jumps, and the work of what is given [J]."""
@@ -369,7 +369,7 @@ def compute_kinetic_energy(layout: Layout, bodies: Table) -> float:
     return energy
 
 
-def free_impulse_energy(layout: Layout, impulses: Sequence[BodyImpulse]) -> float:
+def compute_free_impulse_energy(layout: Layout, impulses: Sequence[BodyImpulse]) -> float:
     """Return the energy [J] that given impulses would give to their bodies' mass if no joint held them."""
     energy = 0.0
     for impulse in impulses:

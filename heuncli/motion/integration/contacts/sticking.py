@@ -55,8 +55,8 @@ class FrictionStates:
     groups: those of several places that stick as one
     """
 
-    def __init__(self, evaluator: Evaluator, last: float) -> None:
-        self.evaluator, self.layout, self.last = evaluator, evaluator.layout, last
+    def __init__(self, evaluator: Evaluator, end_time: float) -> None:
+        self.evaluator, self.layout, self.end_time = evaluator, evaluator.layout, end_time
         self.places = FrictionPlaces(evaluator)
         self.sticks = np.zeros(len(self.places.indices), dtype=bool)
         self.coordinate_or_sign = np.zeros(len(self.places.indices))
@@ -88,7 +88,7 @@ class FrictionStates:
         chosen_states = search.with_choice(choice)
         self.groups = search.list_sticking(choice)
         if self.groups and not has_fixed_transmissions(
-            self.evaluator, places.contacts, chosen_states, released, opened, self.groups, self.last
+            self.evaluator, places.contacts, chosen_states, released, opened, self.groups, self.end_time
         ):
             raise search.indeterminate_error(choice)
         self.sticks = np.array(chosen_states[places.indices] > 0.0, dtype=bool)
@@ -151,7 +151,7 @@ class FrictionStates:
         to the rounding of an instant.
         """
         measured = [
-            measure_coordinate_rate(self.layout, opened, contact, self.last) for contact in self.places.contacts
+            measure_coordinate_rate(self.layout, opened, contact, self.end_time) for contact in self.places.contacts
         ]
         rate, noise = np.array(measured).reshape(-1, 2).T
         rested = stuck | (np.array(self.places.rows) == row) | (np.abs(rate) <= noise)
