@@ -198,6 +198,17 @@ def size_of_row_rate(scene: cython.pointer[Scene], row: cython.pointer[Closure])
     return total
 
 
+def size_of_row_gap(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Return the size of the terms of the gap of a row; what lies on a sheave has no point of its own."""
+    i: cython.Py_ssize_t
+    extent: cython.double = 0.0
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
+        if part.kind != ARC and part.kind != WOUND:
+            extent += scene.size + norm(part.Q)
+    return extent / row.weight + fabs(row.length)
+
+
 def size_of_terms(body: cython.pointer[Body], row: cython.pointer[Closure], a: Vec3, alpha: Vec3) -> cython.double:
     """|f| (|a| + (|alpha| + omega^2) |Q - r|) + |m| (|alpha| + omega^2)."""
     return size_of_power(body, row, norm(a), norm(alpha) + dot(body.omega, body.omega))

@@ -16,7 +16,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
 from heuncli.kernel.kinematics import update_kinematics
 from heuncli.kernel.response import evaluate, project_state
-from heuncli.kernel.sticking import friction_margin, friction_threshold
+from heuncli.kernel.sticking import find_friction_threshold, measure_friction_margin
 
 # Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
 # checked before only rounding can be in doubt.
@@ -31,7 +31,7 @@ def contact_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact
     gap of one that others keep closed, which must not leave its rounding.
     """
     if contact.friction:
-        return friction_margin(scene, contact)
+        return measure_friction_margin(scene, contact)
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     if row.mode == LEANS:
         return fabs(row.gap)
@@ -132,7 +132,7 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
         contact.level = 1e300  # no doubt
         if contact.friction and may_change_state(scene, contact, run):
-            contact.level = friction_threshold(scene, contact, fabs(run.end), run.late)
+            contact.level = find_friction_threshold(scene, contact, fabs(run.end), run.late)
             doubt = 2 if row.mode == CARRIES or doubt == 2 else 1
         if contact.sense == 0:
             continue

@@ -24,6 +24,10 @@ MAX_STEP_FACTOR = 6.0  # longer after what was accepted
 UNDEFINED_STEP_FACTOR = 0.1  # shorter where a stage has no value at all
 # share of the squared coarser estimate (II.10): it keeps the combined error from vanishing with the finer one
 COARSE_SHARE = 0.01
+SINGULAR_NOISE = 0.1  # effect of rounding on the closures, relative to the tolerance: above it, try another length
+NO_RATE = 1e-200  # added to a rate, so that what never moves divides by no zero
+UNBOUNDED = 1e300  # larger than any finite error, inertia or coordinate
+INSTANT_ROUNDING = 1e-15  # relative: a step that is shorter does not change the time
 UNSOLVED_ERROR = 1.8  # error assigned to unsolved stages, to the method's order: 0.9/1.8, half the step
 
 
@@ -38,13 +42,15 @@ def weighted_norm(run: cython.pointer[Run], x: cython.p_double, begin: cython.in
     return sqrt(square)
 
 
-def step_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+def measure_step_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
     """Return the largest error over the groups, 1 = just allowed; NaN if one is."""
     b: cython.int
     error: cython.double
     worst: cython.double = 0.0
     for b in range(run.group_count):
-        error = group_error(scene, method, run, b)
+        error = measure_group_error(scene, method, run, b)
         if error != error:
             return error
         if error > worst:
@@ -52,7 +58,7 @@ def step_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run
     return worst
 
 
-def group_error(
+def measure_group_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], b: cython.int
 ) -> cython.double:
     """Return the error of a group, h e5 / sqrt(1 + 0.01 (e3 / e5)^2) from two estimates, or h e from one."""
@@ -79,7 +85,7 @@ def group_error(
     scale: cython.double = 1.0 / run.control.tolerance
     for i in range(group.coordinates, group.end):
         if i == group.rates:
-            scale = 1.0 / (run.control.tolerance * (rate + floor + 1e-200))
+            scale = 1.0 / (run.control.tolerance * (rate + floor + NO_RATE))
         g = run.weights[i] * scale
         e = run.fine[i] * g
         fine += e * e
@@ -115,7 +121,7 @@ def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
         load: cython.pointer[Load] = cython.address(scene.loads[i])
         if load.a == load.b:  # within one body
             continue
-        inertia = least_inertia(scene, run, load)
+        inertia = find_least_inertia(scene, run, load)
         u = sum_magnitudes(load.force) + sum_magnitudes(load.moment) / scene.size
         if inertia > 0.0 and u > square * inertia:
             square = u / inertia
@@ -126,20 +132,23 @@ def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) 
     run.control.is_balanced = run.control.rate < scene.limits.balanced_rate * run.control.imposed_rate
 
 
-def least_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], load: cython.pointer[Load]) -> cython.double:
-    """Return the lesser mass by the size of the bodies on which a load acts; 1e300 for the ground alone.
+def find_least_inertia(
+    scene: cython.pointer[Scene], run: cython.pointer[Run], load: cython.pointer[Load]
+) -> cython.double:
+    """Return the least of mass times size [kg m] of the two bodies on which a load acts; UNBOUNDED for the ground.
 
-    Loads on a body without mass move others: they are taken to act on the lightest.
+    F / (m size) is a squared rate [1/s^2]: a load F that acts along the size of a mass m gives it the energy of that
+    rate. Loads on a body without mass move others: they are taken to act on the lightest.
     """
-    first: cython.double = body_inertia(scene, run, load.a)
-    second: cython.double = body_inertia(scene, run, load.b)
+    first: cython.double = find_body_inertia(scene, run, load.a)
+    second: cython.double = find_body_inertia(scene, run, load.b)
     return first if first < second else second
 
 
-def body_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], k: cython.int) -> cython.double:
-    """Return the mass of a body by the size; of the ground, -1, 1e300; of one without mass that of the lightest."""
+def find_body_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], k: cython.int) -> cython.double:
+    """Return mass times size of a body [kg m]: of the ground (-1) UNBOUNDED, of one without mass the lightest's."""
     if k < 0:
-        return 1e300
+        return UNBOUNDED
     return scene.bodies[k].mass * scene.size if scene.bodies[k].mass > 0.0 else run.control.least_inertia
 
 
@@ -148,15 +157,15 @@ def sum_magnitudes(a: Vec3) -> cython.double:
     return fabs(a.x) + fabs(a.y) + fabs(a.z)
 
 
-def exceeds_chart(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Return whether a stage turned so fast that the step may have passed the end of the chart; then propose a shorter
-    one.
+def propose_shorter_turn(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
+    """Propose a shorter step if a stage turned so fast that this one may have passed the end of the chart. Returns
+    whether it did.
     """
     part: cython.double
     if not run.chart.approach_rate * run.h > scene.limits.chart_turn:
         return False
-    part = 0.9 * scene.limits.chart_turn / (run.chart.approach_rate * run.h)
-    run.control.proposed = run.h * (part if part > 0.2 else 0.2)
+    part = SAFETY * scene.limits.chart_turn / (run.chart.approach_rate * run.h)
+    run.control.proposed = run.h * (part if part > MIN_STEP_FACTOR else MIN_STEP_FACTOR)
     run.control.rejected_before = 1
     return True
 
@@ -164,7 +173,10 @@ def exceeds_chart(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
 def assess_step(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
 ) -> cython.int:
-    """Return ACCEPTED, AGAIN with another length, NOT_A_NUMBER, or CLOSURES_LOST."""
+    """Judge a step that was tried, and propose another length where it is to be tried AGAIN.
+
+    Returns ACCEPTED, AGAIN, NOT_A_NUMBER; for given lengths also UNSOLVED or CLOSURES_LOST.
+    """
     error: cython.double
     noise: cython.double = 0.0
     run.control.error = 0.0
@@ -174,18 +186,19 @@ def assess_step(
         return AGAIN if trouble < 0 else ACCEPTED
     if method.fixed:
         return assess_given_step(method, run, trouble)
-    error = implicit_error(scene, method, run) if method.implicit else explicit_error(scene, method, run)
+    error = (
+        estimate_implicit_error(scene, method, run) if method.implicit else estimate_explicit_error(scene, method, run)
+    )
     if run.projects_stages:
-        if dodge_singularity(scene, run, error, trouble):
+        if propose_length_off_singularity(scene, run, error, trouble):
             return AGAIN
-        noise = singular_noise(scene, run)
+        noise = find_singular_noise(scene, run)
     if error != error or trouble < 0:
         # outside the scene's range of motion: try a much smaller step, or stop
         run.control.proposed = UNDEFINED_STEP_FACTOR * run.h
         run.control.rejected_before = 1
-        if run.control.proposed < scene.limits.least_step * (run.end - run.t) or run.control.proposed <= 1e-15 * fabs(
-            run.t
-        ):
+        least: cython.double = scene.limits.least_step * (run.end - run.t)
+        if run.control.proposed < least or run.control.proposed <= INSTANT_ROUNDING * fabs(run.t):
             return NOT_A_NUMBER
         return AGAIN
     if error > 1.0 + noise:
@@ -193,7 +206,7 @@ def assess_step(
         run.control.proposed = run.h * (factor if factor > MIN_STEP_FACTOR else MIN_STEP_FACTOR)
         run.control.rejected_before = 1
         return AGAIN
-    if method.attitude and exceeds_chart(scene, run):
+    if method.attitude and propose_shorter_turn(scene, run):
         return AGAIN
     run.control.error = error
     return ACCEPTED
@@ -218,10 +231,10 @@ def update_group_rates(run: cython.pointer[Run]) -> cython.bint:
         if group.trial < group.rate:
             group.trial = group.rate
         size += weighted_norm(run, run.z, group.coordinates, group.end)
-    return size < 1e300  # neither infinite nor not a number
+    return size < UNBOUNDED  # neither infinite nor not a number
 
 
-def explicit_error(
+def estimate_explicit_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.double:
     """Return the error of the trial step of an explicit method, 1 = just allowed."""
@@ -231,47 +244,49 @@ def explicit_error(
     if method.attitude:
         scale_chart_errors(scene, method.attitude, run.chart.y, run.coarse)
         scale_chart_errors(scene, method.attitude, run.chart.y, run.fine)
-    return free_error(scene, method, run)
+    return measure_free_error(scene, method, run)
 
 
-def free_error(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+def measure_free_error(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.double:
     """Return the error without the rounding that contacts hold, 1 = just allowed; NaN if one is."""
     remove_contact_rounding(scene, method, run)
-    return step_error(scene, method, run)
+    return measure_step_error(scene, method, run)
 
 
-def implicit_error(
+def estimate_implicit_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.double:
     """Return the error of the trial step of an implicit method; without stages, a value that halves the step."""
     if not run.newton.has_stages:
         return pow(UNSOLVED_ERROR, 1.0 / method.exponent)
     estimate_error(method, run, run.K[0])
-    error: cython.double = free_error(scene, method, run)
+    error: cython.double = measure_free_error(scene, method, run)
     if not error <= 1.0:
         refine_error(scene, method, run)
-        error = free_error(scene, method, run)
+        error = measure_free_error(scene, method, run)
     return error
 
 
-def dodge_singularity(
+def propose_length_off_singularity(
     scene: cython.pointer[Scene], run: cython.pointer[Run], error: cython.double, trouble: cython.int
-) -> cython.int:
-    """Return whether to try another length that may keep the stages off a singular pose; at last the best of those
-    tried.
+) -> cython.bint:
+    """Propose another length that may keep the stages off a singular pose, at last the best of those tried. Returns
+    whether one is to be tried.
     """
     # effect of rounding on the closures at the worst of the stages, relative to the tolerance
-    noise: cython.double = 1e300
+    noise: cython.double = UNBOUNDED
     if scene.pivot_of_step > 0.0:
         noise = scene.limits.pivot_rounding * run.h * run.control.rate / (scene.pivot_of_step * run.control.tolerance)
     broken: cython.bint = error != error or trouble < 0
     if run.control.retries >= scene.limits.singular_retries or run.ends_piece:
-        return 0
-    if not (noise > 0.1 or broken or (error > 1.0 and run.control.retries > 0)):
-        return 0
+        return False
+    if not (noise > SINGULAR_NOISE or broken or (error > 1.0 and run.control.retries > 0)):
+        return False
     worst: cython.double = error if error > noise else noise
     if broken:
-        worst = 1e300
+        worst = UNBOUNDED
     if run.control.retries == 0 or worst < run.control.best:
         run.control.best = worst
         run.control.best_h = run.h
@@ -279,10 +294,10 @@ def dodge_singularity(
     run.control.proposed = (
         run.control.best_h if run.control.retries == scene.limits.singular_retries else scene.limits.retry_ratio * run.h
     )
-    return 1
+    return True
 
 
-def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
+def find_singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
     """Return the error that rounding may cause near a singular pose, also at the start, in a step that could not avoid
     it.
     """
@@ -294,7 +309,7 @@ def singular_noise(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cy
     return 0.0
 
 
-def growth_factor(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
+def find_growth_factor(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.double:
     """Return by what factor the next step may be longer; at most 1 after a rejection."""
     factor: cython.double = MAX_STEP_FACTOR
     if run.control.error > 1.0:

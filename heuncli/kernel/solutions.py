@@ -10,7 +10,7 @@ from heuncli.kernel.orthogonal import estimate_multiplier_doubt
 from heuncli.kernel.response import evaluate, must_choose_rows, project_state
 from heuncli.kernel.row_choice import choose_rows_again
 from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
-from heuncli.kernel.sticking import record_sticking, release_sticking, set_friction_mode, stick_again
+from heuncli.kernel.sticking import close_sticking_rows, open_sticking_rows, record_sticking, set_friction_mode
 from heuncli.kernel.tree import balance_joints
 
 
@@ -280,12 +280,12 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
             instants.states[j * n + i] = instants.y[i]
         write_instant(scene, instants, j, trouble)
         if instants.has_causes:
-            was_sticking = release_sticking(scene)
+            was_sticking = open_sticking_rows(scene)
             if was_sticking:  # a friction that sticks is a cause like one that slips: the load that it was found to be
                 select_independent_rows(scene, instants.times[j], instants.y, False)
             solve_causes(scene, instants.times[j], instants.y, instants.columns, j * instants.column_width)
             if was_sticking:
-                stick_again(scene)
+                close_sticking_rows(scene)
     scene.programs.holding = FREE
 
 

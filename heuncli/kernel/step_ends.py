@@ -14,7 +14,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate, record_course
 from heuncli.kernel.events import follow_angles, hold_branches
 from heuncli.kernel.following import prepare_step, project_sample
-from heuncli.kernel.judging import growth_factor, update_imposed_rate, weighted_norm
+from heuncli.kernel.judging import find_growth_factor, update_imposed_rate, weighted_norm
 from heuncli.kernel.points import evaluate_variables
 from heuncli.kernel.response import (
     evaluate,
@@ -164,7 +164,7 @@ def update_rates(run: cython.pointer[Run]) -> cython.void:
 
 def propose_next_length(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """Set the next length from the error; a step cut short by an event does not prevent a longer one."""
-    h: cython.double = run.h * growth_factor(method, run)
+    h: cython.double = run.h * find_growth_factor(method, run)
     if not (run.ends_piece or run.landing.has_cut) or run.control.proposed < h:
         run.control.proposed = h
 

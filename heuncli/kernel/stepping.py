@@ -164,7 +164,7 @@ class Controller(Struct):
     rate: float  # the scene's largest so far [1/s]
     imposed_rate: float  # the largest so far of drives, and of single loads on free bodies, also in balance [1/s]
     is_balanced: int  # 1: all is so much slower that it may rest but for rounding
-    least_inertia: float  # the least mass but 0, by the size
+    least_inertia: float  # the least mass but 0, times the size [kg m]
     energy_scale: float  # sum m size^2
     retries: int  # other lengths tried for this step, to keep its stages off a singular pose
     best: float  # the least trouble of the lengths tried, and its length

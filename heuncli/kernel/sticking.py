@@ -8,7 +8,7 @@ unit rate of one of them, their leader, only a sum of the multipliers is determi
 
     | sum of t_i multiplier_i |  <=  sum of |t_i| breakaway_i N_i
 
- What must not become positive, as for other contacts (contacts.py), is |value| - breakaway N while it sticks
+What must not become positive, as for other contacts (contacts.py), is |value| - breakaway N while it sticks
 and -slip rate while it slips. Which of them it does from an event on is decided outside
 (motion/integration/contacts/sticking.py).
 """
@@ -17,11 +17,12 @@ from __future__ import annotations
 
 from math import fabs
 
-from heuncli.kernel.closures import size_of_row_rate
+from heuncli.kernel.closures import size_of_row_gap, size_of_row_rate
 from heuncli.kernel.declarations import *
 
 # Relative to the largest rate of a step: what began at rest and is slower has not stopped again, but not left its start
 BEGINS_TO_SLIP = 1e-9
+UNREACHED = 1e300  # minus this is the margin of what causes no event
 
 
 def set_friction_mode(
@@ -40,19 +41,19 @@ def set_friction_mode(
     return length != row.length or slip != load.slip
 
 
-def friction_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+def measure_friction_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
     """Return what must not become positive: how far the friction exceeds what it can hold, or the rate against its
     slip.
     """
     if contact.friction > scene.load_count:
-        return -1e300
+        return -UNREACHED
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     load: cython.pointer[Load] = cython.address(scene.loads[contact.friction - 1])
     if row.mode != APART:
         if contact.leader and not leads_group(scene, contact):
-            return -1e300  # its leader's margin is that of all
-        return fabs(sticking_force(scene, contact)) - sticking_limit(scene, contact)
-    return -load.slip * row.rate if load.slip != 0.0 else -1e300
+            return -UNREACHED  # its leader's margin is that of all
+        return fabs(sum_sticking_force(scene, contact)) - sum_sticking_limit(scene, contact)
+    return -load.slip * row.rate if load.slip != 0.0 else -UNREACHED
 
 
 def leads_group(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.bint:
@@ -60,7 +61,7 @@ def leads_group(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) 
     return scene.contacts[contact.leader - 1].row == contact.row
 
 
-def sticking_force(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+def sum_sticking_force(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
     """Return the friction of a contact that sticks; of a group the sum, at its leader."""
     i: cython.Py_ssize_t
     total: cython.double = 0.0
@@ -72,7 +73,7 @@ def sticking_force(scene: cython.pointer[Scene], contact: cython.pointer[Contact
     return total
 
 
-def sticking_limit(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
+def sum_sticking_limit(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
     """Return what a friction that sticks can hold; of a group the sum, at its leader."""
     i: cython.Py_ssize_t
     total: cython.double = 0.0
@@ -86,12 +87,12 @@ def sticking_limit(scene: cython.pointer[Scene], contact: cython.pointer[Contact
     return total
 
 
-def friction_threshold(
-    scene: cython.pointer[Scene], contact: cython.pointer[Contact], last: cython.double, late: cython.bint
+def find_friction_threshold(
+    scene: cython.pointer[Scene], contact: cython.pointer[Contact], end_time: cython.double, late: cython.bint
 ) -> cython.double:
     """Return the margin above which the state changes, from its rounding over a step whose extremes are known.
 
-    last: the end of the piece [s]; late: at twice the rounding, to see how exactly the instant is met
+    end_time: of the piece [s]; late: at twice the rounding, to see how exactly the instant is met
 
     What begins at rest may begin with the rounding of its rate against its slip: in the shortest steps that is more
     than all that it gains.
@@ -100,24 +101,24 @@ def friction_threshold(
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
     largest: cython.double = fabs(contact.least) if fabs(contact.least) > fabs(contact.most) else fabs(contact.most)
     if row.mode != APART:
-        rounding = scene.limits.friction_rounding * (largest + sticking_limit(scene, contact))
+        rounding = scene.limits.friction_rounding * (largest + sum_sticking_limit(scene, contact))
         return 2.0 * rounding if late else rounding
-    rounding = find_rate_rounding(scene, row, last)
+    rounding = find_rate_rounding(scene, row, end_time)
     if contact.start >= -BEGINS_TO_SLIP * largest or contact.start >= -rounding:
         return BEGINS_TO_SLIP * largest if BEGINS_TO_SLIP * largest > rounding else rounding
     return scene.limits.rounding * largest
 
 
 def find_rate_rounding(
-    scene: cython.pointer[Scene], row: cython.pointer[Closure], last: cython.double
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], end_time: cython.double
 ) -> cython.double:
     """Return the rate below which a row is at rest: rounding of the terms of its rate, or of its gap up to the end.
 
     The same as `measure_coordinate_rate` (motion/integration/contacts/latches.py), by which its state is decided.
     """
     rounding: cython.double = scene.limits.still_rate * size_of_row_rate(scene, row)
-    drift: cython.double = scene.limits.touching * ((scene.size + norm(row.Q)) / row.weight + fabs(row.length))
-    return rounding if rounding * last > drift else drift / last
+    drift: cython.double = scene.limits.touching * size_of_row_gap(scene, row)
+    return rounding if rounding * end_time > drift else drift / end_time
 
 
 def record_sticking(scene: cython.pointer[Scene]) -> cython.void:
@@ -139,12 +140,12 @@ def record_sticking(scene: cython.pointer[Scene]) -> cython.void:
                 load.force = scale_vector(load.factor, load.moment)
             load.rate = 0.0
             load.power = 0.0
-            load.reserve = sticking_limit(scene, contact) - fabs(sticking_force(scene, contact))
+            load.reserve = sum_sticking_limit(scene, contact) - fabs(sum_sticking_force(scene, contact))
             if contact.leader:
                 load.reserve /= fabs(contact.transmission)
 
 
-def release_sticking(scene: cython.pointer[Scene]) -> cython.bint:
+def open_sticking_rows(scene: cython.pointer[Scene]) -> cython.bint:
     """Open the rows of what sticks, whose loads `record_sticking` has stored. Returns whether there are any."""
     i: cython.Py_ssize_t
     found: cython.bint = False
@@ -157,8 +158,8 @@ def release_sticking(scene: cython.pointer[Scene]) -> cython.bint:
     return found
 
 
-def stick_again(scene: cython.pointer[Scene]) -> cython.void:
-    """Close the rows that `release_sticking` has opened."""
+def close_sticking_rows(scene: cython.pointer[Scene]) -> cython.void:
+    """Close the rows that `open_sticking_rows` has opened."""
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])

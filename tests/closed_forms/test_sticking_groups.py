@@ -10,7 +10,10 @@ import pytest
 
 import heuncli
 from heuncli.base.errors import SolveError
+from heuncli.motion.integration.contacts.friction_groups import displace_freedoms
 from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.study.model.setup import set_up
 from tests.oracle.values import to_yaml
 from tests.shared.scenes import solved
 
@@ -301,3 +304,37 @@ forces:
   E: {type: friction, joint: E, torque: 1}
 """
     assert refused(text) == "friction-indeterminate"
+
+
+def test_a_transmission_that_a_ball_changes_is_refused() -> None:
+    """Two cranks joined by a rod; one rides on a plate on a ball, towards which the rod points just now.
+
+    There the plate's turns change nothing, so that the frictions seem to stick as one; turned, the rod would turn it.
+    """
+    bar = {"mass": 1, "center": [0, 0.5, 0], "inertia": [1, 1, 1], "points": {"s": [0, 0, 0], "e": [0, 1, 0]}}
+    points = {"o": [0, 0, 0], "c": [1, 0, 0]}
+    scene = {
+        "gravity": [0, 0, 0],
+        "ground": {"points": {"O": [0, 0, 0], "A": [4, 2, 0]}},
+        "bodies": {
+            "plate": {"mass": 5, "center": [0, 0, 0], "inertia": [2, 2, 2], "points": points},
+            "near": {**bar, "position": [1, 0, 0]},
+            "far": {**bar, "points": {"s": [0, 0, 0], "e": [-1, 1, 0]}, "position": [4, 2, 0]},
+        },
+        "joints": {
+            "ball": {"type": "ball", "from": "ground.O", "to": "plate.o"},
+            "C": {"type": "pin", "from": "plate.c", "to": "near.s", "axis": [0, 0, 1]},
+            "A": {"type": "pin", "from": "ground.A", "to": "far.s", "axis": [0, 0, 1]},
+            "rod": {"type": "rod", "from": "far.e", "to": "near.e"},
+        },
+        "forces": {f"f{n}": {"type": "friction", "joint": n, "torque": 1.0, "static": 2.0} for n in ("A", "C")},
+        "analysis": {"duration": 0.1, "samples": 3},
+    }
+    setup = set_up(load("scene.yaml", to_yaml({**scene, "forces": {}})))
+    layout = setup.runner.layout
+    place = int(layout.bodies["attitude_at"][layout.bodies["ball"] == 1][0])
+    attitudes = displace_freedoms(layout, layout.y0)[:, place : place + 4]
+    assert np.linalg.norm(attitudes, axis=1) == pytest.approx(1.0)
+    assert (np.linalg.norm(attitudes - layout.y0[place : place + 4], axis=1) > 1e-5).all()
+    with pytest.raises(SolveError, match="how they share what holds the machine is indeterminate"):
+        solved(to_yaml(scene))

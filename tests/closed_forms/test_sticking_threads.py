@@ -10,8 +10,13 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SpecError
+from heuncli.motion.integration.contacts.latches import measure_coordinate_rate
+from heuncli.multibody.response import kernel_numbers
 from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
+from heuncli.study.model.setup import set_up
 from tests.oracle.values import to_yaml
+from tests.shared.plain_kernel import plain_module
 from tests.shared.scenes import solved
 from tests.shared.screw_jack import LEAD, SLOPE, R, W, jack
 
@@ -134,3 +139,24 @@ def test_what_contradicts_itself_is_refused(change: dict[str, float]) -> None:
     with pytest.raises(SpecError) as caught:
         solved(to_yaml(scene))
     assert caught.value.problems[0].code == "thread-friction"
+
+
+def test_a_thread_rests_below_one_rate_in_both_places() -> None:
+    """The kernel takes it to rest below the rate by which its state is decided: all parts of its sum count."""
+    scene = sticking_jack(0.5)
+    scene["joints"]["spin"]["type"] = "cylinder"  # a spindle that slides, too: the coordinates fill two parts
+    setup = set_up(load("scene.yaml", to_yaml(scene)))
+    layout = setup.runner.layout
+    (contact,) = (layout.contacts[i] for i in layout.friction_contacts)
+    opened = setup.runner.evaluate(np.zeros(1), layout.y0[None, :], holding=layout.open_contacts)
+    pack = layout.pack
+    programs = plain_module("expressions").Expressions(
+        pack.code, pack.constants, len(pack.variables), pack.branch_count, pack.starts, pack.tables
+    )
+    workspace = plain_module("workspace").Workspace(layout.tables, layout.indices, programs, kernel_numbers(layout))
+    workspace.measure_at(0.0, layout.y0.tolist())
+    row = workspace.scene.closures[contact.row]
+    assert row.part_count == 2
+    for end_time in (1e-3, 10.0):
+        rounding = plain_module("sticking").find_rate_rounding(workspace.scene, row, end_time)
+        assert rounding == pytest.approx(measure_coordinate_rate(layout, opened, contact, end_time)[1], rel=1e-12)

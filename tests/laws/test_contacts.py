@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
+from heuncli.motion.integration.contacts import restitution
 from heuncli.motion.integration.contacts.complementarity import solve_complementarity
+from heuncli.motion.integration.contacts.contact_events import find_held_contacts
+from heuncli.motion.integration.contacts.impulses import GivenImpulse, schedule_impulses
 from heuncli.motion.integration.contacts.restitution import (
     MAX_ROUNDS,
     ContactImpulses,
@@ -105,6 +108,39 @@ def struck(A: Array, rate: Array, e: Array) -> ContactImpulses:
         np.arange(n), np.zeros((n, 1, 6)), rate, np.full(n, 1e-12), np.full(n, 1e-14), e, np.ones(n)
     )
     return solve_contact_impulses(touch, A, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool))
+
+
+def test_rounds_that_do_not_end_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What still closes after the last round is no solution."""
+    monkeypatch.setattr(restitution, "MAX_ROUNDS", 0)
+    with pytest.raises(EndlessImpacts):
+        struck(np.eye(1), np.array([-1.0]), np.ones(1))
+    assert struck(np.eye(1), np.array([0.0]), np.ones(1)).rate == 0.0
+
+
+def test_two_jumps_of_one_drive_merge_into_one() -> None:
+    """From the rate before the first to that after the second; others keep theirs."""
+    first = GivenImpulse(0.1, 0.2, (0,), {3: (1.0, 2.0)})
+    merged = first.merge(GivenImpulse(0.15, 0.3, (), {3: (2.0, 5.0), 4: (0.0, 1.0)}))
+    assert (merged.before_time, merged.after_time, merged.numbers) == (0.1, 0.3, (0,))
+    assert merged.drives == {3: (1.0, 5.0), 4: (0.0, 1.0)}
+
+
+def test_impulses_after_the_end_are_not_given() -> None:
+    """A run is scheduled up to its end, that of a shorter one too."""
+    text = BALL.format(at=1, speed=0, floor=0, e=0.5)
+    text += "impulses: {a: {on: ball.p, vector: [0, 0, 1], time: 1}, b: {on: ball.p, vector: [0, 0, 1], time: 2}}\n"
+    mechanism = set_up(load("scene.yaml", text)).runner.layout.mechanism
+    assert [given.numbers for given in schedule_impulses(mechanism, 1.0)] == [(0,)]
+    assert [given.numbers for given in schedule_impulses(mechanism, 2.0)] == [(0,), (1,)]
+
+
+def test_an_early_instant_does_not_blur_rates() -> None:
+    """What opens slowly opens at any instant of a pose: the instant is not the length of a run."""
+    text = BALL.format(at=0, speed=1e-9, floor=0, e=0.5).replace("[0, 0, -10]", "[0, 0, -1e-7]")
+    runner = set_up(load("scene.yaml", text)).runner
+    for t in (0.0, 1e-9, 1.0):
+        assert find_held_contacts(runner, t, runner.layout.y0).tolist() == [0.0]
 
 
 # ---- a ball on a floor

@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
 from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, power_imbalance, work_scale
-from heuncli.motion.integration.contacts.impulses import free_impulse_energy
+from heuncli.motion.integration.contacts.impulses import compute_free_impulse_energy
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Accuracy, Array, Mask, Results
 from heuncli.results.results_schema import IMPULSES, REPORT_OF, SPACE, Quantity
@@ -30,7 +30,7 @@ def make_accuracy(history: History, balance: Balance, impulse_residual: float = 
     impulse_residual: the residual of d'Alembert's principle at its impulses, relative to the largest impulse
     """
     checked, scene = history.checked_run, balance.setup.scene
-    free_energy = sum(free_impulse_energy(scene.layout, jump.impulses) for jump in history.impulses)
+    free_energy = sum(compute_free_impulse_energy(scene.layout, jump.impulses) for jump in history.impulses)
     known = balance.to_accuracy(checked.kinetic if checked is not None else 0.0, free_energy)
     known["balance_residual"] = max(known["balance_residual"], impulse_residual)
     gap = checked.run.gap if checked is not None else scene.start.gap

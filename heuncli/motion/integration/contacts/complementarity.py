@@ -19,6 +19,9 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
 from heuncli.results.results import Array, Indices, Mask
 
+# what ends the drive of an index: its own w is zero; a z of another, or a w of one that is done, comes to zero
+IS_DRIVEN, OPENS, BEARS = 1, 2, 3
+
 
 @record
 class ComplementaritySolution:
@@ -75,10 +78,10 @@ def drive_index(A: Array, q: Array, z: Array, bears: Mask, is_done: Mask, i: int
         if len(bearing):
             dz[bearing] = -np.linalg.solve(A[np.ix_(bearing, bearing)], A[bearing, i])
         w, dw = q + A @ z, A @ dz
-        limits = [(-w[i] / dw[i], 1, i)] if dw[i] > tolerances.CONTACT_DEPENDS else []
-        limits += [(-z[j] / dz[j], 2, int(j)) for j in bearing if dz[j] < 0.0]
+        limits = [(-w[i] / dw[i], IS_DRIVEN, i)] if dw[i] > tolerances.CONTACT_DEPENDS else []
+        limits += [(-z[j] / dz[j], OPENS, int(j)) for j in bearing if dz[j] < 0.0]
         limits += [
-            (max(w[j], 0.0) / -dw[j], 3, int(j))
+            (max(w[j], 0.0) / -dw[j], BEARS, int(j))
             for j in np.flatnonzero(is_done & ~bears)
             if j != i and dw[j] < -tolerances.CONTACT_DEPENDS
         ]
@@ -86,11 +89,11 @@ def drive_index(A: Array, q: Array, z: Array, bears: Mask, is_done: Mask, i: int
             raise undecided_error("no contact forces or impulses prevent the contacts from penetrating")
         step, event, j = min(limits)
         z += step * dz
-        if event == 1:
+        if event == IS_DRIVEN:
             bears[i] = is_done[i] = True
             return
-        bears[j] = event == 3
-        if event == 2:
+        bears[j] = event == BEARS
+        if event == OPENS:
             z[j] = 0.0
     raise undecided_error("which of the touching contacts carry load cannot be determined")
 

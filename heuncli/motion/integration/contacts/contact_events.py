@@ -1,7 +1,8 @@
 """Handle contact events: what is struck at an instant of a run, by which impulses, and what is held from then on.
 
 touching.py finds the contacts that touch, latches.py what catches and releases, restitution.py the impulses and the
-contacts that stay closed, contact_problem.py the errors and sentences.
+contacts that stay closed, impulse_columns.py the columns of impulses, contact_problem.py the errors, contact_notes.py
+the sentences.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import replace
 from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
+from heuncli.motion.integration.contacts.contact_notes import ContactNotes
 from heuncli.motion.integration.contacts.contact_problem import (
-    ContactNotes,
     ContactOutcome,
     ContactProblem,
     UnrefinedImpulses,
@@ -22,15 +23,21 @@ from heuncli.motion.integration.contacts.contact_problem import (
     require_smooth,
     require_yielding,
 )
+from heuncli.motion.integration.contacts.impulse_columns import (
+    bring_to_rest,
+    distribute_remainder,
+    scale_columns,
+)
 from heuncli.motion.integration.contacts.impulses import (
+    SINGLE_INSTANT,
     GivenImpulse,
     ImpulseEvent,
     ImpulseResult,
     RightSides,
-    free_impulse_energy,
+    compute_free_impulse_energy,
+    find_state_after,
     make_impulse_event,
     make_right_sides,
-    state_after,
 )
 from heuncli.motion.integration.contacts.latches import (
     UNWATCHED,
@@ -70,7 +77,6 @@ from heuncli.motion.integration.contacts.touching import (
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns, solve_impulses
 from heuncli.multibody.tree.layout import CLOSED_BY_OTHERS
-from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS
 
@@ -78,8 +84,11 @@ MAX_FRICTION_CHANGES = 8  # of friction that sticks beside touching contacts, wh
 
 
 def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
-    """Return the contacts that are closed at a state, after the impulse that may happen there."""
-    contacts = Contacts(evaluator, t)
+    """Return the contacts that are closed at a state, after the impulse that may happen there.
+
+    There is no run: rounding counts as it does in one of a second.
+    """
+    contacts = Contacts(evaluator, SINGLE_INSTANT)
     contacts.handle_event(GivenImpulse(t, t, (), {}), state, t, None)
     return contacts.contact_states
 
@@ -87,13 +96,13 @@ def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
 class Contacts:
     """The contacts of one run: which are closed, and the notes on them. Changes with every event."""
 
-    def __init__(self, evaluator: Evaluator, last: float) -> None:
-        self.evaluator, self.last = evaluator, last
+    def __init__(self, evaluator: Evaluator, end_time: float) -> None:
+        self.evaluator, self.end_time = evaluator, end_time
         self.layout = evaluator.layout
         self.contact_states = self.layout.open_contacts
-        self.latches = Latches(self.layout, last)
-        self.friction = FrictionStates(evaluator, last)
-        self.notes = ContactNotes(self.layout, last)
+        self.latches = Latches(self.layout, end_time)
+        self.friction = FrictionStates(evaluator, end_time)
+        self.notes = ContactNotes(self.layout, end_time)
 
     def handle_event(
         self,
@@ -103,7 +112,16 @@ class Contacts:
         row: int | None,
         latch_conditions: LatchConditions | None = None,
     ) -> ImpulseEvent | None:
-        """Handle an event and return the impulse that it causes, if any.
+        """Handle an event and return the impulse that it causes, if any. The order of the steps matters:
+
+        1. What is closed, without what opens: a taut rope whose prescribed rate jumps is refused.
+        2. Latches release first, so that what they held is free in all that follows.
+        3. The right sides and the touching contacts are those of the state with the remaining latches holding.
+        4. Latches catch what touches; a limit at which one holds is no contact any more.
+        5. The contact problem has one column for each cause, those of catches included, and one for each contact.
+        6. Catches and contacts that drives contradict are refused before anything is solved for them.
+        7. The impulses are solved; what rests is decided in the state after them, then what sticks, until both agree.
+        8. Notes and the event follow from the outcome; its energy balance is checked last.
 
         row: closure row of the contact that closed or opened there
         latch_conditions: the conditions of latches there; by default evaluated at the state
@@ -114,9 +132,9 @@ class Contacts:
         latch_conditions = latch_conditions or latches.evaluate_conditions(given_impulse.before_time, state)
         released = latches.release(latch_conditions)
         sides = make_right_sides(self.evaluator, given_impulse, state, latches.make_states())
-        contacts_touching = find_touching(self.layout, sides.still, is_closed, row, self.last)
+        contacts_touching = find_touching(self.layout, sides.still, is_closed, row, self.end_time)
         catches = latches.catch(latch_conditions, sides.still, contacts_touching)
-        is_free = latches.find_free(contacts_touching)
+        is_free = latches.find_unheld_contacts(contacts_touching)
         unwatched, contacts_touching = contacts_touching.indices[~is_free], contacts_touching.select(is_free)
         sides = add_catches(self.layout, sides, catches)
         solution, problem = self.make_problem(given_impulse, sides, contacts_touching)
@@ -130,10 +148,10 @@ class Contacts:
         if not outcome.impulses.impulses.any() and not sides.loads:
             return None
         result = self.make_result(time, sides, solution, problem, outcome, catches, shared_impulses)
-        sides = replace(sides, still=self.with_active_contacts(sides.still, problem, outcome.impulses))
+        sides = replace(sides, still=self.add_active_contacts(sides.still, problem, outcome.impulses))
         event = make_impulse_event(self.evaluator, given_impulse, sides, result)
         energy_scale = 0.5 * float(outcome.impulses.impulses**2 @ np.diag(problem.A))
-        require_energy(event, energy_scale + free_impulse_energy(self.layout, sides.impulses))
+        require_energy(event, energy_scale + compute_free_impulse_energy(self.layout, sides.impulses))
         return event
 
     def make_result(
@@ -235,8 +253,8 @@ class Contacts:
         at_rest = np.zeros(len(contacts_touching.indices), dtype=bool)
         while True:
             impulses = self.solve_impulses(given_impulse.after_time, problem, at_rest)
-            columns = self.scale_columns(units, contacts_touching, impulses.impulses)
-            after_state, work = state_after(self.layout, given_impulse, sides, columns)
+            columns = scale_columns(self.layout, units, contacts_touching, impulses.impulses)
+            after_state, work = find_state_after(self.layout, given_impulse, sides, columns)
             after_evaluation = self.evaluator.evaluate(
                 np.array([given_impulse.after_time]), after_state[None, :], holding=open_states
             )
@@ -248,7 +266,7 @@ class Contacts:
             require_yielding(
                 self.layout, problem, np.where(is_still, acceleration, 0.0), noise, given_impulse.after_time
             )
-            shortest_time = tolerances.SHORTEST_FLIGHT * self.last
+            shortest_time = tolerances.SHORTEST_FLIGHT * self.end_time
             is_short = (
                 is_short_flight(contacts_touching, impulses.rate, acceleration, shortest_time)
                 & ~at_rest
@@ -265,11 +283,11 @@ class Contacts:
             if self.layout.mechanism.impacts != SIMULTANEOUS:
                 basis = find_independent(problem.A[np.ix_(bearing, bearing)])
             unrefined = UnrefinedImpulses(contacts_touching, impulses, units, bearing[basis], np.delete(bearing, basis))
-            impulses, columns, total = self.refine(given_impulse, sides, unrefined)
-            after_state, work = state_after(self.layout, given_impulse, sides, total)
+            impulses, columns, total = self.refine_impulses(given_impulse, sides, unrefined)
+            after_state, work = find_state_after(self.layout, given_impulse, sides, total)
         work += float(impulses.impulses @ (0.5 * (contacts_touching.rate + impulses.rate)))
         work += compute_catch_work(self.layout, catches, columns.multipliers)
-        self.bring_to_rest(sides.still.states[0], after_state)
+        bring_to_rest(self.layout, sides.still.states[0], after_state)
         return ContactOutcome(impulses, contact_states, at_rest, columns, after_state, work)
 
     def solve_impulses(self, t: float, problem: ContactProblem, at_rest: Mask) -> ContactImpulses:
@@ -283,9 +301,7 @@ class Contacts:
             )
         except EndlessImpacts as endless:
             names = [self.layout.contacts[i].name for i in contacts_touching.indices.tolist()]
-            raise make_endless_impacts_error(
-                t, [names[k] for k in endless.contacts.tolist()], names[endless.most_struck]
-            ) from None
+            raise make_endless_impacts_error(t, names, endless, self.layout.mechanism.impacts) from None
 
     def find_shared(
         self, problem: ContactProblem, outcome: ContactOutcome, catches: list[LatchCatch]
@@ -333,77 +349,51 @@ class Contacts:
             hint = "use a constant friction, or contacts that do not touch there at the same time"
             raise SolveError(Problem("friction-not-unique", message, hint=hint))
 
-    def refine(
+    def refine_impulses(
         self, given_impulse: GivenImpulse, sides: RightSides, unrefined_impulses: UnrefinedImpulses
     ) -> tuple[ContactImpulses, Columns, Columns]:
         """Recompute impulses and columns with the digits that A loses between very unequal masses; also return their
-        total.
+        sum.
 
-        With the rates after the impulse known, the bearing contacts are held and solved by the factors of the closures,
-        in one column. What the contacts' columns lack of it is added to the last of them.
+        M dV = H + sum of z_k W_k' over others + J' Lambda,    J dV = jumps, with W_i dV = v+_i - v-_i of the basis
+
+        The rates v+ after the impulse are known: so the contacts of the basis are held like closures, and one column
+        gives their impulses z_i = -sense Lambda_i. What the columns of the contacts lack of it goes to the last of
+        them.
         """
-        contacts_touching, impulse_solution = unrefined_impulses.touching, unrefined_impulses.impulses
-        n = len(sides.loads)
+        contacts_touching, solution = unrefined_impulses.touching, unrefined_impulses.impulses
+        basis, others = unrefined_impulses.basis, unrefined_impulses.others
+        exact_sum = self.solve_basis(given_impulse, sides, unrefined_impulses)
+        contacts = [self.layout.contacts[i] for i in contacts_touching.indices[basis].tolist()]
+        impulses = solution.impulses.copy()
+        impulses[basis] = -np.array([c.sense for c in contacts]) * exact_sum.multipliers[0, [c.row for c in contacts]]
+        columns = scale_columns(self.layout, unrefined_impulses.units, contacts_touching, impulses)
+        for k in others.tolist():  # these are given loads in the one column
+            contact = self.layout.contacts[contacts_touching.indices[k]]
+            exact_sum.multipliers[0, contact.row] -= contact.sense * impulses[k]
+        distribute_remainder(columns, exact_sum, len(sides.loads) + int(basis[-1]))
+        return replace(solution, impulses=impulses), columns, exact_sum
+
+    def solve_basis(
+        self, given_impulse: GivenImpulse, sides: RightSides, unrefined_impulses: UnrefinedImpulses
+    ) -> Columns:
+        """Solve the one column of what is given with the contacts of the basis held, whose rates after it are known."""
+        contacts_touching, solution = unrefined_impulses.touching, unrefined_impulses.impulses
         basis, others = unrefined_impulses.basis, unrefined_impulses.others
         contacts = [self.layout.contacts[i] for i in contacts_touching.indices[basis].tolist()]
         rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])
         load = np.sum([np.zeros((len(self.layout.place), 6)), *sides.loads], axis=0)
-        load = load + np.einsum("k,kbi->bi", impulse_solution.impulses[others], contacts_touching.loads[others])
+        load = load + np.einsum("k,kbi->bi", solution.impulses[others], contacts_touching.loads[others])
         jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *sides.jumps], axis=0)
-        jump[len(self.layout.freedoms) + np.array(rows)] -= (
-            sense * (impulse_solution.rate - contacts_touching.rate)[basis]
-        )
+        jump[len(self.layout.freedoms) + np.array(rows)] -= sense * (solution.rate - contacts_touching.rate)[basis]
         contact_states = self.latches.make_states()
         contact_states[contacts_touching.indices[basis]] = 1.0
         self.evaluator.workspace.hold(contact_states)
-        single_column = solve_impulses(
+        return solve_impulses(
             self.evaluator.workspace, given_impulse.before_time, sides.still.states[0], load[None], jump[None]
         ).columns
-        impulses = impulse_solution.impulses.copy()
-        impulses[basis] = -sense * single_column.multipliers[0, rows]
-        columns = self.scale_columns(unrefined_impulses.units, contacts_touching, impulses)
-        for k in others.tolist():  # these are given loads in the single column
-            contact = self.layout.contacts[contacts_touching.indices[k]]
-            single_column.multipliers[0, contact.row] -= contact.sense * impulses[k]
-        total, last = columns.sum(), n + int(basis[-1])
-        for part in ("bodies", "freedoms"):
-            table, right, summed = (getattr(x, part) for x in (columns, single_column, total))
-            for name in table.dtype.names or ():
-                table[name][last] += right[name][0] - summed[name]
-        columns.multipliers[last] += single_column.multipliers[0] - total.multipliers
-        return replace(impulse_solution, impulses=impulses), columns, single_column
 
-    def bring_to_rest(self, before_state: Array, after_state: Array) -> None:
-        """Set rates after an impulse to zero, in place, where they are rounding of those before: what stands still has
-        no motion.
-        """
-        for group in self.layout.tables["groups"]:
-            rates = slice(group["rates"], group["end"])
-            if group["rates"] < group["end"] and group["coordinates"] < group["rates"]:
-                largest = np.abs(before_state[rates] * self.layout.weights[rates]).max()
-                if np.abs(after_state[rates] * self.layout.weights[rates]).max() <= tolerances.SUM_ROUNDING * largest:
-                    after_state[rates] = 0.0
-
-    def scale_columns(self, units: Columns, contacts_touching: TouchingContacts, impulses: Array) -> Columns:
-        """Return the columns of what is given and those of the contacts times their impulses, each with its own
-        multiplier.
-        """
-        n = len(units.multipliers) - len(impulses)
-        factors = np.concatenate([np.ones(n), impulses])
-
-        def scale_table(table: Table) -> Table:
-            out = table.copy()
-            for name in table.dtype.names or ():
-                out[name] = table[name] * factors.reshape(-1, *([1] * (table[name].ndim - 1)))
-            return out
-
-        multipliers = units.multipliers * factors[:, None]
-        for k, i in enumerate(contacts_touching.indices.tolist()):
-            contact = self.layout.contacts[i]
-            multipliers[n + k, contact.row] -= contact.sense * impulses[k]
-        return Columns(scale_table(units.bodies), scale_table(units.freedoms), multipliers)
-
-    def with_active_contacts(self, still: Evaluation, problem: ContactProblem, impulses: ContactImpulses) -> Evaluation:
+    def add_active_contacts(self, still: Evaluation, problem: ContactProblem, impulses: ContactImpulses) -> Evaluation:
         """Return the results before the impulse, with the contacts that take part in it, so that indeterminate shares
         are found.
 

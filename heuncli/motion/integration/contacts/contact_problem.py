@@ -1,4 +1,4 @@
-"""The contact problem of an event, its solution, and the errors and notes of events and of friction."""
+"""The contact problem of an event, its solution, and the errors of what cannot be solved."""
 
 from __future__ import annotations
 
@@ -7,15 +7,12 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
-from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.impulses import GivenImpulse, ImpulseEvent, RightSides
 from heuncli.motion.integration.contacts.latches import LatchCatch
-from heuncli.motion.integration.contacts.restitution import ContactImpulses, make_chattering_error
-from heuncli.motion.integration.contacts.shared_impulses import SharedImpulse, join_names
+from heuncli.motion.integration.contacts.restitution import ContactImpulses
+from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.motion.integration.evaluator import Evaluator
-from heuncli.multibody.mechanism.loads import JointLoad, ThreadLoad
-from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import Columns, ImpulseColumns
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Indices, Mask
@@ -142,101 +139,3 @@ def require_yielding(layout: Layout, problem: ContactProblem, opening: Array, no
             "stop-contradicts", message, hint=hint, entry_path=owner if contact.is_rope else f"stops.{contact.name}"
         )
     )
-
-
-MAX_SIMULTANEOUS = 16  # events at one instant, plus four per contact; more count as endless
-
-
-class ContactNotes:
-    """The sentences on the contacts of one run, and how often each contact is struck. Changes with every event."""
-
-    def __init__(self, layout: Layout, last: float) -> None:
-        self.layout, self.last = layout, last
-        self.strike_counts: dict[str, int] = {}
-        self.sentences: dict[str, None] = {}
-        self.last_event_time, self.simultaneous_count = -1.0, 0
-
-    def count_event(self, t: float) -> None:
-        """Count an event at an instant. Raises SolveError for too many at one instant."""
-        near = tolerances.KERNEL["least_step"] * self.last
-        self.simultaneous_count = self.simultaneous_count + 1 if t - self.last_event_time <= near else 0
-        self.last_event_time = t
-        if self.simultaneous_count > MAX_SIMULTANEOUS + 4 * len(self.layout.contacts):
-            raise make_chattering_error(
-                t, max(self.strike_counts, key=lambda name: self.strike_counts[name], default="")
-            )
-
-    def add_notes(
-        self,
-        t: float,
-        contacts_touching: TouchingContacts,
-        outcome: ContactOutcome,
-        shared_impulses: tuple[SharedImpulse, ...],
-    ) -> None:
-        """Record notes on contacts that are struck together or come to rest."""
-        contacts = [self.layout.contacts[i] for i in contacts_touching.indices.tolist()]
-        struck_contacts = [
-            contacts[k] for k in np.flatnonzero(outcome.impulses.takes_part & (contacts_touching.rate < 0.0))
-        ]
-        for contact in struck_contacts:
-            self.strike_counts[contact.name] = self.strike_counts.get(contact.name, 0) + 1
-        when = f"at t = {t:.6g} s"
-        if len(struck_contacts) > 1 and not shared_impulses:
-            names = join_names([contact.name for contact in struck_contacts])
-            self.sentences[f"{when} {names} impact at the same time, and do not load each other"] = None
-        for k in np.flatnonzero(outcome.at_rest):
-            name = contacts[k].name
-            count = self.strike_counts.get(name, 0)
-            if not count:
-                continue
-            self.sentences[
-                f"contact at {name} comes to rest {when} after {count} impact{'s' * (count > 1)}; "
-                "further impacts are negligible"
-            ] = None
-
-    def add(self, sentences: list[str]) -> None:
-        """Record other sentences."""
-        self.sentences |= dict.fromkeys(sentences)
-
-    def add_latch_notes(self, t: float, released_names: list[str], catches: list[LatchCatch]) -> None:
-        """Record notes on what latches catch and release."""
-        for name in released_names:
-            self.sentences[f"{name} releases at t = {t:.6g} s"] = None
-        for catch in catches:
-            self.sentences[f"{self.layout.contacts[catch.contact].name} catches at t = {t:.6g} s"] = None
-
-
-# Jamming
-
-JAMMING_MESSAGES = {  # code, what was found, what to do next
-    kernel.JAMS: (
-        "friction-jams",
-        "the joint jams (no solution): 1 N of friction causes more than 1 N of further friction",
-        "use a smaller coefficient or radius, a longer guide, or a load nearer to it",
-    ),
-    kernel.TWO: (
-        "friction-not-unique",
-        "two solutions exist: 1 N of friction causes more than 1 N of further friction",
-        "use a smaller coefficient or radius, a longer guide, or a load nearer to it",
-    ),
-    kernel.UNPROVED: (
-        "friction-not-unique",
-        "the solution may not be unique: 1 N of friction causes nearly 1 N of further friction, or more",
-        "use smaller coefficients or radii, longer guides, or a constant friction torque or force in one of the joints",
-    ),
-}
-
-
-def make_jamming_problem(mechanism: Mechanism, status: int, row: int, t: float) -> Problem:
-    """Make the problem from the status that the kernel found for a row of its table of loads."""
-    load = next(load for load, rows in mechanism.iter_load_rows() if row in range(rows.start, rows.stop))
-    code, reason, hint = JAMMING_MESSAGES[status]
-    if isinstance(load, ThreadLoad):
-        hint = (
-            "drive the spindle or add inertia to it, such as its motor's; use a smaller coefficient, or a steeper lead"
-        )
-        reason = reason.replace("the joint jams", "it jams")
-        return Problem(code, f"at t = {t:.9g} s friction in the thread couplings.{load.name}: {reason}", hint=hint)
-    assert isinstance(load, JointLoad), load
-    joint = mechanism.joints[load.joint].name
-    return Problem(code, f"at t = {t:.9g} s friction forces.{load.name} in joints.{joint}: {reason}", hint=hint)

@@ -19,11 +19,12 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.contacts.touching import find_free_response, unit_load
+from heuncli.motion.integration.contacts.touching import find_free_response, make_unit_load
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.multibody.response import solve_impulses
-from heuncli.multibody.tree.layout import Contact
+from heuncli.multibody.tree.layout import Contact, Layout
 from heuncli.results.results import Array, Mask
+from heuncli.scene.shapes.rotations import quaternion_from_vector, quaternion_product
 
 SEED = 58  # fixed: the same scene gives the same verdicts
 SAMPLES = 8  # poses and instants at which the transmissions must be those of the present pose
@@ -133,7 +134,7 @@ def measure_response(
     contacts: of the places; open_states: contact states in which no friction sticks; opened: the results with these
     """
     layout, rows = evaluator.layout, [contact.row for contact in contacts]
-    units = np.array([unit_load(layout, opened, contact, 1.0) for contact in contacts])
+    units = np.array([make_unit_load(layout, opened, contact, 1.0) for contact in contacts])
     units = units.reshape(len(contacts), len(layout.place), 6)
     jumps = np.zeros((len(units), len(layout.freedoms) + len(layout.rows)))
     evaluator.workspace.hold(layout.closed_contacts(open_states))
@@ -180,7 +181,7 @@ def has_fixed_transmissions(
     open_states: Array,
     opened: Evaluation,
     groups: Sequence[FrictionGroup],
-    last: float,
+    end_time: float,
 ) -> bool:
     """Return whether the transmissions within groups stay what they are while these stick, whatever else moves.
 
@@ -188,15 +189,11 @@ def has_fixed_transmissions(
 
     sticking_states, open_states: contact states in which the groups stick, and in which no friction does
     opened: the results at the state with the latter
-    last: the end of the run [s]
+    end_time: of the run [s]
     """
     layout, t = evaluator.layout, float(opened.times[0])
-    rng = np.random.default_rng(SEED)
-    states = np.repeat(opened.states, SAMPLES, axis=0)
-    for freedom in layout.freedoms:
-        if freedom.q >= 0:
-            states[:, freedom.q] += DISPLACEMENT * rng.uniform(-1.0, 1.0, SAMPLES) / layout.weights[freedom.u]
-    times = np.linspace(t, max(t, last), SAMPLES + 1)[1:] if layout.has_laws else np.full(SAMPLES, t)
+    states = displace_freedoms(layout, opened.states[0])
+    times = np.linspace(t, max(t, end_time), SAMPLES + 1)[1:] if layout.has_laws else np.full(SAMPLES, t)
     poses = evaluator.evaluate(times, states, holding=sticking_states)
     if not (poses.gap <= tolerances.OPEN_GAP * layout.size).all():
         return False
@@ -211,6 +208,20 @@ def has_fixed_transmissions(
                 if change > tolerances.DEPENDENT_SHARES * abs(transmission):
                     return False
     return True
+
+
+def displace_freedoms(layout: Layout, state: Array) -> Array:
+    """Return states (SAMPLES, n) displaced at random along all scalar freedoms and turned in all balls."""
+    rng = np.random.default_rng(SEED)
+    states = np.repeat(state[None, :], SAMPLES, axis=0)
+    for freedom in layout.freedoms:
+        if freedom.q >= 0:
+            states[:, freedom.q] += DISPLACEMENT * rng.uniform(-1.0, 1.0, SAMPLES) / layout.weights[freedom.u]
+    for place in layout.bodies["attitude_at"][layout.bodies["ball"] == 1].tolist():
+        attitudes = slice(place, place + 4)
+        turns = quaternion_from_vector(DISPLACEMENT * rng.uniform(-1.0, 1.0, (SAMPLES, 3)))
+        states[:, attitudes] = quaternion_product(turns, states[:, attitudes])
+    return states
 
 
 def list_group_numbers(groups: Sequence[FrictionGroup], contacts: Sequence[int]) -> Array:

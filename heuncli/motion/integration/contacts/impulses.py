@@ -32,6 +32,7 @@ from heuncli.scene.expressions.programs import Expression
 from heuncli.scene.shapes.rotations import cross_rows
 
 DRIVES = "drives"  # the cause besides the given impulses
+SINGLE_INSTANT = 0.0  # end of the run [s] where there is none
 
 
 @record
@@ -51,7 +52,7 @@ class GivenImpulse:
     @property
     def written_time(self) -> float:
         """Of the instants that rounding does not separate, the one with the shortest decimal form, which a user
-        means.
+        means: 0.3, not 0.30000000000000004.
         """
         double_count = (
             int(np.diff(np.array([self.before_time, self.after_time]).view(np.int64))[0])
@@ -69,7 +70,9 @@ class GivenImpulse:
 
     def merge(self, other: GivenImpulse) -> GivenImpulse:
         """Merge with another one, which begins at the same time or later."""
-        drives = {**self.drives, **other.drives}
+        drives = dict(self.drives)
+        for owner, (before, after) in other.drives.items():  # of two jumps of one drive: from before the first
+            drives[owner] = (self.drives[owner][0] if owner in self.drives else before, after)
         return GivenImpulse(
             self.before_time, max(self.after_time, other.after_time), (*self.numbers, *other.numbers), drives
         )
@@ -139,7 +142,8 @@ def schedule_impulses(mechanism: Mechanism, last: float) -> list[GivenImpulse]:
         for before, after, first, then in find_rate_jumps(law.value, last)
     ]
     for i, impulse in enumerate(mechanism.impulses):
-        if impulse.when is None:  # else it acts where its condition becomes true (run/triggers.py)
+        # without a time it acts where its condition becomes true (run/triggers.py)
+        if impulse.when is None and impulse.time <= last:
             before = just_before(impulse.time) if impulse.time > 0.0 else 0.0
             given.append(GivenImpulse(before, impulse.time, (i,), {}))
     merged: list[GivenImpulse] = []
@@ -201,7 +205,7 @@ def solve_impulse(evaluator: Evaluator, given_impulse: GivenImpulse, state: Arra
         np.array(sides.loads),
         np.array(sides.jumps),
     )
-    after_state, work = state_after(evaluator.layout, given_impulse, sides, solution.columns)
+    after_state, work = find_state_after(evaluator.layout, given_impulse, sides, solution.columns)
     loaded_contacts = select_loaded(list_bilateral_contacts(evaluator.layout), solution.columns.multipliers)
     shared = find_shared_impulses(
         loaded_contacts,
@@ -214,7 +218,7 @@ def solve_impulse(evaluator: Evaluator, given_impulse: GivenImpulse, state: Arra
     return make_impulse_event(evaluator, given_impulse, sides, impulse_result)
 
 
-def state_after(
+def find_state_after(
     layout: Layout, given_impulse: GivenImpulse, sides: RightSides, columns: Columns
 ) -> tuple[Array, float]:
     """Return the state after columns of jumps, and the work of what is given [J]."""
@@ -365,7 +369,7 @@ def compute_kinetic_energy(layout: Layout, bodies: Table) -> float:
     return energy
 
 
-def free_impulse_energy(layout: Layout, impulses: Sequence[BodyImpulse]) -> float:
+def compute_free_impulse_energy(layout: Layout, impulses: Sequence[BodyImpulse]) -> float:
     """Return the energy [J] that given impulses would give to their bodies' mass if no joint held them."""
     energy = 0.0
     for impulse in impulses:

@@ -19,7 +19,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.motion.integration.conditions import Conditions, read_coordinates
 from heuncli.motion.integration.contacts.impulses import RightSides
-from heuncli.motion.integration.contacts.touching import TouchingContacts, find_gap_term_size, unit_load
+from heuncli.motion.integration.contacts.touching import TouchingContacts, find_gap_term_size, make_unit_load
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Stop
 from heuncli.multibody.tree.layout import Contact, Layout
@@ -62,9 +62,9 @@ class LatchCatch:
 class Latches:
     """The latches of a run: which hold, and how often each has caught. Changes with every event."""
 
-    def __init__(self, layout: Layout, last: float) -> None:
-        """last: the end of the run [s]."""
-        self.layout, self.last = layout, last
+    def __init__(self, layout: Layout, end_time: float) -> None:
+        """end_time: of the run [s]."""
+        self.layout, self.end_time = layout, end_time
         named = {stop.name: stop for stop in layout.mechanism.stops}
         self.stops: dict[int, Stop] = {i: named[layout.contacts[i].name] for i in layout.latches}
         # the coordinate of each limit and latch
@@ -124,7 +124,7 @@ class Latches:
                 or self.is_held(i)
             ):
                 continue
-            rate, noise = measure_coordinate_rate(self.layout, evaluation, self.layout.contacts[i], self.last)
+            rate, noise = measure_coordinate_rate(self.layout, evaluation, self.layout.contacts[i], self.end_time)
             place = self.find_catch_value(
                 i, stop, evaluation, contacts_touching, latch_conditions.is_value_passed[n], abs(rate) <= noise
             )
@@ -139,7 +139,7 @@ class Latches:
         """Return whether a latch holds the coordinate of a contact."""
         return self.coordinates.get(i) in {self.coordinates[k] for k in self.held_values}
 
-    def find_free(self, contacts_touching: TouchingContacts) -> Mask:
+    def find_unheld_contacts(self, contacts_touching: TouchingContacts) -> Mask:
         """Return which of the touching contacts no latch holds at their limit, (k,)."""
         return np.array([not self.is_held(i) for i in contacts_touching.indices.tolist()], dtype=bool)
 
@@ -170,16 +170,16 @@ class Latches:
 
 
 def measure_coordinate_rate(
-    layout: Layout, evaluation: Evaluation, contact: Contact, last: float
+    layout: Layout, evaluation: Evaluation, contact: Contact, end_time: float
 ) -> tuple[float, float]:
-    """Return the rate of the coordinate that a latch holds, and its rounding error in a run up to `last`."""
+    """Return the rate of the coordinate that a latch holds, and its rounding error in a run up to `end_time`."""
     bodies = evaluation.bodies[0]
-    unit_loads = unit_load(layout, evaluation, contact, multiplier=1.0)
+    unit_loads = make_unit_load(layout, evaluation, contact, multiplier=1.0)
     rate = float(np.sum(unit_loads[:, :3] * bodies["omega"]) + np.sum(unit_loads[:, 3:] * bodies["v"]))
     sizes = np.linalg.norm(unit_loads[:, :3], axis=1) @ np.linalg.norm(bodies["omega"], axis=1)
     sizes += np.linalg.norm(unit_loads[:, 3:], axis=1) @ np.linalg.norm(bodies["v"], axis=1)
     reach = tolerances.KERNEL["touching"] * find_gap_term_size(layout, bodies, contact)
-    return rate, max(tolerances.CONTACT_RATE * float(sizes), reach / (last or 1.0))
+    return rate, max(tolerances.CONTACT_RATE * float(sizes), reach / (end_time or 1.0))
 
 
 def add_catches(layout: Layout, sides: RightSides, catches: Sequence[LatchCatch]) -> RightSides:

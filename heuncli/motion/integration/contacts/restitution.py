@@ -174,7 +174,9 @@ def solve_contact_impulses(
                 is_plastic[group],
             )
         except EndlessImpacts as endless:
-            raise EndlessImpacts(group[endless.contacts], int(group[endless.most_struck])) from None
+            raise EndlessImpacts(
+                group[endless.contacts], int(group[endless.most_struck]), endless.repetitions
+            ) from None
         for name, values in fields(part).items():
             getattr(result, name)[group] = values
     return result
@@ -188,11 +190,13 @@ def solve_simultaneous(
     total, count = np.zeros(len(v)), np.zeros(len(v), dtype=int)
     depends = np.zeros(len(v), dtype=bool)
     noise, rounds = contacts_touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates), 0
-    while rounds < 2 * MAX_ROUNDS:
+    while True:
         is_struck = v < -noise
         if not (is_struck.any() or (v + added_rates < -noise).any()):
             v = v + added_rates  # e.g. impulses that lift resting contacts
             break
+        if rounds == 2 * MAX_ROUNDS:
+            raise EndlessImpacts(np.flatnonzero(count), int(np.argmax(count)), rounds)
         e = np.where(is_plastic | (rounds >= MAX_ROUNDS), 0.0, contacts_touching.restitution)
         candidates = np.flatnonzero((v <= noise) & moves)
         solution = solve_round(A, v, added_rates, candidates, np.where(is_struck, e, 0.0), noise)
@@ -235,6 +239,9 @@ def solve_sequence(
 def bring_plastic_to_rest(A: Array, total: Array, v: Array, moves: Mask, is_plastic: Mask) -> tuple[Array, Array]:
     """Return impulses and rates in which plastic contacts that would still open by less than is seen are brought to
     rest.
+
+    What this takes from an impulse is as small as those unseen rates. So the impulse of a contact that bore nothing, or
+    hardly more, may become negative: it stands for the force of the contact's load during the flight that is left out.
     """
     if (is_plastic & (v > 0.0)).any():
         contacts = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | is_plastic & (v > 0.0))

@@ -24,11 +24,14 @@ from heuncli.base.records import record
 from heuncli.motion.integration.contacts.complementarity import is_coupled
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.results.results import Array, Indices, Mask
+from heuncli.scene.file_format.models import SIMULTANEOUS, ImpactModel
 
 MAX_IMPACTS = 20_000  # of one group at one instant: reached by a ball between a wall and a mass 4e7 times its own
 UNSOLVED_FRACTION = 0.1  # fraction of a rate's rounding that may remain where contacts are solved together
 MAX_PLASTIC_IMPACTS = 200  # consecutive plastic impacts without a flight, after which their limit is solved
 
+# Solves the impulses of contacts that close together, from: rates of opening (k,), indices of the n contacts, their
+# restitution (n,) and rounding (n,). Returns their impulses (n,), and which depend on others (n,).
 Solver = Callable[[Array, Indices, Array, Array], tuple[Array, Mask]]
 
 
@@ -37,10 +40,11 @@ class EndlessImpacts(Exception):
 
     contacts: which of the contacts take part
     most_struck: the one that is struck most often
+    repetitions: after how many it was given up
     """
 
-    def __init__(self, contacts: Indices, most_struck: int) -> None:
-        self.contacts, self.most_struck = contacts, most_struck
+    def __init__(self, contacts: Indices, most_struck: int, repetitions: int) -> None:
+        self.contacts, self.most_struck, self.repetitions = contacts, most_struck, repetitions
 
 
 @record
@@ -157,8 +161,7 @@ def strike_in_sequence(
     start (k,): rates of opening after the given impulses
     noise (k,): rounding error of these rates
     moves (k,): whether an impulse moves anything
-    solve_impulses: function of the rates, the indices of contacts that close together, their restitution and noise;
-    returns their impulses, and which of them depend on others
+    solve_impulses: solves contacts that close together (`Solver`)
 
     Raises EndlessImpacts.
     """
@@ -199,7 +202,7 @@ def strike_in_sequence(
             for i in struck_contacts:
                 contact_rates.strike_alone(i, e[i])
         count[struck_contacts] += 1
-    raise EndlessImpacts(np.flatnonzero(count), int(np.argmax(count)))
+    raise EndlessImpacts(np.flatnonzero(count), int(np.argmax(count)), MAX_IMPACTS)
 
 
 def find_independent(A: Array) -> Indices:
@@ -217,10 +220,12 @@ def find_independent(A: Array) -> Indices:
     return np.array(sorted(selected), dtype=int)
 
 
-def make_endless_impacts_error(t: float, names: list[str], name: str) -> SolveError:
-    """Make the error of endless impacts among the named contacts; name: of the one that is struck most often."""
+def make_endless_impacts_error(t: float, names: list[str], endless: EndlessImpacts, impacts: ImpactModel) -> SolveError:
+    """Make the error of endless impacts; names (k,): of all touching contacts."""
+    struck_names = dict.fromkeys(names[k] for k in endless.contacts.tolist())
     message = (
-        f"at t = {t:.9g} s the impacts of {', '.join(dict.fromkeys(names))} do not end after {MAX_IMPACTS} repetitions"
+        f"at t = {t:.9g} s the impacts of {', '.join(struck_names)} do not end after {endless.repetitions} repetitions"
     )
-    hint = "use restitution below 1 for contacts without clearance, or analysis: {impacts: simultaneous}"
-    return SolveError(Problem("endless-impacts", message, hint=hint, entry_path=name))
+    other = "simultaneous" if impacts != SIMULTANEOUS else "sequential"
+    hint = f"use restitution below 1 for contacts without clearance, or analysis: {{impacts: {other}}}"
+    return SolveError(Problem("endless-impacts", message, hint=hint, entry_path=names[endless.most_struck]))

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.records import record, replace
+from heuncli.base.records import record
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS, ImpactModel
@@ -86,11 +86,11 @@ def find_shared_impulses(
     is_coupled (n, n): whether the impulse of one changes the rate of the other, as far as both can open
     multipliers (n_c, rows): of the columns of the impulse, which show the causes that act on held contacts
     """
-    group = list(range(len(contacts)))
+    group_numbers = list(range(len(contacts)))
 
     def join_groups(i: int, k: int) -> None:
-        old, new = group[i], group[k]
-        group[:] = [new if loaded_indices == old else loaded_indices for loaded_indices in group]
+        old, new = group_numbers[i], group_numbers[k]
+        group_numbers[:] = [new if group_number == old else group_number for group_number in group_numbers]
 
     for i, k in zip(*np.nonzero(is_coupled), strict=True):
         join_groups(int(i), int(k))
@@ -104,8 +104,8 @@ def find_shared_impulses(
         for i in loaded_indices[1:]:
             join_groups(i, loaded_indices[0])
     parts = (
-        [c for c, loaded_indices in zip(contacts, group, strict=True) if loaded_indices == number]
-        for number in dict.fromkeys(group)
+        [c for c, group_number in zip(contacts, group_numbers, strict=True) if group_number == number]
+        for number in dict.fromkeys(group_numbers)
     )
     return [make_shared_impulse(part) for part in parts if len(part) > 1]
 
@@ -128,7 +128,7 @@ def format_sharing(impulses: Sequence[tuple[float, Sequence[SharedImpulse]]], im
     count: dict[tuple[object, ...], int] = {}
     for time, groups in impulses:
         for shared in groups:
-            key = replace(shared, impacts=0).names, shared.bilateral_names, shared.resting_names
+            key = shared.names, shared.bilateral_names, shared.resting_names
             first.setdefault(key, (time, shared))
             count[key] = count.get(key, 0) + 1
     return [format_sharing_sentence(time, shared, count[key], impacts) for key, (time, shared) in first.items()]

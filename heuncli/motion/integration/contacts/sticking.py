@@ -16,7 +16,7 @@ How a friction comes here, from the scene's text to the kernel and back:
     6. Layout.friction_contacts  multibody/tree/layout.py: which contacts those are; `open_contacts`: the states
     7. FrictionStates.decide     here, at each event: the states
     8. set_friction_mode         kernel/sticking.py: closes the row, or gives the load its sign
-    9. friction_margin           kernel/sticking.py: followed in each step, it causes the next event
+    9. measure_friction_margin   kernel/sticking.py: followed in each step, it causes the next event
 
 With given sizes, static ones equal to kinetic, the accelerations are those of a convex problem and unique (Moreau 1988;
 Brogliato, Nonsmooth Mechanics (2016), 5.5): then the first agreeing choice is the one.
@@ -55,8 +55,8 @@ class FrictionStates:
     groups: those of several places that stick as one
     """
 
-    def __init__(self, evaluator: Evaluator, last: float) -> None:
-        self.evaluator, self.layout, self.last = evaluator, evaluator.layout, last
+    def __init__(self, evaluator: Evaluator, end_time: float) -> None:
+        self.evaluator, self.layout, self.end_time = evaluator, evaluator.layout, end_time
         self.places = FrictionPlaces(evaluator)
         self.sticks = np.zeros(len(self.places.indices), dtype=bool)
         self.coordinate_or_sign = np.zeros(len(self.places.indices))
@@ -88,7 +88,7 @@ class FrictionStates:
         chosen_states = search.with_choice(choice)
         self.groups = search.list_sticking(choice)
         if self.groups and not has_fixed_transmissions(
-            self.evaluator, places.contacts, chosen_states, released, opened, self.groups, self.last
+            self.evaluator, places.contacts, chosen_states, released, opened, self.groups, self.end_time
         ):
             raise search.indeterminate_error(choice)
         self.sticks = np.array(chosen_states[places.indices] > 0.0, dtype=bool)
@@ -151,7 +151,7 @@ class FrictionStates:
         to the rounding of an instant.
         """
         measured = [
-            measure_coordinate_rate(self.layout, opened, contact, self.last) for contact in self.places.contacts
+            measure_coordinate_rate(self.layout, opened, contact, self.end_time) for contact in self.places.contacts
         ]
         rate, noise = np.array(measured).reshape(-1, 2).T
         rested = stuck | (np.array(self.places.rows) == row) | (np.abs(rate) <= noise)

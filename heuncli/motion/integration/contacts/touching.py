@@ -16,6 +16,8 @@ from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 
+ON_SHEAVE = (kernel.ARC, kernel.WOUND)  # the parts of a rope on its sheaves, which load nothing
+
 
 @record
 class TouchingContacts:
@@ -62,7 +64,7 @@ def find_touching(
         if is_closed[i] or contact.row == event_row or gap <= tolerance:
             numbers.append(i)
     contacts = [layout.contacts[i] for i in numbers]
-    loads = np.array([unit_load(layout, evaluation, contact, -contact.sense) for contact in contacts])
+    loads = np.array([make_unit_load(layout, evaluation, contact, -contact.sense) for contact in contacts])
     loads = loads.reshape(len(contacts), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
     terms = np.array([find_gap_term_size(layout, bodies, contact) for contact in contacts])
@@ -104,9 +106,6 @@ def find_gap_term_size(layout: Layout, bodies: Table, contact: Contact) -> float
     return extent / float(row["weight"]) + abs(float(row["length"]))
 
 
-ON_SHEAVE = (kernel.ARC, kernel.WOUND)  # the parts of a rope on its sheaves, which load nothing
-
-
 def find_conditions(layout: Layout, row: int) -> Table:
     """Return the conditions between two bodies that a closure row is the sum of; the row itself if it is no sum."""
     closure = layout.tables["closures"][row]
@@ -121,12 +120,16 @@ def world_point(bodies: Table, row: Table) -> Array:
     return q if row["b"] < 0 else bodies["r"][row["b"]] + bodies["R"][row["b"]] @ q
 
 
-def unit_load(layout: Layout, evaluation: Evaluation, contact: Contact, multiplier: float) -> Array:
-    """Return the load on the bodies of a contact with a given multiplier, (n_b, 6)."""
+def make_unit_load(layout: Layout, evaluation: Evaluation, contact: Contact, multiplier: float) -> Array:
+    """Return the load on the bodies of a contact with a given multiplier, (n_b, 6).
+
+    Moments are about the joint points; the last three are the forces.
+    """
     bodies, closure = evaluation.bodies[0], layout.tables["closures"][contact.row]
     load = np.zeros((len(bodies), 6))
     for k, row in enumerate(find_conditions(layout, contact.row), int(closure["part"])):
         if closure["kind"] == kernel.SUM:
+            # f and m of a part contain its factor in the sum
             Q, f, m = (evaluation.parts[name][0, k] for name in ("Q", "f", "m"))
         else:
             Q, f, m = (

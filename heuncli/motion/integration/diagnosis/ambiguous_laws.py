@@ -21,7 +21,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.contacts.contact_problem import make_jamming_problem
+from heuncli.motion.integration.contacts.friction_problems import make_jamming_problem
 from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import IntegratedScene

@@ -13,7 +13,13 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
-from heuncli.motion.integration.contacts.impulses import GivenImpulse, ImpulseEvent, schedule_impulses, solve_impulse
+from heuncli.motion.integration.contacts.impulses import (
+    SINGLE_INSTANT,
+    GivenImpulse,
+    ImpulseEvent,
+    schedule_impulses,
+    solve_impulse,
+)
 from heuncli.motion.integration.contacts.shared_impulses import format_sharing
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.integrated_scene import Segment
@@ -157,9 +163,9 @@ class SingleInstant:
 
 def solve_single_instant(evaluator: Evaluator, state: Array, t: float) -> SingleInstant:
     """Solve the impulse at the only instant of a scene: the given one, and that of its contacts."""
-    contacts = make_contacts(evaluator, t)
+    contacts = make_contacts(evaluator, SINGLE_INSTANT)
     given_impulses = [
-        given_impulse for given_impulse in schedule_impulses(evaluator.layout.mechanism, 0.0) if t == 0.0
+        given_impulse for given_impulse in schedule_impulses(evaluator.layout.mechanism, SINGLE_INSTANT) if t == 0.0
     ][:1]
     if not given_impulses and contacts is not None:
         given_impulses = [GivenImpulse(t, t, (), {})]
