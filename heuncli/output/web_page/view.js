@@ -20,7 +20,8 @@ function nearestAxis(v) {
 
 /** Find the side on which most supports stand: 1 that of the plane's normal, -1 the other, 0 neither. */
 function findSide(scene, normal) {
-  const places = [...scene.ground.map((point) => point.at), ...scene.joints.filter((j) => j.a < 0).map((j) => j.p)];
+  const supports = scene.joints.flatMap(({ a, p, b, q }) => [...(a < 0 ? [p] : []), ...(b < 0 ? [q] : [])]);
+  const places = [...scene.ground.map((point) => point.at), ...supports];
   const off = places.reduce((sum, at) => sum + dot(at, normal), 0) / (places.length || 1) - dot(scene.center, normal);
   return places.length > 0 && Math.abs(off) > MIN_OFFSET * scene.radius ? Math.sign(off) : 0;
 }
