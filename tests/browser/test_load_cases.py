@@ -18,6 +18,9 @@ Pages = Callable[..., Path]
 GOVERNING = "[...document.querySelectorAll('#governing button')].map(e => e.textContent)"
 INSTANT = "document.querySelector('#instant').textContent"
 SHOWN = "document.querySelector('#case').selectedOptions[0].textContent"
+MOVE_CUT = """(cut => (cut.value = "3", cut.dispatchEvent(new Event("input", {bubbles: true}))))(
+  document.querySelector("#cut"))"""
+CUT_PLACE = "document.querySelector('#place').textContent"
 KEPT = "['path', 'bodies', 'load', 'cut', 'speed'].map(id => document.getElementById(id).value)"
 
 
@@ -44,10 +47,15 @@ def test_another_load_case_is_shown_without_loading_the_page(browser: Chromium, 
         choose(tab, "path", "main, force")
         choose(tab, "bodies", "wireframe")
         choose(tab, "load", "N")
+        tab.evaluate(MOVE_CUT)
+        tab.drawn()
         seen, kept = tab.seen("#machine").png, tab.evaluate(KEPT)
+        cut_place = tab.evaluate(CUT_PLACE)
+        assert kept[3] == "3"
         choose(tab, "case", "overspeed")
         tab.drawn()
         assert tab.evaluate("window.isHere") and tab.evaluate(KEPT) == kept
+        assert tab.evaluate(CUT_PLACE) == cut_place
         assert "overspeed" in tab.evaluate("document.title")
         assert tab.evaluate(SUMMARY) != first and tab.seen("#machine").png != seen
         angle = [float(re.search(r"([\d.]+)°", text)[1]) for text in (place, tab.evaluate(INSTANT))]  # type: ignore[index]
@@ -118,3 +126,23 @@ def test_what_is_of_load_cases_shows_where_there_are_some(browser: Chromium, pag
         with browser.open(path) as tab:
             assert controls_of_cases(tab) == wanted
             assert tab.faults == []
+
+
+@pytest.mark.parametrize(
+    ("address", "case", "frame"),
+    [("case=-1", 0, None), ("case=0.5&frame=1.5", 1, 2), ("case=99&frame=-3", -1, 0)],
+)
+def test_an_address_names_a_case_and_frame_that_exist(
+    address: str, case: int, frame: int | None, browser: Chromium, page: Pages
+) -> None:
+    tab = browser.tab()
+    tab.go(page(find_spec("v_engine"), "--case", "all").resolve().as_uri() + f"#{address}")
+    tab.drawn()
+    chosen, count = tab.evaluate(
+        "[Number(document.querySelector('#case').value), document.querySelector('#case').length]"
+    )
+    assert chosen == case % count
+    assert frame is None or tab.evaluate(FRAME) == frame
+    assert tab.evaluate("document.querySelector('#instant').dataset.value") != "undefined"
+    assert tab.faults == []
+    browser.send("Target.closeTarget", targetId=tab.target)

@@ -21,6 +21,7 @@ TOO_WIDE = """[...document.querySelectorAll("#numbers td, #numbers th")]
   .filter(e => e.scrollWidth > e.clientWidth && !e.querySelector(".hidden")).map(e => e.textContent)"""
 LONGEST = """document.querySelectorAll("#numbers td[data-path], #numbers td.unit").forEach(
   e => { e.textContent = e.className ? "kN\\u00b7mm\\u00b7s" : "\\u22121.234e\\u221212"; })"""
+ROLLER = SPECS.parent / "tests/closed_forms/elements/roller.yaml"  # a joint `curve`, whose path is on the ground
 KEEP_FRAMES = f"""(window.seen = [],
   new MutationObserver(() => seen.push({FRAME})).observe(document.documentElement, {{attributes: true}}))"""
 OPERATED = {"button", "checkbox", "combobox", "slider", "application", "DisclosureTriangle", "region"}
@@ -221,6 +222,17 @@ def test_arrows_are_drawn_or_not_and_grow(browser: Chromium, double: Path) -> No
         assert tab.seen("#machine").png != arrows.png
         choose(tab, "reactions", "none")
         assert tab.seen("#machine").marked < arrows.marked
+
+
+@pytest.mark.parametrize("spec", [SPECS / "double.yaml", ROLLER], ids=["ball", "curve"])
+def test_paths_of_joints_are_drawn(spec: Path, browser: Chromium, page: Pages) -> None:
+    with browser.open(page(spec)) as tab:
+        without = tab.seen("#machine")
+        tab.click("#paths")
+        assert tab.seen("#machine").png != without.png
+        shown = tab.evaluate(FRAME)
+        to_frame(tab, shown - 5 if shown > 5 else shown + 5)
+        assert tab.faults == []
 
 
 def test_one_instant_has_nothing_to_play(browser: Chromium, page: Pages) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.base.joint_kinds import TYPES
 from heuncli.output.web_page.moving_page import bundle_scripts, sort_scripts
 from heuncli.study.quantities.digits import Style
 
@@ -168,3 +169,44 @@ def test_the_envelope_holds_every_curve_and_reaches_no_farther() -> None:
     smallest = [y.min() for _, y in curves]
     assert (worst, best) == (int(np.argmax(greatest)), int(np.argmin(smallest)))
     assert (most, least) == pytest.approx((max(greatest), min(smallest)))
+
+
+def test_a_section_load_that_is_open_is_shown_as_open() -> None:
+    code = """
+      const base = { style: [3, false, 0, true], size: 1, unit: "N" };
+      const [a, b, c, d] = given.map((rows) => rows.map((value) => value ?? NaN));
+      const loads = [a, b, c, d].map((values, k) => ({ ...base, label: k < 2 ? "N" : "M1", caption: `c${k}`, path: "p",
+        values: Float64Array.from(values) }));
+      return loads.map((load) => {
+        const section = { cuts: [0, 1], loads: [load] };
+        const [{ at, frame, value, size }] = summary_js.makeSectionEntries(section, 2);
+        return [digits_js.formatNumber(at(0), load.style), digits_js.formatNumber(at(1), load.style), frame,
+          digits_js.formatNumber(value, load.style), size];
+      });
+    """
+    given = [[None, None, None, None], [None, None, 1, -2], [None, 3, 0, 0], [None, None, 0, 0]]
+    assert run(code, given) == [
+        ["open", "open", 0, "open", 0],
+        ["open", "−2.000", 1, "−2.000", 2],
+        ["3.000", "0", 0, "3.000", 3],
+        ["open", "0", 1, "0", 0],
+    ]
+
+
+def test_an_unbounded_value_leaves_the_other_arrows_their_length() -> None:
+    code = """
+      const parts = [[1, Infinity, NaN, -4], [0, 0, 0, 3], [0, 0, 0, 0]].map((values) => ({ values }));
+      return [arrow_choices_js.getLargest({ parts }), arrow_choices_js.getLargest({ parts: parts.slice(0, 1) })];
+    """
+    assert run(code, None) == [5, 4]  # of a vector, and of a drive, which has one component
+
+
+@pytest.mark.parametrize(("a", "b"), [(-1, 0), (0, -1)])
+def test_the_ground_may_be_either_end_of_a_support(a: int, b: int) -> None:
+    joint = {"a": a, "b": b, "p": [0, 0, 5] if a < 0 else [0, 0, 0], "q": [0, 0, 5] if b < 0 else [0, 0, 0]}
+    scene = SCENE | {"gravity": [0, -9.81, 0], "normal": [0, 0, 1], "joints": [joint]}
+    assert run("return new view_js.View(given).side;", scene) == 1
+
+
+def test_every_kind_of_joint_has_a_symbol() -> None:
+    assert set(run("return symbols_js.DRAWN_KINDS;", None)) == set(TYPES)

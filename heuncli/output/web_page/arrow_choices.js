@@ -4,6 +4,8 @@ import { rotateDirection, locatePoint } from "./poses.js";
 import { norm, scale, normalize } from "./vectors.js";
 
 const MIN_LEVER = 0.003; // of the scene's radius: "all loads" leaves out moments below the largest force times this
+/** @type {WeakMap<object, number>} the largest magnitude of each row */
+const largestSizes = new WeakMap();
 
 /**
  * @typedef {object} Arrow one force or moment over the frames
@@ -18,16 +20,20 @@ export function readVector(row, frame) {
   return row.parts.map((part) => part.values[row.fixed ? 0 : frame]);
 }
 
-/** The largest magnitude of a vector over the run, without open values; computed once. @param {object} row */
+/** Get the largest magnitude of a vector over the run, without open and unbounded values. @param {object} row */
 export function getLargest(row) {
-  if (row.largest === undefined) {
-    row.largest = 0;
-    for (let k = 0; k < row.parts[0].values.length; k += 1) {
-      const size = norm(row.parts.map((part) => part.values[k]));
-      if (size > row.largest) row.largest = size;
-    }
+  if (!largestSizes.has(row)) largestSizes.set(row, findLargest(row));
+  return largestSizes.get(row);
+}
+
+function findLargest(row) {
+  let largest = 0;
+  for (let k = 0; k < row.parts[0].values.length; k += 1) {
+    const components = row.parts.map((part) => part.values[k]);
+    const size = components.length === 1 ? Math.abs(components[0]) : norm(components);
+    if (size > largest && size < Infinity) largest = size;
   }
-  return row.largest;
+  return largest;
 }
 
 /** Whether a row is a moment. @param {object} row */
@@ -38,7 +44,7 @@ export function isMoment(row) {
 /** Make a row of vectors that are stored one after the other. */
 function makeVectorRow(vectors, path, row) {
   const parts = [0, 1, 2].map((k) => ({ values: vectors.filter((_, i) => i % 3 === k) }));
-  return { ...row, path, parts, largest: undefined };
+  return { ...row, path, parts };
 }
 
 /** Make the function that reads the place of a moving point. @param {Float64Array} places */

@@ -41,7 +41,8 @@ export function drawArrows(pen, view, poses, options, colours, labels) {
     if (!start || ![...start].every(Number.isFinite)) continue;
     const [x, y] = view.project(start);
     if (![...vector].every(Number.isFinite)) {
-      if (values) labels.add(`${row.path} ${name}`, `${name} open`, x, y, colours.faint, 0.8, 10);
+      const text = formatNumber(norm(vector), row.style); // open or unbounded
+      if (values) labels.add(`${row.path} ${name}`, `${name} ${text}`, x, y, colours.faint, 0.8, 10);
       continue;
     }
     const metres = scales.get(isMoment(row));

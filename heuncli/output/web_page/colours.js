@@ -23,18 +23,21 @@ export function readColours() {
 }
 
 const made = new Map();
+/** @type {WeakMap<object, number[]>} the kinds of the bodies of each scene */
+const bodyKinds = new WeakMap();
 
-/** Get the number of each body's kind: bodies whose names differ in digits alone share a colour. Computed once. */
+/** Get the number of each body's kind: bodies whose names differ in digits alone share a colour. */
 export function getBodyKinds(scene) {
-  if (!scene.kinds) {
+  if (!bodyKinds.has(scene)) {
     const known = new Map();
-    scene.kinds = scene.bodies.map(({ name }) => {
+    const kinds = scene.bodies.map(({ name }) => {
       const kind = name.replace(/[\d_ .-]+/g, "") || name;
       if (!known.has(kind)) known.set(kind, known.size);
       return known.get(kind);
     });
+    bodyKinds.set(scene, kinds);
   }
-  return scene.kinds;
+  return bodyKinds.get(scene);
 }
 
 /**

@@ -158,7 +158,7 @@ export function listenToSections(selection, redraw) {
     loadSelect.disabled = !section;
     findElement("cutlabel").hidden = !section?.s;
     cutSlider.max = String((section?.cuts.length ?? 1) - 1);
-    cutSlider.value = String(section?.cutNumber ?? 0);
+    cutSlider.value = String(section ? selection.getCutNumber(section) : 0);
   };
   const findLoad = (label) => selection.section?.loads.find((load) => load.label === label) ?? null;
   sectionSelect.addEventListener("change", () => {
@@ -173,7 +173,7 @@ export function listenToSections(selection, redraw) {
     redraw();
   });
   cutSlider.addEventListener("input", () => {
-    selection.section.cutNumber = Number(cutSlider.value);
+    selection.cutNumbers.set(selection.section.name, Number(cutSlider.value));
     redraw();
   });
   if (selection.section) sectionSelect.value = String(sections.indexOf(selection.section));

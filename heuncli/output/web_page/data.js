@@ -68,7 +68,7 @@ class Columns {
   }
 
   /** Read floating-point numbers of 4 or 8 bytes. */
-  floats(offset, count, size) {
+  readFloats(offset, count, size) {
     const view = joinPlanes(this.bytes, offset, count, size);
     return Float64Array.from({ length: count }, (_, k) =>
       size === 8 ? view.getFloat64(8 * k, true) : view.getFloat32(4 * k, true),
@@ -76,10 +76,10 @@ class Columns {
   }
 
   /** Get the weights of an order for the instants stored at an offset; offset < 0: for equidistant numbers. */
-  weightsFor(instants, count, order) {
+  getWeights(instants, count, order) {
     const key = `${instants} ${count} ${order}`;
     if (!this.weights.has(key)) {
-      const times = instants < 0 ? Array.from({ length: count }, (_, k) => k) : this.floats(instants, count, 8);
+      const times = instants < 0 ? Array.from({ length: count }, (_, k) => k) : this.readFloats(instants, count, 8);
       this.weights.set(key, computeWeights(times, order));
     }
     return this.weights.get(key);
@@ -87,12 +87,12 @@ class Columns {
 
   /** Read a column: whole steps, each predicted from those before (see packing.py), or floating-point numbers. */
   read([offset, count, lag, order, step, across, instants]) {
-    if (step === 0) return this.floats(offset, count, order);
+    if (step === 0) return this.readFloats(offset, count, order);
     const result = readSteps(this.bytes, offset, count);
     for (let pass = 0; pass < across; pass += 1) {
       for (let k = 0; k < count; k += 1) if (k % lag) result[k] += result[k - 1];
     }
-    const weights = this.weightsFor(instants, count / lag, order);
+    const weights = this.getWeights(instants, count / lag, order);
     for (let k = lag; k < count; k += 1) {
       let predicted = 0;
       weights[Math.floor(k / lag)].forEach((weight, j) => (predicted += weight * result[k - (j + 1) * lag]));

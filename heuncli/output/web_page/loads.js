@@ -9,14 +9,17 @@ const HIGHEST = 0.28; // of the scene's radius: the largest load of the run
 /** The axis of the section along which a load is plotted, and the one along which it acts. */
 const DRAWN_ALONG = { Q2: "second", M1: "second", w2: "second", slope2: "second" };
 const ACTS_ALONG = { N: "normal", T: "normal", Q1: "first", M1: "first", Q2: "second", M2: "second" };
+/** @type {WeakMap<object, number>} the largest magnitude of each load */
+const largestSizes = new WeakMap();
 
-/** Find the largest magnitude of a load over the run and along the section; computed once. @param {object} load */
-function findLargest(load) {
-  if (load.largest === undefined) {
-    load.largest = 0;
-    for (const value of load.values) if (Math.abs(value) > load.largest) load.largest = Math.abs(value);
+/** Get the largest magnitude of a load over the run and along the section. @param {object} load */
+function getLargest(load) {
+  if (!largestSizes.has(load)) {
+    let largest = 0;
+    for (const value of load.values) if (Math.abs(value) > largest) largest = Math.abs(value);
+    largestSizes.set(load, largest);
   }
-  return load.largest;
+  return largestSizes.get(load);
 }
 
 /**
@@ -121,7 +124,7 @@ function labelLargest(pen, view, poses, section, load, frame, colours, off, labe
 export function drawLoad(pen, view, poses, options, colours, labels) {
   const { section, cut, size, values: hasLabels, frame } = options;
   const load = options.force;
-  const metres = findLargest(load) > 0 ? (HIGHEST * view.radius * size) / findLargest(load) : 0;
+  const metres = getLargest(load) > 0 ? (HIGHEST * view.radius * size) / getLargest(load) : 0;
   const at = locatePoint(poses, section.body, section.cuts[cut] ?? section.cuts[0]);
   const [x, y] = view.project(at);
   if (section.s) {
@@ -143,8 +146,8 @@ export function drawLoad(pen, view, poses, options, colours, labels) {
 
 /** Draw the scale of the diagram in the corner. @param {number} line its place, counted from below */
 export function drawLoadScale(pen, view, { force: load, size }, colours, line, labels) {
-  if (!(findLargest(load) > 0)) return;
-  const pixels = (HIGHEST * view.radius * size * view.scale) / findLargest(load) / load.size;
+  if (!(getLargest(load) > 0)) return;
+  const pixels = (HIGHEST * view.radius * size * view.scale) / getLargest(load) / load.size;
   const amount = roundBelow(90 / pixels);
   const [x, y] = [view.width - 14, view.height - 16 - 20 * line];
   const begin = x - amount * pixels;

@@ -45,7 +45,7 @@ function describeSigns(selection, data) {
   if (section && load) {
     const [unit, size] = data.length;
     parts.push(`Section ${section.name}: force of the far side on the near side of the cut; N > 0 is tension.`);
-    const s = section.s?.[section.cutNumber ?? 0];
+    const s = section.s?.[selection.getCutNumber(section)];
     findElement("place").textContent = s === undefined ? "" : `s = ${formatShort(s * size)} ${unit}`;
   }
   return parts.join(" ");
@@ -138,7 +138,7 @@ class ShownCase {
     this.view = new View(data.scene);
     if (previous.view) this.view.copyFrom(previous.view);
     this.selection = new Selection(data, previous.selection);
-    this.table = new NumberTable(findElement("numbers"), data);
+    this.table = new NumberTable(findElement("numbers"), data, this.selection);
     this.crank = this.selection.axes[1] ?? null;
     this.findEnvelope = makeEnvelopeFinder(runs);
     this.summary = new SummaryTable(findElement("summary"), data, this.crank, (frame, path) => {
@@ -225,9 +225,9 @@ function showCases(runs) {
     findElement("case").value = String(run);
     shown = new ShownCase(runs, run, Object.assign(previous, { frame }), change);
   };
-  const first = Math.min(readAddressNumber("case", 0), runs.length - 1);
+  const first = readAddressNumber("case", 0, runs.length);
   listenToCases(runs, first, (run) => change(run));
-  change(first, readAddressNumber("frame", runs[first].worst));
+  change(first, readAddressNumber("frame", runs[first].worst, runs[first].count));
 }
 
 if (typeof DecompressionStream === "undefined") findElement("old").hidden = false;

@@ -62,7 +62,7 @@ export class Painter {
    * @param {number[]} sides pieces of line: from right, down, to right, down, ... @param {string} line
    * @param {number} opacity how opaque the face is itself, 0 to 1
    */
-  face(near, points, fill, sides, line, opacity) {
+  addFace(near, points, fill, sides, line, opacity) {
     this.items.push({
       near,
       paint: (pen, opaque) => {
@@ -82,7 +82,7 @@ export class Painter {
   }
 
   /** Add a ball, lit from above left. @param {string[]} shades from dark to bright */
-  ball(near, x, y, radius, shades, line) {
+  addBall(near, x, y, radius, shades, line) {
     this.items.push({
       near,
       paint: (pen, opaque) => {
@@ -99,7 +99,7 @@ export class Painter {
   }
 
   /** Add a polyline. */
-  line(near, points, line, width) {
+  addLine(near, points, line, width) {
     this.items.push({
       near,
       paint: (pen) => {

@@ -6,6 +6,8 @@ import { makeRotationMatrix, add, rotate } from "./vectors.js";
 const MAX_TURN = 0.5; // rad between two frames: beyond it interpolation visibly distorts a mechanism, so it is left out
 const MAX_PATHS = 24; // joints whose paths are drawn
 const MIN_PATH = 1e-4; // of the scene's radius: a joint that moves less stands still
+/** @type {WeakMap<object, number[][][]>} the paths of the joints of each scene */
+const jointPaths = new WeakMap();
 
 /** @typedef {{place: number[], R: number[]}} Pose origin [m] and attitude; null: the ground */
 
@@ -71,9 +73,13 @@ export function rotateDirection(poses, body, direction) {
   return body < 0 ? direction : rotate(poses[body].R, direction);
 }
 
-/** The paths of the joints that move, world axes [m]: a point for each frame. Computed once. @returns {number[][][]} */
+/** Get the paths of the joints that move, world axes [m]: a point for each frame. @returns {number[][][]} */
 function getJointPaths({ scene, count }) {
-  if (scene.paths) return scene.paths;
+  if (!jointPaths.has(scene)) jointPaths.set(scene, computeJointPaths(scene, count));
+  return jointPaths.get(scene);
+}
+
+function computeJointPaths(scene, count) {
   const joints = scene.joints.filter((joint) => joint.a >= 0 || joint.b >= 0).slice(0, MAX_PATHS);
   const paths = joints.map(() => []);
   for (let frame = 0; frame < count; frame += 1) {
@@ -82,8 +88,7 @@ function getJointPaths({ scene, count }) {
   }
   const least = MIN_PATH * scene.radius;
   const isMoving = (path) => path.some((place) => place.some((c, i) => Math.abs(c - path[0][i]) > least));
-  scene.paths = paths.filter(isMoving);
-  return scene.paths;
+  return paths.filter(isMoving);
 }
 
 /** Draw the paths of the joints; they are drawn first, so that the machine stands before them. */

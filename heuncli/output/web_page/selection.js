@@ -38,6 +38,8 @@ export class Selection {
     const loaded = data.sections.filter((section) => section.loads.length);
     this.section = loaded.find((section) => section.s) ?? loaded[0] ?? null;
     this.load = null;
+    /** @type {Map<string, number>} the chosen cut of each section by its name, where it is not the first */
+    this.cutNumbers = new Map();
     this.hasEnvelope = true;
     if (previous) this.copyFrom(previous);
   }
@@ -49,12 +51,20 @@ export class Selection {
     const findSame = (list, other, key) => list.find((each) => each[key] === other?.[key]);
     this.choice = choice ? (findSame(this.choices, choice, "key") ?? this.choice) : null;
     this.section = findSame(this.data.sections, section, "name") ?? this.section;
-    if (this.section && section?.cutNumber < this.section.cuts.length) this.section.cutNumber = section.cutNumber;
+    for (const { name, cuts } of this.data.sections) {
+      const cutNumber = previous.cutNumbers.get(name);
+      if (cutNumber < cuts.length) this.cutNumbers.set(name, cutNumber);
+    }
     this.load = (this.section && findSame(this.section.loads, load, "label")) ?? null;
     this.axis = findSame(this.axes, axis, "label") ?? this.axis;
     this.curves = curves.filter((path) => this.histories.some((history) => history.path === path));
     const unit = this.shownHistories[0]?.unit; // a quantity may have another unit in this case
     this.curves = this.curves.filter((_, k) => this.shownHistories[k].unit === unit);
+  }
+
+  /** Get the number of the chosen cut of a section. @param {object} section */
+  getCutNumber(section) {
+    return this.cutNumbers.get(section.name) ?? 0;
   }
 
   /** The frame at the same angle or time as in another case. @param {{label: string, value: number}} [place] */
@@ -74,7 +84,7 @@ export class Selection {
   /** What `drawMachine` needs beside the frame. */
   get drawOptions() {
     const { names, values, paths, opacity, size, choice, section } = this;
-    const load = section && this.load ? { section, force: this.load, cut: section.cutNumber ?? 0 } : null;
+    const load = section && this.load ? { section, force: this.load, cut: this.getCutNumber(section) } : null;
     return { names, values, paths, opacity, size, choice, load };
   }
 

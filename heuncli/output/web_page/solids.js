@@ -4,6 +4,8 @@ import { SHADES, getBodyKinds, getTints } from "./colours.js";
 import { locatePoint } from "./poses.js";
 
 const MAX_SMOOTH = 0.8; // cosine of the angle between two faces below which the side between them is an edge
+/** @type {WeakMap<object, object[][]>} the sides of the faces of each surface */
+const sidesOfSurfaces = new WeakMap();
 
 /** Compute the unit normal of a face from all of its corners (Newell's method). */
 function computeFaceNormal(corners, face) {
@@ -20,16 +22,19 @@ function computeFaceNormal(corners, face) {
 }
 
 /**
- * Get the sides of each face: its corners, the face beyond (-1: none), whether it is an edge. Computed once.
+ * Get the sides of each face: its corners, the face beyond (-1: none), whether it is an edge.
  * @param {object} surface @returns {{i: number, j: number, beyond: number, edge: boolean}[][]}
  */
 function getSides(surface) {
-  if (surface.sides) return surface.sides;
-  const { corners, faces } = surface;
+  if (!sidesOfSurfaces.has(surface)) sidesOfSurfaces.set(surface, findSides(surface));
+  return sidesOfSurfaces.get(surface);
+}
+
+function findSides({ corners, faces }) {
   const known = new Map();
   const looks = faces.map((face) => computeFaceNormal(corners, face));
   const key = (i, j) => (i < j ? `${i},${j}` : `${j},${i}`);
-  surface.sides = faces.map((face, f) =>
+  return faces.map((face, f) =>
     face.map((i, k) => {
       const j = face[(k + 1) % face.length];
       const side = { i: 3 * i, j: 3 * j, beyond: -1, edge: true, face: f };
@@ -44,7 +49,6 @@ function getSides(surface) {
       return side;
     }),
   );
-  return surface.sides;
 }
 
 const LIGHT = [-0.37, 0.56, 0.74];
@@ -120,7 +124,7 @@ function paintFaces(painter, surface, pose, view, { shades, edge }) {
       if (sharp || !looks[beyond]) drawn.push(c[i], c[i + 1], c[j], c[j + 1]);
     }
     const bright = Math.round(computeBrightness(c, face, view.scale) * (SHADES - 1));
-    painter.face(near, points, shades[bright], drawn, edge, 1);
+    painter.addFace(near, points, shades[bright], drawn, edge, 1);
   });
 }
 
@@ -160,15 +164,15 @@ function paintBars(painter, line, pose, view, { edge, bar, shades }) {
       places.push([c[i], c[i + 1]]);
       near += (3 * c[i + 2]) / c.length;
     }
-    painter.face(near, computeConvexHull(places).flat(), shades[SHADES - 3], [], edge, PLATE_OPACITY);
+    painter.addFace(near, computeConvexHull(places).flat(), shades[SHADES - 3], [], edge, PLATE_OPACITY);
   }
   paintPieces(line, pose, view, (near, points) => {
-    painter.line(near, points, edge, BAR + 2);
-    painter.line(near + BAR_OFFSET * view.radius, points, bar, BAR);
+    painter.addLine(near, points, edge, BAR + 2);
+    painter.addLine(near + BAR_OFFSET * view.radius, points, bar, BAR);
   });
   if (line.length === 3) {
     const [x, y, near] = projectCorners(line, pose, view);
-    painter.line(near, [x, y, x, y], edge, 2 * BAR);
+    painter.addLine(near, [x, y, x, y], edge, 2 * BAR);
   }
 }
 
@@ -179,13 +183,13 @@ export function paintBodies(painter, scene, poses, view, colours) {
     for (const surface of body.surfaces) {
       if (surface.ball) {
         const [x, y, near] = view.project(locatePoint(poses, k, surface.ball.center));
-        painter.ball(near, x, y, surface.ball.radius * view.scale, own.shades, own.edge);
+        painter.addBall(near, x, y, surface.ball.radius * view.scale, own.shades, own.edge);
       } else {
         paintFaces(painter, surface, poses[k], view, own);
       }
     }
     const thin = (line) =>
-      paintPieces(line, poses[k], view, (near, points) => painter.line(near, points, own.edge, ARM));
+      paintPieces(line, poses[k], view, (near, points) => painter.addLine(near, points, own.edge, ARM));
     for (const bar of body.bars) {
       if (body.surfaces.length === 0) paintBars(painter, bar, poses[k], view, own);
       else thin(bar);

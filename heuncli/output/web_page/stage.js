@@ -17,6 +17,8 @@ const MANY_JOINTS = 40; // with more of them symbols are dots
 const MAX_THIN = 22; // pixels: half the thickness of a body whose name stands beside it
 const SLENDER = 4; // its length is more than so many times that
 const NAME_GAP = 8; // pixels between a name and the middle or the edge of its body
+/** @type {WeakMap<object, {middle: number[], axis: number[], thickness: number}>} of each body */
+const shapes = new WeakMap();
 
 /** The points of what is drawn of a body, body axes [m]. */
 function listPoints(body) {
@@ -27,10 +29,10 @@ function listPoints(body) {
 
 /**
  * Get where the name of a body stands: the middle of what is drawn of it, and its longest axis, from one end to the
- * other, with its thickness across that; body axes [m]. Computed once.
+ * other, with its thickness across that; body axes [m].
  */
 function getShape(body) {
-  if (!body.shape) {
+  if (!shapes.has(body)) {
     const points = listPoints(body);
     const middle = points.reduce((sum, p) => add(sum, scale(p, 1 / points.length)), [0, 0, 0]);
     const findFarthest = (from) =>
@@ -39,9 +41,9 @@ function getShape(body) {
     const axis = subtract(findFarthest(end), end);
     const along = normalize(axis);
     const thickness = points.reduce((most, p) => Math.max(most, norm(cross(along, subtract(p, middle)))), 0);
-    body.shape = { middle, axis, thickness };
+    shapes.set(body, { middle, axis, thickness });
   }
-  return body.shape;
+  return shapes.get(body);
 }
 
 /** Write the name of a body at its middle, or beside it where it is so thin that the name would cover it. */
@@ -89,7 +91,7 @@ function paintMachine(pen, scene, poses, view, options, colours) {
 export function drawMachine(canvas, data, view, options, colours, labels) {
   const { pen, width, height } = clearCanvas(canvas);
   view.resize(width, height);
-  labels.begin(pen, width, height, view.fits);
+  labels.begin(pen, width, height, view.version);
   const { scene } = data;
   const poses = computePoses(scene, options.frame, options.share);
   for (const point of scene.ground) drawGroundPoint(pen, view, point.at, colours);

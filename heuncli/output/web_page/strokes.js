@@ -53,7 +53,8 @@ export function drawText(pen, text, x, y, colour, paper) {
 
 /**
  * Draw an arrow; a moment has two heads.
- * @param {number[]} from @param {number[]} to on the screen [pixels]; near: toward the viewer [pixels]
+ * @param {number[]} from @param {number[]} to on the screen [pixels]
+ * @param {number} toward the viewer [pixels]
  */
 export function drawArrow(pen, from, to, toward, colour, paper, heads = 1, dash = []) {
   const [dx, dy] = [to[0] - from[0], to[1] - from[1]];

@@ -2,7 +2,7 @@
 
 import { formatInstant, formatAllDigits, formatNumber } from "./digits.js";
 import { makeElement } from "./elements.js";
-import { listArrowChoices, getLargest, readVector } from "./arrow_choices.js";
+import { listArrowChoices, readVector } from "./arrow_choices.js";
 import { norm } from "./vectors.js";
 
 const MAX_ROWS = 12; // rows
@@ -10,14 +10,14 @@ const MOMENTS = new Set(["T", "M", "M1", "M2"]);
 const FORCES = new Set(["N", "Q", "Q1", "Q2"]);
 const MIN_SHARE = 1e-3; // of the greatest of its kind: what is smaller is left to the tables
 
-/** Find the frame at which a number is greatest, and its value there. */
+/** Find the frame at which a number is greatest, and its value there; NaN if it is open at all frames. */
 function findGreatest(count, at) {
-  let [best, most] = [0, 0];
+  let [best, most] = [-1, 0];
   for (let k = 0; k < count; k += 1) {
     const size = Math.abs(at(k));
-    if (size > most) [best, most] = [k, size];
+    if (size > most || (best < 0 && size === 0)) [best, most] = [k, size];
   }
-  return { frame: best, value: at(best), size: most };
+  return { frame: Math.max(best, 0), value: best < 0 ? NaN : at(best), size: most };
 }
 
 /** Make the entry of a vector: its magnitude over the frames. */
@@ -29,14 +29,14 @@ function makeVectorEntry({ row, name, vector }, count) {
   return { caption, path: row.path, row, at, ...findGreatest(count, at) };
 }
 
-/** Make the entries of a section: its greatest moment and force over all cuts. */
-function makeSectionEntries(section, count) {
+/** Make the entries of a section: its greatest moment and force over all cuts; open where all cuts are. */
+export function makeSectionEntries(section, count) {
   const n = section.cuts.length;
   const found = section.loads.map((load) => {
     const at = (frame) => {
-      let most = 0;
+      let most = NaN;
       for (const value of load.values.subarray(frame * n, (frame + 1) * n)) {
-        if (Math.abs(value) > Math.abs(most)) most = value;
+        if (Number.isNaN(most) || Math.abs(value) > Math.abs(most)) most = value;
       }
       return most;
     };
@@ -63,16 +63,19 @@ function groupAlike(list) {
   });
 }
 
+/** Find the largest size of some entries, but for unbounded ones. */
+const findLargestSize = (list) => Math.max(0, ...list.map(({ size }) => size).filter(Number.isFinite));
+
 /** Make the rows of the summary, the greatest of each kind first. */
 function makeRows(data) {
   const { count } = data;
   const choices = new Map(listArrowChoices(data).map((choice) => [choice.key, choice.rows]));
   const collect = (key) => {
-    const vectors = (choices.get(key) ?? []).filter(({ row }) => getLargest(row) > 0);
-    const rows = vectors.map((each) => makeVectorEntry(each, count));
+    const entries = (choices.get(key) ?? []).map((each) => makeVectorEntry(each, count));
+    const rows = entries.filter(({ size }) => size > 0);
     const forces = rows.filter(({ path }) => !path.endsWith("moment")).sort((a, b) => b.size - a.size);
     const moments = rows.filter(({ path }) => path.endsWith("moment")).sort((a, b) => b.size - a.size);
-    return [forces, moments].flatMap((list) => list.filter(({ size }) => size > MIN_SHARE * list[0].size));
+    return [forces, moments].flatMap((list) => list.filter(({ size }) => size > MIN_SHARE * findLargestSize(list)));
   };
   const ground = collect("foundation");
   const loads = groupAlike([...collect("joints.force"), ...collect("couplings"), ...collect("forces")]);
@@ -98,7 +101,7 @@ export class SummaryTable {
     for (const { caption, path, row, at, frame, value } of makeRows(data)) {
       const line = makeElement("tr");
       line.append(makeElement("th", caption, { scope: "row" }));
-      const all = `${formatAllDigits(value * row.size)} ${row.unit}`;
+      const all = Number.isFinite(value) ? `${formatAllDigits(value * row.size)} ${row.unit}` : "";
       line.append(makeElement("td", formatNumber(value * row.size, row.style), { title: all }));
       line.append(makeElement("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
       if (isMoving) {
@@ -108,7 +111,7 @@ export class SummaryTable {
         button.setAttribute("aria-label", `Go to the greatest ${caption}, ${when}`);
         button.addEventListener("click", () => go(frame, path));
         const place = makeElement("td");
-        place.append(button);
+        if (!Number.isNaN(value)) place.append(button);
         const now = makeElement("td");
         this.cells.push({ now, at, row });
         line.append(place, now);

@@ -128,9 +128,23 @@ function drawRod(pen, joint, from, at, colours) {
   }
 }
 
-/** Get half of the smallest edge of a body's box [m], about the distance of its face from its middle. Computed once. */
+/** Draw a joint that neither fixes its point nor leads it along an axis, by its kind. */
+const BETWEEN_POINTS = {
+  rod: drawRod,
+  curve: (pen, joint, from, at, colours) => {
+    drawRing(pen, at[0], at[1], DOT, colours.paper, colours.ink, 1.4); // its path is drawn as a line
+  },
+};
+
+/** The kinds of joints that have a symbol. */
+export const DRAWN_KINDS = [AT_POINT, SLIDING, BETWEEN_POINTS].flatMap(Object.keys);
+
+/** @type {WeakMap<object, number>} half of the thickness of each body [m] */
+const halfThicknesses = new WeakMap();
+
+/** Get half of the smallest edge of a body's box [m], about the distance of its face from its middle. */
 function getHalfThickness(body) {
-  if (body.thickness === undefined) {
+  if (!halfThicknesses.has(body)) {
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     for (const { corners, ball } of body.surfaces) {
       const edges = ball ? [-1, 1].flatMap((s) => ball.center.map((c) => c + s * ball.radius)) : corners;
@@ -139,9 +153,9 @@ function getHalfThickness(body) {
         high[i % 3] = Math.max(high[i % 3], edges[i]);
       }
     }
-    body.thickness = body.surfaces.length ? Math.min(...high.map((h, i) => h - low[i])) / 2 : 0;
+    halfThicknesses.set(body, body.surfaces.length ? Math.min(...high.map((h, i) => h - low[i])) / 2 : 0);
   }
-  return body.thickness;
+  return halfThicknesses.get(body);
 }
 
 /**
@@ -177,10 +191,8 @@ function drawJoint(pen, view, poses, joint, colours, small) {
     AT_POINT[joint.kind](pen, at, projectDirection(view, axis), colours);
   } else if (joint.kind in SLIDING) {
     SLIDING[joint.kind](pen, view, at, axis, grounded, colours);
-  } else if (joint.kind === "curve") {
-    drawRing(pen, at[0], at[1], DOT, colours.paper, colours.ink, 1.4); // its path is drawn as a line
   } else {
-    drawRod(pen, joint, from, at, colours);
+    BETWEEN_POINTS[joint.kind](pen, joint, from, at, colours);
   }
 }
 

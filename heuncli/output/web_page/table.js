@@ -42,14 +42,15 @@ function addHeading(body, text, kind, note = "") {
 
 /** The table. */
 export class NumberTable {
-  /** @param {HTMLTableElement} table @param {object} data */
-  constructor(table, data) {
+  /** @param {HTMLTableElement} table @param {object} data @param {import("./selection.js").Selection} selection */
+  constructor(table, data, selection) {
     this.table = table;
     this.data = data;
     /** @type {Cell[]} */
     this.cells = [];
-    this.cut = 0;
-    this.parts = new Map();
+    this.selection = selection;
+    /** @type {Map<object, HTMLElement>} the element beside each section's name */
+    this.sectionNotes = new Map();
     const head = makeElement("thead");
     const titles = makeElement("tr");
     for (const [k, name] of COLUMNS.entries()) {
@@ -117,17 +118,16 @@ export class NumberTable {
     const body = makeElement("tbody", "", { "data-kind": "sections" });
     if (number === 0) addHeading(body, this.data.cutting.heading, "heading", this.data.cutting.note);
     addHeading(body, section.name, "group", section.note);
-    section.noteElement = body.lastChild.firstChild.lastChild;
-    section.cutNumber = 0;
-    for (const load of section.loads) body.append(this.loadRow(section, load));
+    this.sectionNotes.set(section, body.lastChild.firstChild.lastChild);
+    for (const load of section.loads) body.append(this.makeLoadRow(section, load));
     this.table.append(body);
   }
 
-  loadRow(section, load) {
+  makeLoadRow(section, load) {
     const line = makeElement("tr", "", { class: "row" });
     line.append(makeElement("th", load.label, { scope: "row" }));
     const range = makeElement("td", "", { colspan: "3" });
-    const readValue = (frame) => getLoadsAlong(section, load, frame)[section.cutNumber];
+    const readValue = (frame) => getLoadsAlong(section, load, frame)[this.selection.getCutNumber(section)];
     const cell = new Cell(load.path, readValue, load.size, load.style);
     this.cells.push(cell);
     if (section.s) {
@@ -140,7 +140,7 @@ export class NumberTable {
 
   /** Show the smallest and the largest value along a run of cuts, with their positions. */
   showRange(range, section, load, frame, cell, [unit, size]) {
-    cell.element.dataset.path = `${load.path}.${section.cutNumber}`;
+    cell.element.dataset.path = `${load.path}.${this.selection.getCutNumber(section)}`;
     const values = getLoadsAlong(section, load, frame);
     let [low, high] = [-1, -1];
     for (let k = 0; k < values.length; k += 1) {
@@ -161,9 +161,10 @@ export class NumberTable {
     for (const section of this.data.sections) {
       if (section.s) {
         const [unit, size] = this.data.length;
-        const side = section.side[section.cutNumber] ? `, ${section.side[section.cutNumber]} the load there` : "";
-        const place = `s = ${formatShort(section.s[section.cutNumber] * size)} ${unit}`;
-        section.noteElement.textContent = `${section.note}; value: at ${place}${side}`;
+        const cutNumber = this.selection.getCutNumber(section);
+        const side = section.side[cutNumber] ? `, ${section.side[cutNumber]} the load there` : "";
+        const place = `s = ${formatShort(section.s[cutNumber] * size)} ${unit}`;
+        this.sectionNotes.get(section).textContent = `${section.note}; value: at ${place}${side}`;
       }
     }
     for (const cell of this.cells) cell.show(frame);

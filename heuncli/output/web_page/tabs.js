@@ -43,8 +43,12 @@ export function listenToCases(runs, run, change) {
   select.addEventListener("change", () => change(Number(select.value)));
 }
 
-/** Read a number from the page's address, as in #frame=12. @param {string} name @param {number} fallback */
-export function readAddressNumber(name, fallback) {
+/**
+ * Read the number of a frame or a case from the page's address, as in #frame=12: a whole one that there is.
+ * @param {string} name @param {number} fallback @param {number} count how many there are
+ */
+export function readAddressNumber(name, fallback, count) {
   const found = new URLSearchParams(location.hash.slice(1)).get(name);
-  return found !== null && Number.isFinite(Number(found)) ? Number(found) : fallback;
+  if (found === null || !Number.isFinite(Number(found))) return fallback;
+  return Math.min(count - 1, Math.max(0, Math.round(Number(found))));
 }

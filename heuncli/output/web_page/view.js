@@ -13,14 +13,15 @@ const MIN_ZOOM = 0.1;
 const MIN_OFFSET = 0.02; // of the scene's radius: joints that stand no farther off its middle are in it
 
 /** Find the world axis nearest to a direction. @param {number[]} v @returns {number[]} */
-function nearestAxis(v) {
+function findNearestAxis(v) {
   const k = [0, 1, 2].reduce((best, i) => (Math.abs(v[i]) > Math.abs(v[best]) ? i : best), 2);
   return [0, 1, 2].map((i) => (i === k ? Math.sign(v[k]) || 1 : 0));
 }
 
 /** Find the side on which most supports stand: 1 that of the plane's normal, -1 the other, 0 neither. */
 function findSide(scene, normal) {
-  const places = [...scene.ground.map((point) => point.at), ...scene.joints.filter((j) => j.a < 0).map((j) => j.p)];
+  const supports = scene.joints.flatMap(({ a, p, b, q }) => [...(a < 0 ? [p] : []), ...(b < 0 ? [q] : [])]);
+  const places = [...scene.ground.map((point) => point.at), ...supports];
   const off = places.reduce((sum, at) => sum + dot(at, normal), 0) / (places.length || 1) - dot(scene.center, normal);
   return places.length > 0 && Math.abs(off) > MIN_OFFSET * scene.radius ? Math.sign(off) : 0;
 }
@@ -31,8 +32,8 @@ export class View {
   constructor(scene) {
     this.center = scene.center;
     this.radius = scene.radius;
-    this.up = nearestAxis(scene.gravity.some((g) => g !== 0) ? scene.gravity.map((g) => -g) : [0, 0, 1]);
-    const normal = scene.normal && nearestAxis(scene.normal);
+    this.up = findNearestAxis(scene.gravity.some((g) => g !== 0) ? scene.gravity.map((g) => -g) : [0, 0, 1]);
+    const normal = scene.normal && findNearestAxis(scene.normal);
     if (!scene.gravity.some((g) => g !== 0) && normal && Math.abs(normal[2]) === 1) this.up = [0, 1, 0];
     const k = this.up.findIndex((u) => u !== 0);
     const axis = (i) => [0, 1, 2].map((j) => (j === (k + i) % 3 ? 1 : 0));
@@ -60,7 +61,7 @@ export class View {
   /** Look as another view does, at the same machine in another load case. @param {View} other */
   copyFrom({ azimuth, elevation, fitted, zoom, shift, width, height }) {
     Object.assign(this, { azimuth, elevation });
-    this.turn(0, 0);
+    this.updateAxes();
     this.fit();
     if (!fitted) Object.assign(this, { fitted, zoom, shift, width, height });
   }
@@ -74,7 +75,7 @@ export class View {
     } else {
       this.azimuth = -1.05;
       this.elevation = this.normal ? 1 : 0.36;
-      this.turn(0, 0);
+      this.updateAxes();
     }
     this.fit();
   }
@@ -107,7 +108,7 @@ export class View {
 
   /** Fit the machine at all frames into the canvas, with room for labels about it. */
   fit() {
-    this.fits = (this.fits ?? 0) + 1;
+    this.version = (this.version ?? 0) + 1;
     this.fitted = true;
     const [left, right] = this.findRange(this.right);
     const [low, high] = this.findRange(this.above);
@@ -126,13 +127,18 @@ export class View {
     const toward = right && right.some((r) => r < 0) ? axis.map((c) => -c) : axis;
     this.elevation = level ? 0 : MAX_ELEVATION;
     this.azimuth = level ? Math.atan2(dot(toward, this.second), dot(toward, this.first)) : -Math.PI / 2;
-    this.turn(0, 0);
+    this.updateAxes();
   }
 
   /** Rotate the view. @param {number} aside [rad] @param {number} up [rad] */
   turn(aside, up) {
     this.azimuth += aside;
     this.elevation = Math.min(MAX_ELEVATION, Math.max(-MAX_ELEVATION, this.elevation + up));
+    this.updateAxes();
+  }
+
+  /** Compute the axes of the screen from azimuth and elevation. */
+  updateAxes() {
     const [c, s] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
     const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
     this.toward = [0, 1, 2].map((i) => ce * (c * this.first[i] + s * this.second[i]) + se * this.up[i]);
