@@ -339,7 +339,8 @@ class LoadErrors(ErrorEstimates):
         for sensor in self.setup.sensors:
             reaction = find_sensor_reaction(self.setup, sensor, states, joints, acting)
             force, moment = sensor.read(states, reaction, self.setup.scene.mechanism.planar)
-            lever = np.abs(reaction[0] - sensor.find_point(states, reaction[0])).max(axis=1)
+            # a component of d x F is a sum of two products: the largest component of d alone would be too little
+            lever = np.abs(reaction[0] - sensor.find_point(states, reaction[0])).sum(axis=1)
             self.add_values(("sensors", "force"), force, F, terms.force)
             self.add_values(("sensors", "moment"), moment, M + lever * F, terms.moment + lever * terms.force)
 

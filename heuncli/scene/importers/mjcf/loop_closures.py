@@ -266,7 +266,7 @@ class ClosureBuilder:
         self.imported_equalities.add(number)
         original = self.c.name("equality", number) or self.c.name("tendon", tendon) or f"tendon_{tendon + 1}"
         names = tuple(self.tree.step_by_joint[joint].name for joint in terms)
-        keys = {"type": "ratio", "of": names, "factors": tuple(terms.values()), **({"is": start} if start else {})}
+        keys = {"type": "ratio", "of": names, "factors": tuple(terms.values()), "is": start}
         self.ratios.append(DescribedEntry(self.assign_name(original), keys, self.c.describe_part("equality", number)))
 
 
