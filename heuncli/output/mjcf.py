@@ -22,14 +22,13 @@ from heuncli.base.spelling import list_words
 from heuncli.multibody.mechanism.loads import GROUND, JointLoad, PairLoad
 from heuncli.multibody.mechanism.model import Body, Joint, scene_size
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.mjcf_joints import LOOSE_KINDS, SCALAR_PARTS, JointElement, JointElements
+from heuncli.output.mjcf_joints import LOOSE_KINDS, SCALAR_PARTS, JointElement, JointElements, find_drawn_pose
 from heuncli.output.mjcf_parts import MjcfConnections, format_inertial, format_place, iter_geom
 from heuncli.output.robot_tree import (
     PIN_KINDS,
     WORLD,
     PlacedJoint,
     choose_name,
-    find_attitude,
     find_limits,
     format_numbers,
     grow_forest,
@@ -241,9 +240,7 @@ class _MjcfWriter:
         R, p = np.eye(3), np.zeros(3)  # of a body of the chain in the parent, with all joints at 0
         places: list[tuple[PlacedJoint, Array, Array]] = []  # joint, point in the parent, attitude after it
         for placed in chain:
-            point = p + R @ (placed.parent_point + self.joint_elements.find_offset(placed))
-            R = R @ find_attitude(placed, self.scene)
-            p = point - R @ placed.child_point
+            point, p, R = find_drawn_pose(placed, self.scene, p, R)
             places.append((placed, point, R))
         elements: list[JointElement] = []
         for placed, point, attitude in places:

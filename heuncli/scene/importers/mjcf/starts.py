@@ -277,18 +277,20 @@ def _find_tied_bodies(tree: JointTree, closures: LoopClosures) -> set[str]:
 
 
 def _make_near_start(pose: BodyPose, drawn_pose: BodyPose, can_shift: bool) -> StartKeys:
-    """Make the pose near which the assembly starts; empty if that is the drawn pose and joints place the body there.
+    """Make the pose near which the assembly starts; empty if that is the drawn pose, joints place the body there, and
+    it is at rest.
 
     can_shift: a slide, or no joint at all, leaves the position open. Without `near` a spec would start at the origin.
     """
     attitude = _attitude_keys(pose)
     distance = float(np.abs(np.asarray(pose.p) - np.asarray(drawn_pose.p)).max())
-    if not (can_shift or attitude or distance > DRAWN_TOLERANCE * float(np.abs(drawn_pose.p).max(initial=1.0))):
+    has_rates = bool(np.any(pose.v) or np.any(pose.sigma))
+    is_moved = distance > DRAWN_TOLERANCE * float(np.abs(drawn_pose.p).max(initial=1.0))
+    if not (can_shift or attitude or is_moved or has_rates):
         return StartKeys({}, {})
-    rates = bool(np.any(pose.v) or np.any(pose.sigma))
     notes = (
         {"near": "its start velocities follow from its constraints; without constraints it starts at rest"}
-        if rates
+        if has_rates
         else {}
     )
     return StartKeys({"near": {"position": round_vector(to_vec(pose.p)), **attitude}}, notes)
