@@ -172,7 +172,7 @@ def make_joint_block(load: JointLoads, planar: bool = False) -> JointBlock:
         carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
         block["pressure"] = carried / load.joint.bearing
     if load.joint.bearings is not None:
-        from heuncli.loads.kinetostatics.sensors import make_bearing_blocks  # few joints have them
+        from heuncli.loads.kinetostatics.bearings import make_bearing_blocks  # few joints have them
 
         block["bearings"] = make_bearing_blocks(load, planar)
     if load.joint.path is not None and load.joint.path.radius:
