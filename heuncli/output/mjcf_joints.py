@@ -83,6 +83,7 @@ class JointElements:
                 yield JointElement(name, "hinge", joint, "", pos, turn @ own_axis, (0.0,), (float(rate),))
         else:
             coordinates = {"angle": (values.angle, values.rate), "travel": (values.travel, values.speed)}
+            # the last part has the joint's own name: of a cylinder the hinge, its slide is "_2"; a weld has no part
             for name, (kind, quantity) in zip(reversed(names), parts, strict=False):
                 q, v = coordinates[quantity]
                 yield JointElement(name, kind, joint, quantity, pos, axis, (q,), (v,))
