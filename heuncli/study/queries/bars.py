@@ -143,11 +143,11 @@ class WholeBar:
             if owner == self.stretch.body
         ]
 
-    def _merge_places(self, found: Sequence[BarAttachment]) -> list[BarAttachment]:
+    def _merge_places(self, attachments: Sequence[BarAttachment]) -> list[BarAttachment]:
         """Return what is along the bar, ascending: names once at each place, places within the tolerance as one."""
         tolerance = self.corner_tolerance
         distinct: dict[str, BarAttachment] = {}
-        for own in found:
+        for own in attachments:
             if -tolerance <= own.s <= self.length + tolerance:
                 same_place = next((other.s for other in distinct.values() if abs(other.s - own.s) <= tolerance), own.s)
                 distinct.setdefault(f"{own.name} {same_place}", own._replace(s=same_place))
