@@ -11,7 +11,7 @@ by equalities: MuJoCo holds them softly. What MJCF has no words for changes the 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -22,22 +22,21 @@ from heuncli.base.spelling import list_words
 from heuncli.multibody.mechanism.loads import GROUND, JointLoad, PairLoad
 from heuncli.multibody.mechanism.model import Body, Joint, scene_size
 from heuncli.multibody.tree.prepare import PreparedScene
-from heuncli.output.mjcf_joints import LOOSE_KINDS, SCALAR_PARTS, JointElement, JointElements
+from heuncli.output.mjcf_joints import LOOSE_KINDS, SCALAR_PARTS, JointElement, JointElements, find_drawn_pose
 from heuncli.output.mjcf_parts import MjcfConnections, format_inertial, format_place, iter_geom
 from heuncli.output.robot_tree import (
     PIN_KINDS,
     WORLD,
     PlacedJoint,
     choose_name,
-    find_attitude,
     find_limits,
+    format_line,
     format_numbers,
     grow_forest,
     list_free_points,
-    list_notes,
+    list_left_out,
     make_coupling_problems,
     make_joint_problems,
-    plain,
 )
 from heuncli.results.results import Array
 from heuncli.scene.file_format.couplings import Ratio
@@ -54,7 +53,7 @@ JOINT_HINT = "MJCF has no cv, curve, rope or driven rod, and closes loops by rod
 
 
 class MjcfText(NamedTuple):
-    """text: the file; notes: what it does not say"""
+    """A scene as MJCF. text: the file; notes: what it does not say"""
 
     text: str
     notes: tuple[str, ...]
@@ -66,14 +65,14 @@ def write_mjcf(spec: Spec, scene: PreparedScene) -> MjcfText:
 
 
 class _MjcfWriter:
-    """Writes one scene."""
+    """Writes one scene; elements, q and v grow as its bodies are written."""
 
     def __init__(self, spec: Spec, scene: PreparedScene) -> None:
         self.spec, self.scene, self.mechanism = spec, scene, scene.mechanism
         loads = self.mechanism.loads
         self.springs = [load for load in loads if isinstance(load, PairLoad) and load.kind == "spring"]
-        self.joint_loads = [load for load in loads if isinstance(load, JointLoad) and self.is_written(load)]
-        self.tree, self.closures = grow_forest(self.mechanism, self.make_ranking())
+        loads_of_joints = [load for load in loads if isinstance(load, JointLoad) and self.is_written(load)]
+        self.tree, self.closures = grow_forest(self.mechanism, self.make_ranking(loads_of_joints))
         self.children: dict[int, list[PlacedJoint]] = {}
         for placed in self.tree:
             self.children.setdefault(placed.parent, []).append(placed)
@@ -87,7 +86,7 @@ class _MjcfWriter:
         self.q: list[float] = []
         self.v: list[float] = []
         closed = {joint.name for joint in self.closures}  # nothing can act in their coordinates
-        self.joint_loads = [load for load in self.joint_loads if self.mechanism.joints[load.joint].name not in closed]
+        self.joint_loads = [load for load in loads_of_joints if self.mechanism.joints[load.joint].name not in closed]
         self.limits = {key: stop for key, stop in find_limits(self.mechanism).items() if key[0] not in closed}
 
     def is_written(self, load: JointLoad) -> bool:
@@ -97,10 +96,10 @@ class _MjcfWriter:
             load.kind == "turn_spring" and kind in (*PIN_KINDS, "cylinder")
         )
 
-    def make_ranking(self) -> Callable[[Joint], int | None]:
+    def make_ranking(self, loads_of_joints: Sequence[JointLoad]) -> Callable[[Joint], int | None]:
         """Return the ranks of joints for the tree: first those that cannot close a loop, or in which something acts."""
         joints = self.mechanism.joints
-        active = {joints[load.joint].name for load in self.joint_loads}
+        active = {joints[load.joint].name for load in loads_of_joints}
         active |= {name for name, _ in find_limits(self.mechanism)}
         active |= {name for coupling in self.mechanism.couplings for name in coupling.entry.joints}
 
@@ -123,8 +122,8 @@ class _MjcfWriter:
         bodies += [line for root in self.roots for line in self.iter_free_body(root)]
         self.connections.add_ratios(self.elements)
         notes = self.list_notes()
-        lines = ['<?xml version="1.0"?>', f"<mujoco model={quoteattr(plain(self.spec.title) or 'machine')}>"]
-        lines += [f"  <!-- {plain(note).replace('--', '- -')} -->" for note in notes]
+        lines = ['<?xml version="1.0"?>', f"<mujoco model={quoteattr(format_line(self.spec.title) or 'machine')}>"]
+        lines += [f"  <!-- {format_line(note).replace('--', '- -')} -->" for note in notes]
         lines += ['  <compiler angle="radian"/>', f'  <option gravity="{format_numbers(self.spec.gravity)}"/>']
         lines += [
             '  <default><geom contype="0" conaffinity="0"/></default>',
@@ -143,7 +142,7 @@ class _MjcfWriter:
     def list_notes(self) -> list[str]:
         """Say in sentences what the file does not hold, or holds otherwise."""
         written = {load.name for load in (*self.joint_loads, *self.springs)}
-        notes = list_notes(self.spec, self.mechanism, written, self.limits)
+        notes = list_left_out(self.spec, self.mechanism, written, self.limits)
         thin = self.list_small_moments()
         if thin:
             notes.append(f"moments of inertia of 0 are small ones in the file, as MuJoCo refuses 0: {list_words(thin)}")
@@ -241,9 +240,7 @@ class _MjcfWriter:
         R, p = np.eye(3), np.zeros(3)  # of a body of the chain in the parent, with all joints at 0
         places: list[tuple[PlacedJoint, Array, Array]] = []  # joint, point in the parent, attitude after it
         for placed in chain:
-            point = p + R @ (placed.parent_point + self.joint_elements.find_offset(placed))
-            R = R @ find_attitude(placed, self.scene)
-            p = point - R @ placed.child_point
+            point, p, R = find_drawn_pose(placed, self.scene, p, R)
             places.append((placed, point, R))
         elements: list[JointElement] = []
         for placed, point, attitude in places:

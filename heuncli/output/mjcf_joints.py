@@ -83,19 +83,10 @@ class JointElements:
                 yield JointElement(name, "hinge", joint, "", pos, turn @ own_axis, (0.0,), (float(rate),))
         else:
             coordinates = {"angle": (values.angle, values.rate), "travel": (values.travel, values.speed)}
+            # the last part has the joint's own name: of a cylinder the hinge, its slide is "_2"; a weld has no part
             for name, (kind, quantity) in zip(reversed(names), parts, strict=False):
                 q, v = coordinates[quantity]
                 yield JointElement(name, kind, joint, quantity, pos, axis, (q,), (v,))
-
-    def find_offset(self, placed: PlacedJoint) -> Array:
-        """Return the vector from the parent's point of a joint to the child's, with all joints at 0, in the axes of the
-        parent: as at the start, where the joint has no coordinates.
-        """
-        if placed.joint.kind not in LOOSE_KINDS:
-            return np.zeros(3)
-        start = self.scene.start
-        (xp, Rp, _, _), (xc, Rc, _, _) = body_state(start, placed.parent), body_state(start, placed.child)
-        return np.asarray(Rp.T @ (xc + Rc @ placed.child_point - xp) - placed.parent_point)
 
     def make_loose_elements(self, placed: PlacedJoint, pos: Array, turn: Array, end: int) -> list[JointElement]:
         """Return the slides and the rotation of a joint that holds a point on a line or in a plane of `from`.
@@ -115,7 +106,7 @@ class JointElements:
             name = choose_name(f"{joint.name}_2", self.joint_names)
             self.joint_names.add(name)
             slides.append(JointElement(name, "slide", joint, "", pos, axis, (0.0,), (float(direction @ velocity),)))
-        pivot = pos - turn @ attitude.T @ self.find_offset(placed) if placed.is_reversed else pos
+        pivot = pos - turn @ attitude.T @ find_offset(placed, self.scene) if placed.is_reversed else pos
         if kind.turn.ball and not self.mechanism.planar:
             rates = tuple(map(float, start.rotation[end].T @ spin))
             rotation = JointElement(joint.name, "ball", joint, "", pivot, np.zeros(3), (1.0, 0.0, 0.0, 0.0), rates)
@@ -123,3 +114,31 @@ class JointElements:
             axis = np.array([0.0, 0.0, 1.0])
             rotation = JointElement(joint.name, "hinge", joint, "", pivot, axis, (0.0,), (float(spin[2]),))
         return [rotation, *slides] if placed.is_reversed else [*slides, rotation]
+
+
+def find_offset(placed: PlacedJoint, scene: PreparedScene) -> Array:
+    """Return the vector from the parent's point of a joint to the child's, with all joints at 0, in the axes of the
+    parent: as at the start, where the joint has no coordinates.
+    """
+    if placed.joint.kind not in LOOSE_KINDS:
+        return np.zeros(3)
+    start = scene.start
+    (xp, Rp, _, _), (xc, Rc, _, _) = body_state(start, placed.parent), body_state(start, placed.child)
+    return np.asarray(Rp.T @ (xc + Rc @ placed.child_point - xp) - placed.parent_point)
+
+
+class DrawnPose(NamedTuple):
+    """Where the child of a joint is with all joints at 0: the joint's point of the child, the child's origin (3,), its
+    axes (3, 3).
+    """
+
+    point: Array
+    origin: Array
+    axes: Array
+
+
+def find_drawn_pose(placed: PlacedJoint, scene: PreparedScene, p: Array, R: Array) -> DrawnPose:
+    """Return the drawn pose of a joint's child; p, R: origin and axes of its parent, in the frame that is wanted."""
+    point = p + R @ (placed.parent_point + find_offset(placed, scene))
+    axes = R @ find_attitude(placed, scene)
+    return DrawnPose(point, point - axes @ placed.child_point, axes)

@@ -11,13 +11,12 @@ from heuncli.multibody.mechanism.loads import GROUND, PairLoad
 from heuncli.multibody.mechanism.model import Body, Joint, scene_size
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.multibody.tree.starts import body_state, point_distance
-from heuncli.output.mjcf_joints import JointElement
+from heuncli.output.mjcf_joints import JointElement, find_drawn_pose
 from heuncli.output.robot_tree import (
     PIN_KINDS,
     PlacedJoint,
     choose_name,
     clean_rotation,
-    find_attitude,
     format_numbers,
     place_shape,
 )
@@ -84,19 +83,18 @@ class MjcfConnections:
 
     def find_drawn_distance(self, joint: Joint) -> float:
         """Return the distance of a joint's points with all joints of the tree at 0, as MuJoCo computes it."""
-        (pa, Ra), (pb, Rb) = self.find_drawn_pose(joint.a), self.find_drawn_pose(joint.b)
+        (pa, Ra), (pb, Rb) = self.find_world_pose(joint.a), self.find_world_pose(joint.b)
         return float(np.linalg.norm(pb + Rb @ joint.q - pa - Ra @ joint.p))
 
-    def find_drawn_pose(self, body: int) -> tuple[Array, Array]:
+    def find_world_pose(self, body: int) -> tuple[Array, Array]:
         """Return the origin and the axes of a body with all joints of the tree at 0."""
         if body == GROUND:
             return np.zeros(3), np.eye(3)
         placed = next((placed for placed in self.tree if placed.child == body), None)
         if placed is None:
             return self.scene.start.position[body], self.scene.start.rotation[body]
-        p, R = self.find_drawn_pose(placed.parent)
-        attitude = R @ find_attitude(placed, self.scene)
-        return p + R @ placed.parent_point - attitude @ placed.child_point, attitude
+        drawn = find_drawn_pose(placed, self.scene, *self.find_world_pose(placed.parent))
+        return drawn.origin, drawn.axes
 
     def add_ratios(self, joint_elements: Sequence[JointElement]) -> None:
         """Add the linear relations of coordinates, as fixed tendons of constant length."""

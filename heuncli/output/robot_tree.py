@@ -73,20 +73,21 @@ def grow_forest(mechanism: Mechanism, rank: Callable[[Joint], int | None] = lamb
     tree: list[PlacedJoint] = []
     closures: dict[int, Joint] = {}
     reached, used, order = set[int](), set[int](), count()
+
+    def reach(body: int, front: list[tuple[int, int, int, int]]) -> None:
+        """Add a body, with the joints that go on from it."""
+        reached.add(body)
+        for k in joints_at.get(body, ()):
+            place = rank(mechanism.joints[k])
+            if place is None:
+                closures[k] = mechanism.joints[k]
+            elif k not in used:
+                heapq.heappush(front, (place, next(order), k, body))
+
     for root in (GROUND, *range(len(mechanism.bodies))):
-        front: list[tuple[int, int, int, int]] = []
-
-        def reach(body: int, front: list[tuple[int, int, int, int]] = front) -> None:
-            reached.add(body)
-            for k in joints_at.get(body, ()):
-                place = rank(mechanism.joints[k])
-                if place is None:
-                    closures[k] = mechanism.joints[k]
-                elif k not in used:
-                    heapq.heappush(front, (place, next(order), k, body))
-
+        front: list[tuple[int, int, int, int]] = []  # rank, order of discovery, joint, body that it is reached from
         if root not in reached:
-            reach(root)
+            reach(root, front)
         while front:
             _, _, k, parent = heapq.heappop(front)
             if k in used:
@@ -98,7 +99,7 @@ def grow_forest(mechanism: Mechanism, rank: Callable[[Joint], int | None] = lamb
                 closures[k] = joint
                 continue
             tree.append(PlacedJoint(joint, parent, child))
-            reach(child)
+            reach(child, front)
     return JointForest(tuple(tree), tuple(closures[k] for k in sorted(closures)))
 
 
@@ -133,7 +134,7 @@ def is_linear_damper(load: object) -> bool:
 # Notes
 
 
-def list_notes(
+def list_left_out(
     spec: Spec, mechanism: Mechanism, written_forces: Collection[str], limits: Mapping[LimitKey, Stop[int]]
 ) -> list[str]:
     """Say in sentences which entries the file does not hold. written_forces, limits: names and stops that it holds"""
@@ -216,11 +217,11 @@ def place_shape(shape: Shape) -> tuple[Array, Array, tuple[float, ...]] | None:
     if shape.type == "cylinder" and shape.from_ is not None and shape.to is not None and shape.radius is not None:
         along = np.array(shape.to) - np.array(shape.from_)
         length = float(np.linalg.norm(along))
-        return 0.5 * (np.array(shape.from_) + np.array(shape.to)), turn_z_to(along / length), (shape.radius, length)
+        return 0.5 * (np.array(shape.from_) + np.array(shape.to)), align_z(along / length), (shape.radius, length)
     return None
 
 
-def turn_z_to(direction: Array) -> Array:
+def align_z(direction: Array) -> Array:
     """Return a rotation (3, 3) that takes the z axis to a direction (3,) of length 1."""
     first = np.cross(np.eye(3)[int(np.argmin(np.abs(direction)))], direction)
     first /= np.linalg.norm(first)
@@ -247,6 +248,6 @@ def format_numbers(values: Sequence[float] | Array) -> str:
     return " ".join(repr(float(value) + 0.0) for value in values)
 
 
-def plain(text: str) -> str:
+def format_line(text: str) -> str:
     """Return a text of the spec on one line of XML."""
     return escape(text).replace("<", "(").replace(">", ")").replace("&", "+")

@@ -29,16 +29,16 @@ from heuncli.output.robot_tree import (
     find_attitude,
     find_axis,
     find_limits,
+    format_line,
     format_numbers,
     grow_forest,
     is_linear_damper,
     list_free_points,
-    list_notes,
+    list_left_out,
     list_start_notes,
     make_coupling_problems,
     make_joint_problems,
     place_shape,
-    plain,
 )
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Shape, Spec
@@ -52,7 +52,7 @@ STANDARD_GRAVITY_TEXT = "0 0 -9.81"
 
 
 class UrdfText(NamedTuple):
-    """text: the file; notes: what it does not say"""
+    """A scene as URDF. text: the file; notes: what it does not say"""
 
     text: str
     notes: tuple[str, ...]
@@ -67,8 +67,8 @@ def write_urdf(spec: Spec, scene: PreparedScene) -> UrdfText:
         origins[placed.child] = placed.child_point
     notes = [*list_urdf_notes(spec, mechanism, tree), *list_start_notes(scene, tree)]
     held = {placed.child for placed in tree}
-    lines = ['<?xml version="1.0"?>', f"<robot name={quoteattr(plain(spec.title) or 'robot')}>"]
-    lines += [f"  <!-- {plain(note).replace('--', '- -')} -->" for note in notes]
+    lines = ['<?xml version="1.0"?>', f"<robot name={quoteattr(format_line(spec.title) or 'robot')}>"]
+    lines += [f"  <!-- {format_line(note).replace('--', '- -')} -->" for note in notes]
     world = choose_name(WORLD, spec.bodies)
     lines.append(f'  <link name="{world}"/>')
     for i, body in enumerate(mechanism.bodies):
@@ -107,7 +107,7 @@ def list_urdf_notes(spec: Spec, mechanism: Mechanism, tree: Sequence[PlacedJoint
     if gravity != STANDARD_GRAVITY_TEXT:
         yield f"gravity is {gravity} m/s^2; URDF has none"
     limits = find_limits(mechanism)
-    yield from list_notes(spec, mechanism, {load.name for load in mechanism.loads if is_linear_damper(load)}, limits)
+    yield from list_left_out(spec, mechanism, {load.name for load in mechanism.loads if is_linear_damper(load)}, limits)
     endless = [
         placed.joint.name
         for placed in tree

@@ -283,3 +283,24 @@ def test_what_is_refused_of_a_cam(segments: str, words: str) -> None:
     (problem,) = caught.value.problems
     assert problem.code == "segments"
     assert words in problem.message
+
+
+@pytest.mark.parametrize(("key", "entry"), [
+    ("rise", "segments: [{to: 1 s, rise: 0.1*t, law: cycloid}]"),
+    ("at", "segments: [{to: 1 s, at: j.travel, law: cycloid}]"),
+    ("rate", "segments: [{rise: 0.1, law: trapezoid, rate: 1+t, acceleration: 1}]"),
+    ("to", "segments: [{to: 1+t, rise: 0.1, law: cycloid}]"),
+    ("base", "segments: [{to: 1 s, rise: 0.1, law: cycloid}], base: t"),
+])  # fmt: skip
+def test_a_function_is_no_number_of_a_segment(key: str, entry: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        drive("slide", entry)
+    (problem,) = caught.value.problems
+    assert problem.code == "not-in-time"
+    assert problem.location is not None and problem.location.path.endswith(key)
+    if key in ("rise", "at"):
+        scene = cam_text(law="cycloid")
+        begin = scene.index("    segments:")
+        one = entry.replace("1 s", "1 rev")
+        with pytest.raises(SpecError, match="not-in-time"):
+            load("scene.yaml", f"{scene[:begin]}    {one}\n{scene[scene.index('analysis') :]}")

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import json
+from itertools import product
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from heuncli.base.errors import SpecError
+from heuncli.loads.kinetostatics.reactions import JointLoads
+from heuncli.loads.kinetostatics.sensors import PlacedSensor
+from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
 from heuncli.results.results_schema import REPORTS
 from heuncli.scene.file_format.load import load
 from heuncli.study.quantities.digits import find_stated_errors
 from heuncli.study.quantities.labels import make_labels
+from heuncli.study.solve.load_errors import LoadErrors
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.scenes import near, solved, study
@@ -192,6 +198,24 @@ def test_its_stated_error_grows_with_the_lever_and_covers_the_true_one() -> None
     pairs = [results.joints["main"]["bearings"]["0"]["radial_force"] for results in (coarse, fine)]
     assert float(np.abs(pairs[0] - pairs[1]).max()) <= stated(3.0, "bearings", "N")
     assert stated(3.0, "bearings", "N") > 30.0 * stated(3.0, "reactions", "N")
+
+
+def test_the_rounding_of_a_moved_moment_covers_both_products_of_each_component() -> None:
+    """(d x F)_z = d_x F_y - d_y F_x: if each component of F may be off by e, it is off by (|d_x| + |d_y|) e."""
+    far, rounding, found = np.array([30.0, -40.0, 2.0]), 1e-3, {}
+    zeros, error = np.zeros((1, 3)), np.full(1, rounding)
+    load = SimpleNamespace(joint=SimpleNamespace(name="main", bearings=None), point=zeros, force=zeros, moment=zeros)
+    sensor = PlacedSensor("cell", "main", None, GROUND, far, GROUND)
+    scene = SimpleNamespace(mechanism=SimpleNamespace(planar=False))
+    own = SimpleNamespace(
+        setup=SimpleNamespace(sensors=(sensor,), cuts=(), scene=scene),
+        add_values=lambda name, values, rounding, terms: found.update({name: rounding[0]}),
+    )
+    states: Any = SimpleNamespace(point_position=lambda body, point: point[None])
+    terms: Any = SimpleNamespace(rounding=(error, 0.0 * error), force=error, moment=error)
+    LoadErrors.add_moved_reactions(cast(LoadErrors, own), states, [cast(JointLoads, load)], [], terms)
+    worst = np.abs([np.cross(-far, signs) for signs in product([-rounding, rounding], repeat=3)]).max()
+    assert found["sensors", "moment"] >= worst > 1.5 * 40.0 * rounding
 
 
 def test_they_are_measured_expected_awaited_and_shown(heun: Heun, folder: Path) -> None:

@@ -61,13 +61,24 @@ class SegmentProblem(NamedTuple):
 
 
 def read_constant(value: Expression | None) -> float:
-    """Return the number of a constant, or 0 if it is absent or not constant."""
-    return 0.0 if value is None or value.constant is None else value.constant
+    """Return the number of a segment's key, or 0 if the key is absent.
+
+    It is never a function: the reader of the spec refuses time and coordinates there (fields.py DependentNumber).
+    """
+    if value is None:
+        return 0.0
+    assert value.constant is not None
+    return value.constant
 
 
 def has_limits(entry: SegmentEntry) -> bool:
     """Return whether limits determine the duration of a segment."""
     return any(getattr(entry, name, None) is not None for name in LIMIT_KEYS)
+
+
+def find_rise(entry: SegmentEntry, value: float) -> float:
+    """Return by how much a segment that begins at `value` changes the coordinate [m or rad]."""
+    return read_constant(entry.rise) if entry.at is None else read_constant(entry.at) - value
 
 
 def find_end_keys(entry: SegmentEntry) -> list[str]:

@@ -27,6 +27,7 @@ from heuncli.scene.file_format.segment_entries import (
     SegmentEntry,
     SegmentProblem,
     find_end_keys,
+    find_rise,
     has_limits,
     iter_entry_problems,
     iter_wrong_dimensions,
@@ -98,11 +99,7 @@ def _make_segment(entry: SegmentEntry, begin: float, value: float) -> LawSegment
     to, duration, dwell = (getattr(entry, name) for name in ("to", "for_", "dwell"))
     if dwell is not None:
         return LawSegment(begin, begin + dwell, value, 0.0)
-    rise = (
-        entry.at.constant - value
-        if entry.at is not None and entry.at.constant is not None
-        else read_constant(entry.rise)
-    )
+    rise = find_rise(entry, value)
     limits = tuple(read_constant(getattr(entry, name)) for name in LIMITS.get(entry.law or "", ()) if has_limits(entry))
     if limits:
         duration = find_profile_duration(rise, limits)

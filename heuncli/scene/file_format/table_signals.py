@@ -142,7 +142,8 @@ def integrate_entry(table: TableFunction, entry: TableEntry) -> tuple[TableFunct
     what = "no drift taken out" if drift == "keep" else f"{taken}, {moved}"
     note = f"table {table.name}: integrated {ORDER_WORDS[order]}; {what}"
     made, finest = rebuild_integral(table, entry, found), halve_pieces(halve_pieces(table))
-    while 4 * table.pieces == finest.pieces <= MAX_ADDED_PIECES:
+    # halve_pieces returns the same table where a piece is too short for a point in its middle: then it ends, too
+    while finest.pieces == 4 * table.pieces and finest.pieces <= MAX_ADDED_PIECES:
         exact = integrate_table(finest, order, drift).values
         if find_deviation(made, exact) <= INTEGRAL_ERROR * float(np.ptp(exact)):
             break
@@ -157,11 +158,12 @@ def rebuild_integral(table: TableFunction, entry: TableEntry, integrals: Integra
     The integral of a spline is a not-a-knot spline, because that of a natural one is not straight at its ends; other
     curves get the exact slopes.
     """
+    values = integrals.values
     if entry.period is not None:
-        integrals.values[-1] = integrals.values[0]
+        values = np.append(values[:-1], values[0])
     is_spline = entry.interpolation == "cubic"
     source = replace(table, interpolation="cubic") if is_spline else table
-    return rebuild_table(source, entry, integrals.values, None if is_spline else integrals.slopes)
+    return rebuild_table(source, entry, values, None if is_spline else integrals.slopes)
 
 
 def rebuild_table(table: TableFunction, entry: TableEntry, y: Array, slopes: Array | None = None) -> TableFunction:

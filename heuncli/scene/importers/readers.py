@@ -2,7 +2,7 @@
 
 Each format is a row. Its reader module, and whatever that needs, is imported when it is used:
 
-    described(content, file, root, options, sha256) -> DescribedMachine
+    read_model(content, file, root, options, sha256) -> DescribedMachine
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class ModelReader(NamedTuple):
         self, content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str
     ) -> DescribedMachine:
         """Read the machine from a file of this format. Raises SpecError."""
-        read: Callable[..., DescribedMachine] = import_module(f"heuncli.scene.importers.{self.module}").described
+        read: Callable[..., DescribedMachine] = import_module(f"heuncli.scene.importers.{self.module}").read_model
         return read(content, file, root, options, sha256)
 
 

@@ -9,22 +9,24 @@ What a joint and its reaction pass through, from the file to a cell. Up to the n
     Joint of a Mechanism      multibody/mechanism/model.py           bodies by index, axes as arrays
     TreeLink, or closure rows multibody/tree/                        its place in the tree, or how it closes a loop
     tables of a Layout        multibody/tree/layout.py               the arrays that the kernel reads
+    History                   study/solve/history.py                 finds the kernel's solutions at the instants
     Evaluation                motion/integration/evaluator.py        the kernel's forces of tree joints and multipliers
+    Resolution                loads/redundancy/resolve.py            in redundant scenes: what is determined
     JointLoads                loads/kinetostatics/reactions.py       force and moment ON `to`; split where redundant
     JointBlock of the Results results/results.py, made here          with components, shares, axes, indeterminate marks
 
 JSON is written of that block (output/tables/export.py). After it:
 
+    StoredArray               results/stored_arrays.py               stands for its arrays where a file holds long ones
     Channel                   study/quantities/channels.py           path, unit, kind of error; its numbers are channels
     Extremes                  results/results.py                     least and greatest value, each with its instant
+    RowGroup, TableBlock      output/tables/table_blocks.py          channels that share rows of a table
     NumberCell                output/documents/document.py           in display units, with the digits of its error
+    OutputTable               output/documents/document.py           its cells, placed; no other form of the number
 
 A section goes the same way: SectionEntry, Section, Cuts (loads/kinetostatics/cuts.py), its block, its channels. Those
 of a series of cuts are a CutSeries (study/quantities/cut_series.py); a search cuts it as one whole length, a Stretch
-(loads/kinetostatics/stretch.py).
-
-Tables group channels (RowGroup, TableBlock in output/tables/table_blocks.py) and place cells in an OutputTable, which
-holds no other form of the number.
+(loads/kinetostatics/stretch.py). A sensor reads the one or the other (loads/kinetostatics/sensors.py, sensors.py here).
 """
 
 from __future__ import annotations
@@ -58,6 +60,8 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     """Make the blocks of some reports, by the names of the fields of `Results`.
 
     Joints, stops and foundation in this order: loads, their shares by cause, axes, and which of them are indeterminate.
+    Turning a block turns its shares with it, so they are there before; marks set single components to nan, which no
+    rotation may mix with others, so they come last and in the axes that are shown.
     """
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
     solutions, states = recovery.solutions, recovery.states
@@ -172,7 +176,7 @@ def make_joint_block(load: JointLoads, planar: bool = False) -> JointBlock:
         carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
         block["pressure"] = carried / load.joint.bearing
     if load.joint.bearings is not None:
-        from heuncli.loads.kinetostatics.sensors import make_bearing_blocks  # few joints have them
+        from heuncli.loads.kinetostatics.bearings import make_bearing_blocks  # few joints have them
 
         block["bearings"] = make_bearing_blocks(load, planar)
     if load.joint.path is not None and load.joint.path.radius:

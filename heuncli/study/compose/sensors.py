@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
-from heuncli.loads.kinetostatics.sensors import PlacedSensor, move_shares
+from heuncli.loads.kinetostatics.sensors import PlacedSensor, find_sensor_reaction, move_shares
 from heuncli.results.results import Array, Block
 from heuncli.study.compose.recovery import Recovery
-from heuncli.study.solve.load_errors import find_sensor_reaction
 
 if TYPE_CHECKING:
     from heuncli.loads.redundancy.self_stress import SelfStress
@@ -27,10 +26,11 @@ def make_sensor_blocks(recovery: Recovery, by_cause: bool) -> Block:
 
 def make_sensor_block(recovery: Recovery, sensor: PlacedSensor, by_cause: bool) -> Block:
     """Make the block of one sensor; nan where the reaction is indeterminate."""
-    states, planar = recovery.states, recovery.setup.scene.mechanism.planar
+    states, mechanism = recovery.states, recovery.setup.scene.mechanism
+    planar = mechanism.planar
     acting = [*recovery.applied_actions, *list_coupling_actions(recovery.couplings)]
-    reaction = find_sensor_reaction(recovery.setup, sensor, states, recovery.joints, acting)
-    origin = reaction[0]
+    reaction = find_sensor_reaction(sensor, mechanism, recovery.setup.cuts, states, recovery.joints, acting)
+    origin = reaction.origin
     force, moment = sensor.read(states, reaction, planar)
     block: Block = {"point": sensor.find_point(states, origin), "force": force, "moment": moment, "open": []}
     if by_cause:

@@ -114,32 +114,40 @@ class WholeBar:
         stretch, n = self.stretch, self.stretch.cuts.n
         mechanism = self.setup.scene.mechanism
         assert stretch.cuts.form is not None
-        tolerance, first = self.corner_tolerance, float(stretch.find_height(np.array(0.0)))
+        first = float(stretch.find_height(np.array(0.0)))
         masses = stretch.corners[stretch.cuts.form.has_mass_in_plane(n, stretch.corners)] - first
         supports = {
             ("joint", joint.name): "clamp" if joint.kind == "weld" else "support"
             for joint in mechanism.joints
             if GROUND in (joint.a, joint.b)
         }
-        ropes = [
+        found = [
+            BarAttachment(float(own.place @ n) - first, supports.get((own.kind, own.name), own.kind), own.name)
+            for own in list_attachments(mechanism, stretch.body)
+        ]
+        found += [BarAttachment(float(point @ n) - first, "rope", name) for name, point in self._list_ropes()]
+        found += [BarAttachment(s, "mass", "point mass") for s in masses.tolist()]
+        found += self._find_gears([own.s for own in found])
+        return self._merge_places(found)
+
+    def _list_ropes(self) -> list[tuple[str, Array]]:
+        """Return the ropes that act at points of the bar: name, and the point (3,) in its axes."""
+        return [
             (coupling.name, np.asarray(point))
-            for coupling in mechanism.couplings
+            for coupling in self.setup.scene.mechanism.couplings
             if isinstance(coupling.entry, Rope)
             for row in coupling.loading_rows
             for part in row.parts
             if not part.lies_on_sheave
             for owner, point in part.body_points
-            if owner == stretch.body
+            if owner == self.stretch.body
         ]
-        found = [
-            BarAttachment(float(own.place @ n) - first, supports.get((own.kind, own.name), own.kind), own.name)
-            for own in list_attachments(mechanism, stretch.body)
-        ]
-        found += [BarAttachment(float(point @ n) - first, "rope", name) for name, point in ropes]
-        found += [BarAttachment(s, "mass", "point mass") for s in masses.tolist()]
-        found += self._find_gears([own.s for own in found])
+
+    def _merge_places(self, attachments: Sequence[BarAttachment]) -> list[BarAttachment]:
+        """Return what is along the bar, ascending: names once at each place, places within the tolerance as one."""
+        tolerance = self.corner_tolerance
         distinct: dict[str, BarAttachment] = {}
-        for own in found:
+        for own in attachments:
             if -tolerance <= own.s <= self.length + tolerance:
                 same_place = next((other.s for other in distinct.values() if abs(other.s - own.s) <= tolerance), own.s)
                 distinct.setdefault(f"{own.name} {same_place}", own._replace(s=same_place))
@@ -209,7 +217,7 @@ class WholeBar:
         loads = self.solve_cuts(make_cuts_at(self.stretch.cuts, s, side), time)
         lines = {}
         for name in self.quantities:
-            extremes_of_line = [find_line_extreme(s, side * loads[name], side, time) for side in (-1.0, 1.0)]
+            extremes_of_line = [find_line_extreme(s, sign * loads[name], sign, time) for sign in (-1.0, 1.0)]
             if np.isfinite(nodes[name]).all():
                 summits = find_cut_extremes(self.stretch, nodes["s"], nodes[name])
                 extremes_of_line = [Extreme(summit.value, summit.place.s, time) for summit in summits]
@@ -251,10 +259,12 @@ class WholeBar:
         times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]
         found = columns.finish(extremes.search_extremes(columns.sample, times, columns.groups, errors=columns.errors))
-        rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, found.paths, strict=True)
+        lows, highs = zip(found.low, found.low_at, strict=True), zip(found.high, found.high_at, strict=True)
         return {
-            name_of[path]: (Extreme(float(a), low.s, float(a_at)), Extreme(float(b), high.s, float(b_at)))
-            for a, a_at, b, b_at, (low, high), path in rows
+            name_of[path]: (Extreme(float(low), place.s, float(low_at)), Extreme(float(high), other.s, float(high_at)))
+            for path, (low, low_at), (high, high_at), (place, other) in zip(
+                found.paths, lows, highs, found.places, strict=True
+            )
         }
 
     def _find_bounds(self, times: Array, extra_places: Sequence[float]) -> tuple[Array, Array, Array]:

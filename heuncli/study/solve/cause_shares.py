@@ -43,7 +43,7 @@ def add_shares(
                 block = blocks["joints"][load.joint.name]
                 block["shares"] = joint_shares_block(shares, load)
                 if load.joint.bearings is not None:
-                    from heuncli.loads.kinetostatics.sensors import make_bearing_loads  # few joints have them
+                    from heuncli.loads.kinetostatics.bearings import make_bearing_loads  # few joints have them
 
                     for key, own in make_bearing_loads(load, mechanism.planar).items():
                         block["bearings"][key]["shares"] = shares.to_blocks(own)
@@ -126,7 +126,7 @@ def list_moved_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindV
     """Return the shares of the bearings of joints, and of what sensors read."""
     found: KindValues = []
     if any(load.joint.bearings is not None for load in shares.joints):
-        from heuncli.loads.kinetostatics.sensors import iter_bearing_terms  # few joints have them
+        from heuncli.loads.kinetostatics.bearings import iter_bearing_terms  # few joints have them
 
         found += [("bearings", "force", np.moveaxis(values, 0, 1)) for values, *_ in iter_bearing_terms(shares.joints)]
     for sensor in setup.sensors:
@@ -139,7 +139,7 @@ def find_sensor_shares(setup: Setup, sensor: PlacedSensor, states: BodyStates, s
     """Return the shares by cause in a sensor's reaction: origin (n_t, 3), force and moment, (n_c, n_t, 3) each."""
     if sensor.joint is not None:
         load = next(load for load in shares.joints if load.joint.name == sensor.joint)
-        return load.point, load.force, load.moment
+        return Reaction(load.point, load.force, load.moment)
     from heuncli.loads.kinetostatics.sections import make_cut_places  # few sensors read a cut
     from heuncli.loads.kinetostatics.shares import section_shares_block
 
@@ -148,7 +148,7 @@ def find_sensor_shares(setup: Setup, sensor: PlacedSensor, states: BodyStates, s
     places = make_cut_places(cuts, states)
     origin = places.to_world_axes(places.moment_points, is_position=True)[:, 0]
     force, moment = (np.array([block[cause][name] for cause in shares.causes]) for name in WRENCH)
-    return origin, force, moment
+    return Reaction(origin, force, moment)
 
 
 def list_coupling_shares(couplings: Sequence[CouplingLoads]) -> KindValues:

@@ -38,7 +38,6 @@ from heuncli.loads.kinetostatics.couplings import (
 )
 from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
-from heuncli.loads.kinetostatics.sensors import PlacedSensor, Reaction
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Joint, extent_points
@@ -105,27 +104,6 @@ CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared
 
 
 Quantity = tuple[str, Array]  # of couplings: name, a key of error_estimates.UNITS; values (n, k, 3) or (n, k, 1)
-
-
-def find_sensor_reaction(
-    setup: Setup, sensor: PlacedSensor, states: BodyStates, joints: Sequence[JointLoads], acting: Sequence[Action]
-) -> Reaction:
-    """Return the reaction that a sensor reads: origin, force and moment, (n_t, 3) each, world axes.
-
-    Of a joint it is what its constraint exerts ON `to`, of a section the load of the far side ON the near side.
-
-    joints, acting: the reactions, and all other actions on bodies
-    """
-    if sensor.joint is not None:
-        load = next(load for load in joints if load.joint.name == sensor.joint)
-        return load.point, load.force, load.moment
-    from heuncli.loads.kinetostatics.sections import find_attachments, section_block  # few sensors read a cut
-
-    mechanism = setup.scene.mechanism
-    cuts = next(cuts for cuts in setup.cuts if cuts.name == sensor.section).for_impulse
-    attached = find_attachments(cuts.body, states, [*list_whole_joint_actions(joints), *acting])
-    block = section_block(cuts, states, mechanism.gravity, attached, {}, mechanism.planar)
-    return block["point"], block["force"], block["moment"]
 
 
 class ComparedInstants(NamedTuple):
@@ -331,15 +309,21 @@ class LoadErrors(ErrorEstimates):
         """Add the loads of the bearings of joints, and what sensors read."""
         F, M = terms.rounding
         if any(load.joint.bearings is not None for load in joints):
-            from heuncli.loads.kinetostatics.sensors import iter_bearing_terms  # few joints have them
+            from heuncli.loads.kinetostatics.bearings import iter_bearing_terms  # few joints have them
 
             for values, by_force, by_moment in iter_bearing_terms(joints):
                 largest_term = by_force * terms.force + by_moment * terms.moment
                 self.add_values(("bearings", "force"), values, by_force * F + by_moment * M, largest_term)
+        if not self.setup.sensors:
+            return
+        from heuncli.loads.kinetostatics.sensors import find_sensor_reaction  # few scenes have them
+
+        mechanism = self.setup.scene.mechanism
         for sensor in self.setup.sensors:
-            reaction = find_sensor_reaction(self.setup, sensor, states, joints, acting)
-            force, moment = sensor.read(states, reaction, self.setup.scene.mechanism.planar)
-            lever = np.abs(reaction[0] - sensor.find_point(states, reaction[0])).max(axis=1)
+            reaction = find_sensor_reaction(sensor, mechanism, self.setup.cuts, states, joints, acting)
+            force, moment = sensor.read(states, reaction, mechanism.planar)
+            # a component of d x F is a sum of two products: the largest component of d alone would be too little
+            lever = np.abs(sensor.find_lever(states, reaction.origin)).sum(axis=1)
             self.add_values(("sensors", "force"), force, F, terms.force)
             self.add_values(("sensors", "moment"), moment, M + lever * F, terms.moment + lever * terms.force)
 

@@ -42,7 +42,9 @@ COUNT_HINT = "MuJoCo would create all of them before any check"
 
 
 class ModelFiles(NamedTuple):
-    """folder: where file names are looked up
+    """What a model's text may name.
+
+    folder: where file names are looked up
     models: texts of included models by their names
     """
 

@@ -51,14 +51,14 @@ class _LawBuilder:
 
     def __init__(
         self,
-        c: CompiledModel,
+        compiled: CompiledModel,
         tree: JointTree,
         leaderless: tuple[JointEquality, ...],
         q: Any,
         qd: Any,
         options: ImportOptions,
     ) -> None:
-        self.c, self.steps, self.q, self.qd, self.options = c, tree.step_by_joint, q, qd, options
+        self.compiled, self.steps, self.q, self.qd, self.options = compiled, tree.step_by_joint, q, qd, options
         self.leaderless = leaderless
         self.parameters: list[DescribedParameter] = []
         self.drives: list[DescribedEntry] = []
@@ -70,13 +70,13 @@ class _LawBuilder:
 
     def hold_joint(self, joint: int) -> None:
         """Make a joint stand, or start, at the value of its parameter."""
-        c, step = self.c, self.steps[joint]
-        rate = float(self.qd[c.model.jnt_dofadr[joint]])
+        compiled, step = self.compiled, self.steps[joint]
+        rate = float(self.qd[compiled.model.jnt_dofadr[joint]])
         value = self.start_value(joint)
         self.parameters.append(
-            DescribedParameter(step.name, format_coordinate(step, value), _format_limits(c, joint, step))
+            DescribedParameter(step.name, format_coordinate(step, value), _format_limits(compiled, joint, step))
         )
-        position = _subtract(step.name, drawn_coordinate(c, joint))
+        position = _subtract(step.name, get_drawn_coordinate(compiled, joint))
         if self.options.free:
             self.initial[step.name] = {COORDINATE_KEYS[step.kind]: position}
             if self.qd.any():  # without a rate the body would rest in the world, not on its parent
@@ -90,7 +90,7 @@ class _LawBuilder:
         """Return MuJoCo's coordinate at the start, moved to the nearest limit if stops are imported and it lies
         outside.
         """
-        model, value = self.c.model, float(self.q[self.c.model.jnt_qposadr[joint]])
+        model, value = self.compiled.model, float(self.q[self.compiled.model.jnt_qposadr[joint]])
         if not (self.options.limits and model.jnt_limited[joint]):
             return value
         low, high = (float(limit) for limit in model.jnt_range[joint])
@@ -98,7 +98,7 @@ class _LawBuilder:
 
     def follow_leader(self, coupling: JointEquality) -> None:
         """Make a joint follow another by the law of that one."""
-        c, step = self.c, self.steps[coupling.follower]
+        compiled, step = self.compiled, self.steps[coupling.follower]
         if self.options.free and coupling.leader is not None:
             self.couple_free_joint(coupling)
             return
@@ -108,40 +108,40 @@ class _LawBuilder:
             reason = (
                 f"{step.name} follows {unheld if argument is None else 'two joints: another equality drives it, too'}"
             )
-            self.left_out.append(make_left_out_problem(c, "equality", coupling.equality, reason, UNHELD_HINT))
+            self.left_out.append(make_left_out_problem(compiled, "equality", coupling.equality, reason, UNHELD_HINT))
             return
         law = format_polynomial(coupling.polynomial if argument else coupling.polynomial[:1], argument)
-        self.laws[coupling.follower] = _subtract(law, -drawn_coordinate(c, coupling.follower))
+        self.laws[coupling.follower] = _subtract(law, -get_drawn_coordinate(compiled, coupling.follower))
         law_note = (
             ""
             if coupling.leader is None
             else f"; for a motion, use the function of {self.steps[coupling.leader].name} here as well"
         )
-        self.add_drive(coupling.follower, law, f"{c.describe_part('equality', coupling.equality)}{law_note}")
+        self.add_drive(coupling.follower, law, f"{compiled.describe_part('equality', coupling.equality)}{law_note}")
 
     def couple_free_joint(self, coupling: JointEquality) -> None:
         """Make a free joint follow another in a fixed ratio. Raises SpecError [import-mimic] for any other
         polynomial.
         """
-        c, step = self.c, self.steps[coupling.follower]
+        compiled, step = self.compiled, self.steps[coupling.follower]
         start, slope, *higher_terms = (*coupling.polynomial, 0.0, 0.0)
         assert coupling.leader is not None
         if slope == 0.0 or any(higher_terms) or coupling.follower in self.couplings:
             message = (
                 f"joint {step.name} follows another by more than a fixed ratio, which is not possible with free joints"
             )
-            place = c.location("equality", coupling.equality)
+            place = compiled.location("equality", coupling.equality)
             raise SpecError(Problem("import-mimic", message, place, "leave out --free: drives then keep the relation"))
         # the spec counts coordinates from the drawn pose, so MuJoCo's are taken minus their drawn values
         leader = self.steps[coupling.leader].name
         keys = {"type": "ratio", "of": (step.name, leader), "factors": (1.0, -slope), "is": start}
-        told = c.describe_part("equality", coupling.equality)
+        told = compiled.describe_part("equality", coupling.equality)
         self.couplings[coupling.follower] = DescribedEntry(f"follow_{step.name}", keys, told)
 
     def add_drive(self, joint: int, law: str, remark: str = "") -> None:
         step = self.steps[joint]
         self.driven_joints.add(joint)
-        motors = ", ".join(_iter_motors(self.c, joint))
+        motors = ", ".join(_iter_motors(self.compiled, joint))
         remark = "; ".join(filter(None, (remark, motors)))
         self.drives.append(
             DescribedEntry(f"hold_{step.name}", {"joint": step.name, COORDINATE_KEYS[step.kind]: law}, remark)
@@ -156,7 +156,7 @@ class _LawBuilder:
         law = self.laws.get(coupling.leader)
         if law is None:
             return None
-        law = _subtract(law, drawn_coordinate(self.c, coupling.leader))
+        law = _subtract(law, get_drawn_coordinate(self.compiled, coupling.leader))
         return law if law.isidentifier() else f"({law})"
 
     def make_header_lines(self) -> tuple[str, ...]:
@@ -169,7 +169,7 @@ class _LawBuilder:
 
 
 def build_joint_laws(
-    c: CompiledModel,
+    compiled: CompiledModel,
     tree: JointTree,
     held_joints: HeldJoints,
     couplings: tuple[JointEquality, ...],
@@ -179,7 +179,7 @@ def build_joint_laws(
 ) -> JointLaws:
     """Build the parameters and drives. q, qd: MuJoCo's coordinates and rates at the start. Raises SpecError."""
     leaderless = tuple(coupling for coupling in couplings if coupling not in held_joints.couplings)
-    builder = _LawBuilder(c, tree, leaderless, q, qd, options)
+    builder = _LawBuilder(compiled, tree, leaderless, q, qd, options)
     for joint in held_joints.joints:
         builder.hold_joint(joint)
     for coupling in (*_sort_by_leader(held_joints.couplings), *leaderless):
@@ -195,9 +195,9 @@ def build_joint_laws(
     )
 
 
-def drawn_coordinate(c: CompiledModel, joint: int) -> float:
+def get_drawn_coordinate(compiled: CompiledModel, joint: int) -> float:
     """Return MuJoCo's coordinate of a joint in the pose in which the machine is drawn."""
-    return float(c.model.qpos0[c.model.jnt_qposadr[joint]])
+    return float(compiled.model.qpos0[compiled.model.jnt_qposadr[joint]])
 
 
 def format_coordinate(step: TreeJoint, value: float) -> str:
@@ -226,20 +226,22 @@ def _subtract(law: str, value: float) -> str:
     return law if value == 0.0 else f"{law} {'-' if value > 0.0 else '+'} {format_decimal(abs(value))}"
 
 
-def _format_limits(c: CompiledModel, joint: int, step: TreeJoint) -> str:
+def _format_limits(compiled: CompiledModel, joint: int, step: TreeJoint) -> str:
     """Make the remark of a joint: its name in MuJoCo, if it differs, and its range."""
-    remarks = [format_original_name("joint", step.name, c.name("joint", joint) or step.name)]
-    if c.model.jnt_limited[joint]:
-        low, high = (format_number(float(limit)) for limit in c.model.jnt_range[joint])
+    remarks = [format_original_name("joint", step.name, compiled.name("joint", joint) or step.name)]
+    if compiled.model.jnt_limited[joint]:
+        low, high = (format_number(float(limit)) for limit in compiled.model.jnt_range[joint])
         remarks.append(f"limits {low} to {high} {'rad' if step.kind == 'pin' else 'm'}")
     return "; ".join(filter(None, remarks))
 
 
-def _iter_motors(c: CompiledModel, joint: int) -> Iterator[str]:
+def _iter_motors(compiled: CompiledModel, joint: int) -> Iterator[str]:
     """Describe the actuators on a joint."""
-    kinds = {int(c.mujoco.mjtTrn.__members__[word]) for word in ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")}
-    for number in range(int(c.model.nu)):
-        if int(c.model.actuator_trntype[number]) in kinds and int(c.model.actuator_trnid[number][0]) == joint:
-            yield (
-                f"{c.describe_part('actuator', number)}, gear {format_number(float(c.model.actuator_gear[number][0]))}"
-            )
+    kinds = {int(compiled.mujoco.mjtTrn.__members__[word]) for word in ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")}
+    for number in range(int(compiled.model.nu)):
+        if (
+            int(compiled.model.actuator_trntype[number]) in kinds
+            and int(compiled.model.actuator_trnid[number][0]) == joint
+        ):
+            gear = format_number(float(compiled.model.actuator_gear[number][0]))
+            yield f"{compiled.describe_part('actuator', number)}, gear {gear}"

@@ -14,7 +14,7 @@ from typing import Any
 
 from heuncli.scene.importers.description import DescribedEntry
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.laws import drawn_coordinate
+from heuncli.scene.importers.mjcf.laws import get_drawn_coordinate
 from heuncli.scene.importers.mjcf.loop_closures import AssignName
 from heuncli.scene.importers.mjcf.tendons import sum_joint_damping
 from heuncli.scene.importers.mjcf.tree import (
@@ -29,17 +29,17 @@ from heuncli.scene.importers.mjcf.tree import (
 from heuncli.scene.importers.spec_text import format_decimal, format_number
 
 
-def iter_joint_loads(c: CompiledModel, tree: JointTree, assign_name: AssignName) -> Iterator[DescribedEntry]:
+def iter_joint_loads(compiled: CompiledModel, tree: JointTree, assign_name: AssignName) -> Iterator[DescribedEntry]:
     """Yield the springs and dampers in the joints of the tree."""
-    springs, dampers = not c.is_disabled("PASSIVE", "SPRING"), not c.is_disabled("PASSIVE", "DAMPER")
+    springs, dampers = not compiled.is_disabled("PASSIVE", "SPRING"), not compiled.is_disabled("PASSIVE", "DAMPER")
     for step in tree.steps:
         if step.joint is None:
             continue
-        stiffness = float(c.model.jnt_stiffness[step.joint]) if springs else 0.0
-        damping = sum_joint_damping(c, step.joint) if dampers else 0.0
+        stiffness = float(compiled.model.jnt_stiffness[step.joint]) if springs else 0.0
+        damping = sum_joint_damping(compiled, step.joint) if dampers else 0.0
         if stiffness and step.kind in COORDINATE_KEYS:
-            reference = float(c.model.qpos_spring[c.model.jnt_qposadr[step.joint]])
-            yield _make_spring(step, stiffness, reference - drawn_coordinate(c, step.joint), assign_name)
+            reference = float(compiled.model.qpos_spring[compiled.model.jnt_qposadr[step.joint]])
+            yield _make_spring(step, stiffness, reference - get_drawn_coordinate(compiled, step.joint), assign_name)
         if (step.kind in COORDINATE_KEYS and damping) or (step.kind == "ball" and damping > 0.0):
             yield _make_damper(step, damping, assign_name)
 
@@ -70,7 +70,7 @@ def _make_spring(step: TreeJoint, stiffness: float, free_position: float, assign
 
 
 def iter_gravity_compensation(
-    c: CompiledModel,
+    compiled: CompiledModel,
     frames: BodyFrames,
     tree: JointTree,
     points: BodyPoints,
@@ -82,46 +82,51 @@ def iter_gravity_compensation(
 
     What joints with `actuatorgravcomp` carry is left to their drives; free joints have no drive.
     """
-    if c.is_disabled("PASSIVE") or (c.is_disabled("SPRING") and c.is_disabled("DAMPER")):
+    if compiled.is_disabled("PASSIVE") or (compiled.is_disabled("SPRING") and compiled.is_disabled("DAMPER")):
         return
-    for body in range(1, int(c.model.nbody)):
-        share, mass = float(c.model.body_gravcomp[body]), float(c.model.body_mass[body])
+    for body in range(1, int(compiled.model.nbody)):
+        share, mass = float(compiled.model.body_gravcomp[body]), float(compiled.model.body_mass[body])
         if not (share and mass and frames.owners[body]) or not any(gravity):
             continue
-        if not free and all(motor_compensation(c, body)):
+        if not free and all(find_motor_compensation(compiled, body)):
             continue
         body_name = tree.names[frames.owners[body]]
-        center = points.add(body_name, "center", frames.transform_point(body, c.model.body_ipos[body]))
+        center = points.add(body_name, "center", frames.transform_point(body, compiled.model.body_ipos[body]))
         vector = to_vec(-share * mass * g for g in gravity)
-        remark = f"gravcomp {format_number(share)} of {c.describe_part('body', body)}"
+        remark = f"gravcomp {format_number(share)} of {compiled.describe_part('body', body)}"
         yield DescribedEntry(
             assign_name(f"gravcomp_{body_name}"), {"type": "force", "on": center, "vector": vector}, remark
         )
 
 
-def motor_compensation(c: CompiledModel, body: int) -> list[bool]:
+def find_motor_compensation(compiled: CompiledModel, body: int) -> list[bool]:
     """For each joint that carries a body, return whether its motor carries the weight (`actuatorgravcomp`)."""
     found: list[bool] = []
     while body:
-        first = int(c.model.body_jntadr[body])
-        found += [bool(c.model.jnt_actgravcomp[k]) for k in range(first, first + int(c.model.body_jntnum[body]))]
-        body = int(c.model.body_parentid[body])
+        first = int(compiled.model.body_jntadr[body])
+        found += [
+            bool(compiled.model.jnt_actgravcomp[k]) for k in range(first, first + int(compiled.model.body_jntnum[body]))
+        ]
+        body = int(compiled.model.body_parentid[body])
     return found
 
 
 def iter_stops(
-    c: CompiledModel, tree: JointTree, driven_joints: frozenset[int], assign_name: AssignName
+    compiled: CompiledModel, tree: JointTree, driven_joints: frozenset[int], assign_name: AssignName
 ) -> Iterator[DescribedEntry]:
     """Yield the limits of the joints without a drive as stops. At a stop, the coordinate meets an impact without
     rebound.
     """
-    if c.is_disabled("LIMIT", "CONSTRAINT"):
+    if compiled.is_disabled("LIMIT", "CONSTRAINT"):
         return
     for step in tree.steps:
-        if step.joint is None or step.joint in driven_joints or not c.model.jnt_limited[step.joint]:
+        if step.joint is None or step.joint in driven_joints or not compiled.model.jnt_limited[step.joint]:
             continue
         if step.kind in COORDINATE_KEYS:
-            low, high = (float(limit) - drawn_coordinate(c, step.joint) for limit in c.model.jnt_range[step.joint])
+            low, high = (
+                float(limit) - get_drawn_coordinate(compiled, step.joint)
+                for limit in compiled.model.jnt_range[step.joint]
+            )
             yield DescribedEntry(
                 assign_name(f"limits_{step.name}"), {"joint": step.name, COORDINATE_KEYS[step.kind]: (low, high)}
             )

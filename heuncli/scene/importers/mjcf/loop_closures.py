@@ -30,7 +30,7 @@ from heuncli.scene.importers.mjcf.tree import (
     BodyFrames,
     BodyPoints,
     JointTree,
-    exact_rotation_from_quaternion,
+    make_exact_rotation,
     to_vec,
 )
 from heuncli.scene.importers.spec_text import format_decimal
@@ -81,10 +81,10 @@ class ClosureEnd(NamedTuple):
     attitude: Matrix
 
 
-def make_left_out_problem(c: CompiledModel, kind: str, number: int, reason: str, hint: str) -> Problem:
+def make_left_out_problem(compiled: CompiledModel, kind: str, number: int, reason: str, hint: str) -> Problem:
     """Make the problem for a part that has no counterpart in a spec."""
-    location, name = c.location(kind, number), c.describe_part(kind, number)
-    where = "" if location else f"{c.file}: "
+    location, name = compiled.location(kind, number), compiled.describe_part(kind, number)
+    where = "" if location else f"{compiled.file}: "
     return Problem(LEFT_OUT_CODE, f"{where}{name}: {reason}", location, hint)
 
 
@@ -92,9 +92,9 @@ class ClosureBuilder:
     """Builds the loop closures of one model; entries are added as they are found."""
 
     def __init__(
-        self, c: CompiledModel, frames: BodyFrames, tree: JointTree, points: BodyPoints, name: AssignName
+        self, compiled: CompiledModel, frames: BodyFrames, tree: JointTree, points: BodyPoints, name: AssignName
     ) -> None:
-        self.c, self.frames, self.tree, self.points, self.assign_name = c, frames, tree, points, name
+        self.compiled, self.frames, self.tree, self.points, self.assign_name = compiled, frames, tree, points, name
         self.joints: list[DescribedEntry] = []
         self.drives: list[DescribedEntry] = []
         self.ratios: list[DescribedEntry] = []
@@ -106,20 +106,20 @@ class ClosureBuilder:
 
     def build(self) -> LoopClosures:
         """Build all loop closures of the model."""
-        c = self.c
+        compiled = self.compiled
         rows = {
             "CONNECT": self.add_connect,
             "WELD": self.add_weld,
             "JOINT": self.add_coupling,
             "TENDON": self.add_tendon,
         }
-        handler_by_type = {int(c.mujoco.mjtEq.__members__[f"mjEQ_{word}"]): row for word, row in rows.items()}
-        names = {int(value): word[5:].lower() for word, value in c.mujoco.mjtEq.__members__.items()}
-        for number in range(c.count("equality")):
-            kind = int(c.model.eq_type[number])
-            if not c.model.eq_active0[number] or c.is_disabled("EQUALITY", "CONSTRAINT"):
+        handler_by_type = {int(compiled.mujoco.mjtEq.__members__[f"mjEQ_{word}"]): row for word, row in rows.items()}
+        names = {int(value): word[5:].lower() for word, value in compiled.mujoco.mjtEq.__members__.items()}
+        for number in range(compiled.count("equality")):
+            kind = int(compiled.model.eq_type[number])
+            if not compiled.model.eq_active0[number] or compiled.is_disabled("EQUALITY", "CONSTRAINT"):
                 self.header_lines.append(
-                    f"{c.describe_part('equality', number)} is not active at the start and is left out"
+                    f"{compiled.describe_part('equality', number)} is not active at the start and is left out"
                 )
             elif kind not in handler_by_type:
                 self.leave_out(number, f"a spec has no equality of type {names[kind]}")
@@ -133,13 +133,13 @@ class ClosureBuilder:
         self, number: int, reason: str, hint: str = "what it constrains is free in the spec: add a constraint there"
     ) -> None:
         """Report that an equality is left out."""
-        self.left_out.append(make_left_out_problem(self.c, "equality", number, reason, hint))
+        self.left_out.append(make_left_out_problem(self.compiled, "equality", number, reason, hint))
 
     def add_equality(self, number: int, kind: str, ends: tuple[ClosureEnd, ClosureEnd], **keys: Any) -> str:
         """Add an equality as a joint between two ends. Returns its name."""
-        original = self.c.name("equality", number) or f"{kind}_{number + 1}"
+        original = self.compiled.name("equality", number) or f"{kind}_{number + 1}"
         self.imported_equalities.add(number)
-        return self.add_joint(original, self.c.describe_part("equality", number), kind, ends, **keys)
+        return self.add_joint(original, self.compiled.describe_part("equality", number), kind, ends, **keys)
 
     def add_joint(self, original: str, remark: str, kind: str, ends: tuple[ClosureEnd, ClosureEnd], **keys: Any) -> str:
         """Add a joint between two ends, unless both are on the same body. Returns its name, or an empty text."""
@@ -158,9 +158,9 @@ class ClosureBuilder:
 
     def find_ends(self, number: int, points: tuple[Any, Any]) -> tuple[ClosureEnd, ClosureEnd]:
         """Find the ends of an equality of two bodies with these points, or of two sites."""
-        c = self.c
-        ids = int(c.model.eq_obj1id[number]), int(c.model.eq_obj2id[number])
-        if int(c.model.eq_objtype[number]) == int(c.mujoco.mjtObj.mjOBJ_SITE):
+        compiled = self.compiled
+        ids = int(compiled.model.eq_obj1id[number]), int(compiled.model.eq_obj2id[number])
+        if int(compiled.model.eq_objtype[number]) == int(compiled.mujoco.mjtObj.mjOBJ_SITE):
             return self.find_site_end(ids[0]), self.find_site_end(ids[1])
         one, other = (
             ClosureEnd(body, self.frames.transform_point(body, point), self.frames.attitudes[body])
@@ -170,9 +170,9 @@ class ClosureBuilder:
 
     def find_site_end(self, site: int) -> ClosureEnd:
         """Find the end at a site."""
-        model = self.c.model
+        model = self.compiled.model
         body = int(model.site_bodyid[site])
-        attitude = compose_rotations(self.frames.attitudes[body], exact_rotation_from_quaternion(model.site_quat[site]))
+        attitude = compose_rotations(self.frames.attitudes[body], make_exact_rotation(model.site_quat[site]))
         return ClosureEnd(body, self.frames.transform_point(body, model.site_pos[site]), attitude)
 
     def add_point(self, end: ClosureEnd, original: str) -> str:
@@ -184,19 +184,15 @@ class ClosureBuilder:
         return self.tree.names[self.frames.owners[end.body]]
 
     def add_connect(self, number: int) -> None:
-        data = self.c.model.eq_data[number]
+        data = self.compiled.model.eq_data[number]
         self.add_equality(number, "ball", self.find_ends(number, (data[0:3], data[3:6])))
 
     def add_weld(self, number: int) -> None:
         """Add a weld. A spec's weld keeps the axes of its bodies parallel, as they are with all joints at zero."""
-        data = self.c.model.eq_data[number]
+        data = self.compiled.model.eq_data[number]
         one, other = self.find_ends(number, (data[3:6], data[0:3]))
-        between_sites = int(self.c.model.eq_objtype[number]) == int(self.c.mujoco.mjtObj.mjOBJ_SITE)
-        attitude = (
-            one.attitude
-            if between_sites
-            else compose_rotations(one.attitude, exact_rotation_from_quaternion(data[6:10]))
-        )
+        between_sites = int(self.compiled.model.eq_objtype[number]) == int(self.compiled.mujoco.mjtObj.mjOBJ_SITE)
+        attitude = one.attitude if between_sites else compose_rotations(one.attitude, make_exact_rotation(data[6:10]))
         if float(data[10]) == 0.0:  # torquescale: it holds no rotation
             self.add_equality(number, "ball", (one, other))
         elif np.abs(np.array(attitude) - np.array(other.attitude)).max() > ROTATION_TOLERANCE:
@@ -216,39 +212,40 @@ class ClosureBuilder:
             self.drives.append(entry)
 
     def add_coupling(self, number: int) -> None:
-        model = self.c.model
+        model = self.compiled.model
         follower, leader = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         polynomial = tuple(float(x) for x in model.eq_data[number][:5])
         self.couplings.append(JointEquality(number, follower, leader if leader >= 0 else None, polynomial))
 
     def add_tendon(self, number: int) -> None:
-        model = self.c.model
+        model = self.compiled.model
         tendon, other = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
-        sites = find_straight_tendon_sites(self.c, tendon)
-        terms = find_fixed_tendon_terms(self.c, tendon)
+        sites = find_straight_tendon_sites(self.compiled, tendon)
+        terms = find_fixed_tendon_terms(self.compiled, tendon)
         if terms is not None:
             self.add_fixed_tendon(number, terms)
         elif other >= 0:
             self.leave_out(number, "a spec can couple the lengths of fixed tendons only")
         elif sites is None:
             self.leave_out(
-                number, f"{self.c.describe_part('tendon', tendon)} does not run straight from one site to another"
+                number,
+                f"{self.compiled.describe_part('tendon', tendon)} does not run straight from one site to another",
             )
         else:
             length = float(model.tendon_length0[tendon]) + float(model.eq_data[number][0])
             self.rods.add(tendon)
             self.imported_equalities.add(number)
-            original = self.c.name("tendon", tendon) or f"tendon_{tendon + 1}"
+            original = self.compiled.name("tendon", tendon) or f"tendon_{tendon + 1}"
             ends = self.find_site_end(sites[0]), self.find_site_end(sites[1])
-            self.add_joint(original, self.c.describe_part("tendon", tendon), "rod", ends, length=length)
+            self.add_joint(original, self.compiled.describe_part("tendon", tendon), "rod", ends, length=length)
 
     def add_fixed_tendon(self, number: int, terms: dict[int, float]) -> None:
         """Add the relation sum of c_j (q_j - q_j(zero)) = a0 + a1 (the same of the second tendon)."""
-        model = self.c.model
+        model = self.compiled.model
         tendon, other = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         start, slope, *higher_terms = (float(x) for x in model.eq_data[number][:5])
         if other >= 0:
-            other_terms = find_fixed_tendon_terms(self.c, other)
+            other_terms = find_fixed_tendon_terms(self.compiled, other)
             if other_terms is None or any(higher_terms):
                 reason = "a spec can couple fixed tendons only, and in a fixed ratio"
                 self.leave_out(number, reason, "couple the joints by a ratio, or make one a drive's law of time")
@@ -264,17 +261,21 @@ class ClosureBuilder:
                 self.leave_out(number, "it constrains no joint")
             return
         self.imported_equalities.add(number)
-        original = self.c.name("equality", number) or self.c.name("tendon", tendon) or f"tendon_{tendon + 1}"
+        original = (
+            self.compiled.name("equality", number) or self.compiled.name("tendon", tendon) or f"tendon_{tendon + 1}"
+        )
         names = tuple(self.tree.step_by_joint[joint].name for joint in terms)
-        keys = {"type": "ratio", "of": names, "factors": tuple(terms.values()), **({"is": start} if start else {})}
-        self.ratios.append(DescribedEntry(self.assign_name(original), keys, self.c.describe_part("equality", number)))
+        keys = {"type": "ratio", "of": names, "factors": tuple(terms.values()), "is": start}
+        self.ratios.append(
+            DescribedEntry(self.assign_name(original), keys, self.compiled.describe_part("equality", number))
+        )
 
 
-def find_fixed_tendon_terms(c: CompiledModel, tendon: int) -> dict[int, float] | None:
+def find_fixed_tendon_terms(compiled: CompiledModel, tendon: int) -> dict[int, float] | None:
     """Return the joints of a fixed tendon with their coefficients, or None for any other tendon."""
-    model = c.model
+    model = compiled.model
     first, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
-    if int(model.wrap_type[first]) != int(c.mujoco.mjtWrap.mjWRAP_JOINT):
+    if int(model.wrap_type[first]) != int(compiled.mujoco.mjtWrap.mjWRAP_JOINT):
         return None
     terms: dict[int, float] = {}
     for k in range(first, first + count):
@@ -283,11 +284,11 @@ def find_fixed_tendon_terms(c: CompiledModel, tendon: int) -> dict[int, float] |
     return {joint: factor for joint, factor in terms.items() if factor}
 
 
-def find_straight_tendon_sites(c: CompiledModel, tendon: int) -> tuple[int, int] | None:
+def find_straight_tendon_sites(compiled: CompiledModel, tendon: int) -> tuple[int, int] | None:
     """Return the two sites of a tendon that runs straight from one to the other, or None for any other tendon."""
-    model = c.model
+    model = compiled.model
     first, count = int(model.tendon_adr[tendon]), int(model.tendon_num[tendon])
-    site = int(c.mujoco.mjtWrap.mjWRAP_SITE)
+    site = int(compiled.mujoco.mjtWrap.mjWRAP_SITE)
     if count != STRAIGHT_TENDON_SITES or any(int(model.wrap_type[k]) != site for k in range(first, first + count)):
         return None
     return int(model.wrap_objid[first]), int(model.wrap_objid[first + 1])

@@ -17,7 +17,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import list_words
 from heuncli.scene.importers.description import LEFT_OUT_CODE
 from heuncli.scene.importers.mjcf.compiled_model import CompiledModel
-from heuncli.scene.importers.mjcf.loads import motor_compensation
+from heuncli.scene.importers.mjcf.loads import find_motor_compensation
 from heuncli.scene.importers.mjcf.tendons import is_imported_tendon, sum_joint_damping
 
 MAX_NAMES = 6
@@ -41,63 +41,67 @@ class UnsupportedFeature(NamedTuple):
     hint: str
 
 
-def find_unsupported(c: CompiledModel, rods: frozenset[int], limits: bool, free: bool) -> Iterator[Problem]:
+def find_unsupported(compiled: CompiledModel, rods: frozenset[int], limits: bool, free: bool) -> Iterator[Problem]:
     """Yield a problem for each feature that is left out of the spec. rods: the tendons that are in it."""
     for row in UNSUPPORTED_FEATURES:
-        yield from _feature_problem(c, row, row.find(c))
-    acting_tendons = [tendon for tendon in _acting_tendons(c) if tendon not in rods]
-    yield from _feature_problem(c, TENDONS, (tendon for tendon in acting_tendons if not is_imported_tendon(c, tendon)))
+        yield from _feature_problem(compiled, row, row.find(compiled))
+    acting_tendons = [tendon for tendon in _acting_tendons(compiled) if tendon not in rods]
     yield from _feature_problem(
-        c, TENDON_SPRINGS, (tendon for tendon in acting_tendons if is_imported_tendon(c, tendon))
+        compiled, TENDONS, (tendon for tendon in acting_tendons if not is_imported_tendon(compiled, tendon))
+    )
+    yield from _feature_problem(
+        compiled, TENDON_SPRINGS, (tendon for tendon in acting_tendons if is_imported_tendon(compiled, tendon))
     )
     if limits:
         yield from _feature_problem(
-            c, BALL_LIMITS, _joints_where(c, c.model.jnt_limited, _joint_type_mask(c, "mjJNT_BALL"))
+            compiled,
+            BALL_LIMITS,
+            _joints_where(compiled, compiled.model.jnt_limited, _joint_type_mask(compiled, "mjJNT_BALL")),
         )
-        yield from _feature_problem(c, SOFT_LIMITS, _softened_limits(c))
+        yield from _feature_problem(compiled, SOFT_LIMITS, _softened_limits(compiled))
     if not free:
-        yield from _feature_problem(c, SHARED_WEIGHTS, _partly_compensated_bodies(c))
-    yield from _model_problems(c)
+        yield from _feature_problem(compiled, SHARED_WEIGHTS, _partly_compensated_bodies(compiled))
+    yield from _model_problems(compiled)
 
 
-def _feature_problem(c: CompiledModel, row: UnsupportedFeature, numbers: Iterable[int]) -> Iterator[Problem]:
+def _feature_problem(compiled: CompiledModel, row: UnsupportedFeature, numbers: Iterable[int]) -> Iterator[Problem]:
     part_numbers = sorted(set(numbers))
     if not part_numbers:
         return
-    names = [c.name(row.kind, number) or f"number {number}" for number in part_numbers]
+    names = [compiled.name(row.kind, number) or f"number {number}" for number in part_numbers]
     kind_text = row.kind if len(part_numbers) == 1 else {"body": "bodies"}.get(row.kind, f"{row.kind}s")
     names_text = list_words(names[:MAX_NAMES]) + (
         f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
     )
-    location = c.location(row.kind, part_numbers[0])
-    where = "" if location else f"{c.file}: "
+    location = compiled.location(row.kind, part_numbers[0])
+    where = "" if location else f"{compiled.file}: "
     yield Problem(LEFT_OUT_CODE, f"{where}{row.what}: {kind_text} {names_text}", location, row.hint)
 
 
-def _model_problems(c: CompiledModel) -> Iterator[Problem]:
+def _model_problems(compiled: CompiledModel) -> Iterator[Problem]:
     """Yield the problems that concern the whole model."""
-    option, place = c.model.opt, SourceLocation(c.file, 1, 1)
+    option, place = compiled.model.opt, SourceLocation(compiled.file, 1, 1)
     if float(option.density) or float(option.viscosity):
         message = "fluid forces (density, viscosity, wind) are left out"
         yield Problem(LEFT_OUT_CODE, message, place, "model drag on a point by a force: -c*points.tip.vx")
-    touching_count = _count_touching_geoms(c)
+    touching_count = _count_touching_geoms(compiled)
     if touching_count:
-        message = f"contacts are left out: {touching_count} of {c.count('geom')} geoms may touch others"
+        message = f"contacts are left out: {touching_count} of {compiled.count('geom')} geoms may touch others"
         hint = "model a floor under a point by a force that depends on its position, joint limits by stops (--limits)"
         yield Problem(LEFT_OUT_CODE, message, place, hint)
-    if int(c.model.nplugin):
-        message = f"MuJoCo plugins ({int(c.model.nplugin)}) are left out"
+    if int(compiled.model.nplugin):
+        message = f"MuJoCo plugins ({int(compiled.model.nplugin)}) are left out"
         yield Problem(LEFT_OUT_CODE, message, place, "model their effect by forces in the spec")
 
 
-def _joints_where(c: CompiledModel, values: Any, mask: Any = True) -> list[int]:
+def _joints_where(compiled: CompiledModel, values: Any, mask: Any = True) -> list[int]:
     """Return the numbers of the joints whose value is not 0 and for which the mask holds."""
     return [int(k) for k in np.flatnonzero(np.logical_and(np.asarray(values) != 0, mask))]
 
 
-def _joint_type_mask(c: CompiledModel, *words: str) -> Any:
-    kinds = [int(c.mujoco.mjtJoint.__members__[word]) for word in words]
-    return np.isin(np.asarray(c.model.jnt_type), kinds)
+def _joint_type_mask(compiled: CompiledModel, *words: str) -> Any:
+    kinds = [int(compiled.mujoco.mjtJoint.__members__[word]) for word in words]
+    return np.isin(np.asarray(compiled.model.jnt_type), kinds)
 
 
 def _nonzero_rows(values: Any, count: int) -> list[int]:
@@ -109,36 +113,39 @@ def _nonzero_rows(values: Any, count: int) -> list[int]:
     return [int(k) for k in np.flatnonzero((np.asarray(values).reshape(count, -1) != 0).any(axis=1))]
 
 
-def _joints_with_nonzero_rates(c: CompiledModel, values: Any) -> list[int]:
+def _joints_with_nonzero_rates(compiled: CompiledModel, values: Any) -> list[int]:
     """Return the joints of those rates for which the array is not 0."""
-    return [int(c.model.dof_jntid[dof]) for dof in _nonzero_rows(values, int(c.model.nv))]
+    return [int(compiled.model.dof_jntid[dof]) for dof in _nonzero_rows(values, int(compiled.model.nv))]
 
 
-def _nonlinear_joints(c: CompiledModel) -> list[int]:
+def _nonlinear_joints(compiled: CompiledModel) -> list[int]:
     """Return the joints whose spring or damper is not linear, or yields."""
-    joints = [getattr(c.model, name, None) for name in ("jnt_stiffnesspoly", "jnt_springyield")]
-    of_springs = [joint for values in joints for joint in _nonzero_rows(values, int(c.model.njnt))]
-    return of_springs + _joints_with_nonzero_rates(c, getattr(c.model, "dof_dampingpoly", None))
+    joints = [getattr(compiled.model, name, None) for name in ("jnt_stiffnesspoly", "jnt_springyield")]
+    of_springs = [joint for values in joints for joint in _nonzero_rows(values, int(compiled.model.njnt))]
+    return of_springs + _joints_with_nonzero_rates(compiled, getattr(compiled.model, "dof_dampingpoly", None))
 
 
-def _unsupported_damping(c: CompiledModel) -> list[int]:
+def _unsupported_damping(compiled: CompiledModel) -> list[int]:
     """Return the free joints with damping, and the balls with negative damping."""
-    free, balls = np.flatnonzero(_joint_type_mask(c, "mjJNT_FREE")), np.flatnonzero(_joint_type_mask(c, "mjJNT_BALL"))
-    negatively_damped = [int(joint) for joint in balls if sum_joint_damping(c, int(joint)) < 0.0]
-    return negatively_damped + [int(joint) for joint in free if sum_joint_damping(c, int(joint))]
+    free, balls = (
+        np.flatnonzero(_joint_type_mask(compiled, "mjJNT_FREE")),
+        np.flatnonzero(_joint_type_mask(compiled, "mjJNT_BALL")),
+    )
+    negatively_damped = [int(joint) for joint in balls if sum_joint_damping(compiled, int(joint)) < 0.0]
+    return negatively_damped + [int(joint) for joint in free if sum_joint_damping(compiled, int(joint))]
 
 
-def _partly_compensated_bodies(c: CompiledModel) -> Iterator[int]:
+def _partly_compensated_bodies(compiled: CompiledModel) -> Iterator[int]:
     """Yield the bodies whose weight is carried by the motors of some joints, but not of all."""
-    for body in _nonzero_rows(c.model.body_gravcomp, int(c.model.nbody)):
-        motors = motor_compensation(c, body)
+    for body in _nonzero_rows(compiled.model.body_gravcomp, int(compiled.model.nbody)):
+        motors = find_motor_compensation(compiled, body)
         if any(motors) and not all(motors):
             yield body
 
 
-def _unsupported_actuators(c: CompiledModel) -> list[int]:
+def _unsupported_actuators(compiled: CompiledModel) -> list[int]:
     """Return the actuators that are more than a torque or thrust made by their control alone."""
-    model, mujoco = c.model, c.mujoco
+    model, mujoco = compiled.model, compiled.mujoco
     is_plain = (
         (np.asarray(model.actuator_dyntype) == int(mujoco.mjtDyn.mjDYN_NONE))
         & (np.asarray(model.actuator_gaintype) == int(mujoco.mjtGain.mjGAIN_FIXED))
@@ -147,53 +154,57 @@ def _unsupported_actuators(c: CompiledModel) -> list[int]:
     return [int(k) for k in np.flatnonzero(~is_plain)]
 
 
-def _acting_tendons(c: CompiledModel) -> Iterator[int]:
+def _acting_tendons(compiled: CompiledModel) -> Iterator[int]:
     """Yield the tendons that pull or hold by more than a linear spring and damper that can be imported."""
     names = ["limited", "frictionloss", "armature", "stiffnesspoly", "dampingpoly", "springyield"]
-    for tendon in range(c.count("tendon")):
-        acting = names if is_imported_tendon(c, tendon) else [*names, "stiffness", "damping"]
-        if any(np.any(getattr(c.model, f"tendon_{name}", np.zeros(tendon + 1))[tendon]) for name in acting):
+    for tendon in range(compiled.count("tendon")):
+        acting = names if is_imported_tendon(compiled, tendon) else [*names, "stiffness", "damping"]
+        if any(np.any(getattr(compiled.model, f"tendon_{name}", np.zeros(tendon + 1))[tendon]) for name in acting):
             yield tendon
 
 
-def _nonlinear_actuator_damping(c: CompiledModel) -> list[int]:
+def _nonlinear_actuator_damping(compiled: CompiledModel) -> list[int]:
     """Return the actuators whose damping is not that of a joint, or a fixed or straight tendon, and linear."""
-    model, kinds = c.model, c.mujoco.mjtTrn.__members__
+    model, kinds = compiled.model, compiled.mujoco.mjtTrn.__members__
     nonlinear = _nonzero_rows(getattr(model, "actuator_dampingpoly", None), int(model.nu))
     tendons = [
         k
         for k in _nonzero_rows(getattr(model, "actuator_damping", None), int(model.nu))
         if int(model.actuator_trntype[k]) == int(kinds["mjTRN_TENDON"])
-        and not is_imported_tendon(c, int(model.actuator_trnid[k][0]))
+        and not is_imported_tendon(compiled, int(model.actuator_trnid[k][0]))
     ]
     return nonlinear + tendons
 
 
-def _softened_limits(c: CompiledModel) -> list[int]:
+def _softened_limits(compiled: CompiledModel) -> list[int]:
     """Return the limited joints whose softness, or distance of action, was set by hand."""
-    return [k for k in _joints_where(c, c.model.jnt_limited) if _is_soft(c, "jnt", k) or float(c.model.jnt_margin[k])]
+    return [
+        k
+        for k in _joints_where(compiled, compiled.model.jnt_limited)
+        if _is_soft(compiled, "jnt", k) or float(compiled.model.jnt_margin[k])
+    ]
 
 
-def _is_soft(c: CompiledModel, prefix: str, number: int) -> bool:
+def _is_soft(compiled: CompiledModel, prefix: str, number: int) -> bool:
     """Return whether the constraint of a part has a softness other than MuJoCo's default."""
-    solref = np.asarray(getattr(c.model, f"{prefix}_solref"))[number][:2]
-    solimp = np.asarray(getattr(c.model, f"{prefix}_solimp"))[number][:5]
+    solref = np.asarray(getattr(compiled.model, f"{prefix}_solref"))[number][:2]
+    solimp = np.asarray(getattr(compiled.model, f"{prefix}_solimp"))[number][:5]
     return not (np.allclose(solref, DEFAULT_SOLREF) and np.allclose(solimp, DEFAULT_SOLIMP))
 
 
-def _softened_equalities(c: CompiledModel) -> list[int]:
+def _softened_equalities(compiled: CompiledModel) -> list[int]:
     """Return the equalities whose softness was set by hand."""
-    return [k for k in range(c.count("equality")) if _is_soft(c, "eq", k)]
+    return [k for k in range(compiled.count("equality")) if _is_soft(compiled, "eq", k)]
 
 
-def _count_touching_geoms(c: CompiledModel) -> int:
+def _count_touching_geoms(compiled: CompiledModel) -> int:
     """Count the geoms that may touch one of another body, by their `contype`, `conaffinity` and the exclusions.
 
     Bodies that are fixed to each other count as one. A body and its parent do not touch, unless that is the ground.
     """
-    if c.is_disabled("CONTACT", "CONSTRAINT"):
+    if compiled.is_disabled("CONTACT", "CONSTRAINT"):
         return 0
-    model = c.model
+    model = compiled.model
     weld = np.asarray(model.body_weldid)
     geom_body = weld[np.asarray(model.geom_bodyid, dtype=int)] if model.ngeom else np.zeros(0, dtype=int)
     rows = np.stack([np.asarray(model.geom_contype), np.asarray(model.geom_conaffinity), geom_body], axis=1)
@@ -203,18 +214,20 @@ def _count_touching_geoms(c: CompiledModel) -> int:
     types, affinities, bodies = groups.T if len(groups) else np.zeros((3, 0), dtype=int)
     may_touch = (types[:, None] & affinities) | (affinities[:, None] & types)
     parents = weld[np.asarray(model.body_parentid)[bodies]]
-    filtered = not c.is_disabled("FILTERPARENT")
+    filtered = not compiled.is_disabled("FILTERPARENT")
     kin = (parents[:, None] == bodies) & (bodies != 0) & (bodies[:, None] != 0) & filtered
-    may_touch = (may_touch != 0) & (bodies[:, None] != bodies) & ~kin & ~kin.T & ~_excluded_pairs(c, weld, bodies)
+    may_touch = (
+        (may_touch != 0) & (bodies[:, None] != bodies) & ~kin & ~kin.T & ~_excluded_pairs(compiled, weld, bodies)
+    )
     touching = may_touch.any(axis=1)[member.ravel()] if len(groups) else np.zeros(0, dtype=bool)
     for pair in range(int(model.npair)):
         touching[[int(model.pair_geom1[pair]), int(model.pair_geom2[pair])]] = True
     return int(touching.sum())
 
 
-def _excluded_pairs(c: CompiledModel, weld: Any, bodies: Any) -> Any:
+def _excluded_pairs(compiled: CompiledModel, weld: Any, bodies: Any) -> Any:
     """Return which of these pairs of bodies the model excludes by name."""
-    signatures = np.asarray(c.model.exclude_signature, dtype=int)
+    signatures = np.asarray(compiled.model.exclude_signature, dtype=int)
     pairs = {(int(weld[s >> 16]), int(weld[s & 0xFFFF])) for s in signatures}
     pairs |= {(b, a) for a, b in pairs}
     out = np.zeros((len(bodies), len(bodies)), dtype=bool)
@@ -226,13 +239,13 @@ def _excluded_pairs(c: CompiledModel, weld: Any, bodies: Any) -> Any:
 UNSUPPORTED_FEATURES = (
     UnsupportedFeature(
         "joint",
-        lambda c: _joints_with_nonzero_rates(c, c.model.dof_armature),
+        lambda compiled: _joints_with_nonzero_rates(compiled, compiled.model.dof_armature),
         "the rotor inertia of motors (armature) is left out: it has no effect at rest",
         "in motion, add armature * acceleration to the reported drive torque",
     ),
     UnsupportedFeature(
         "actuator",
-        lambda c: _nonzero_rows(getattr(c.model, "actuator_armature", None), int(c.model.nu)),
+        lambda compiled: _nonzero_rows(getattr(compiled.model, "actuator_armature", None), int(compiled.model.nu)),
         "the rotor inertia of actuators (armature) is left out: it has no effect at rest",
         "in motion, add armature * gear^2 * acceleration to the reported drive torque",
     ),
@@ -244,13 +257,19 @@ UNSUPPORTED_FEATURES = (
     ),
     UnsupportedFeature(
         "joint",
-        lambda c: [] if c.is_disabled("FRICTIONLOSS") else _joints_with_nonzero_rates(c, c.model.dof_frictionloss),
+        lambda compiled: (
+            []
+            if compiled.is_disabled("FRICTIONLOSS")
+            else _joints_with_nonzero_rates(compiled, compiled.model.dof_frictionloss)
+        ),
         "dry friction (frictionloss) is left out",
         "use a force of type friction, with the speed at which it is fully developed",
     ),
     UnsupportedFeature(
         "joint",
-        lambda c: _joints_where(c, c.model.jnt_stiffness, _joint_type_mask(c, "mjJNT_BALL", "mjJNT_FREE")),
+        lambda compiled: _joints_where(
+            compiled, compiled.model.jnt_stiffness, _joint_type_mask(compiled, "mjJNT_BALL", "mjJNT_FREE")
+        ),
         "springs in ball or free joints are left out",
         "use springs between points",
     ),
@@ -280,35 +299,35 @@ UNSUPPORTED_FEATURES = (
     ),
     UnsupportedFeature(
         "flex",
-        lambda c: range(c.count("flex")),
+        lambda compiled: range(compiled.count("flex")),
         "flexible bodies are left out",
         "a spec has only rigid bodies",
     ),
     UnsupportedFeature(
         "body",
-        lambda c: [int(k) for k in np.flatnonzero(np.asarray(c.model.body_mocapid) >= 0)],
+        lambda compiled: [int(k) for k in np.flatnonzero(np.asarray(compiled.model.body_mocapid) >= 0)],
         "bodies moved by a program (mocap) are fixed in the spec",
         "use a drive to move what is attached to them",
     ),
 )
 TENDONS = UnsupportedFeature(
-    "tendon", lambda c: (), "tendons are left out unless they are fixed, or run straight between two sites",
+    "tendon", lambda compiled: (), "tendons are left out unless they are fixed, or run straight between two sites",
     "use rods, springs or actuators between points",
 )  # fmt: skip
 TENDON_SPRINGS = UnsupportedFeature(
-    "tendon", lambda c: (), "limits, friction and armature of tendons, and their nonlinear parts, are left out; "
+    "tendon", lambda compiled: (), "limits, friction and armature of tendons, and their nonlinear parts, are left out; "
     "their springs and dampers are in the spec",
     "use an actuator between two points, with any law in its length",
 )  # fmt: skip
 SHARED_WEIGHTS = UnsupportedFeature(
-    "body", lambda c: (), "gravity compensation by motors (actuatorgravcomp) in only some of the supporting joints: "
+    "body", lambda _: (), "gravity compensation by motors (actuatorgravcomp) in only some of the supporting joints: "
     "in the spec no joint carries this weight",
     "the motor of such a joint takes the reported drive torque plus the torque of the weight",
 )  # fmt: skip
 SOFT_LIMITS = UnsupportedFeature(
-    "joint", lambda c: (), "softness of limits (solreflimit, solimplimit, margin) is left out: stops are rigid",
+    "joint", lambda compiled: (), "softness of limits (solreflimit, solimplimit, margin) is left out: stops are rigid",
     "for an elastic stop use a torque: -k*max(elbow.angle - 1.2, 0)",
 )  # fmt: skip
 BALL_LIMITS = UnsupportedFeature(
-    "joint", lambda c: (), "rotation limits of ball joints are left out", "use stops on pins"
+    "joint", lambda compiled: (), "rotation limits of ball joints are left out", "use stops on pins"
 )

@@ -9,6 +9,8 @@ S_C = S_P R_C0 R(q) R_C0^T       a ball, whose coordinates are a quaternion in t
 S_C = R(q) R_C0^T                a free body
 sigma_C = sigma_P + S_C a q'     and likewise with the axes of a ball; of a free body in its own axes
 
+q (nq,) and qd (nv,) are MuJoCo's coordinates and rates everywhere in these modules: a ball has four and three of them.
+
 Drives hold joints so that no coordinate stays free and none is held twice. In a tree these are all hinges and slides.
 Where equalities close loops, some coordinates follow from others. Then a joint is held if the equalities and the joints
 chosen before it leave its rate free,
@@ -39,7 +41,7 @@ from heuncli.scene.importers.mjcf.tree import (
     BodyFrames,
     JointTree,
     TreeJoint,
-    exact_rotation_from_quaternion,
+    make_exact_rotation,
     to_vec,
 )
 
@@ -47,7 +49,9 @@ from heuncli.scene.importers.mjcf.tree import (
 
 
 class BodyPose(NamedTuple):
-    """S: attitude against that at the zero
+    """The pose and the motion of a body, in the world.
+
+    S: attitude against that at the zero
     p: the origin [m]
     sigma: angular velocity [rad/s]
     v: velocity of the origin [m/s]
@@ -62,20 +66,20 @@ class BodyPose(NamedTuple):
 AT_REST = BodyPose(np.eye(3), np.zeros(3), np.zeros(3), np.zeros(3))
 
 
-def compute_poses(c: CompiledModel, frames: BodyFrames, tree: JointTree, q: Any, qd: Any) -> dict[str, BodyPose]:
+def compute_poses(compiled: CompiledModel, frames: BodyFrames, tree: JointTree, q: Any, qd: Any) -> dict[str, BodyPose]:
     """Compute the pose of each body of the spec, by its name."""
     pose_by_body = {GROUND: AT_REST}
     for step in tree.steps:
-        pose_by_body[step.child] = _compute_child_pose(c, frames, step, pose_by_body[step.parent], q, qd)
+        pose_by_body[step.child] = _compute_child_pose(compiled, frames, step, pose_by_body[step.parent], q, qd)
     return pose_by_body
 
 
-def joint_places(c: CompiledModel, frames: BodyFrames, step: TreeJoint) -> tuple[Vec, Vec]:
+def find_joint_places(compiled: CompiledModel, frames: BodyFrames, step: TreeJoint) -> tuple[Vec, Vec]:
     """Return the place of a joint in its parent and in its child body, in axes parallel to the world's at zero [m].
 
     Bodies of the spec that represent the same body of MuJoCo share its origin.
     """
-    model, body = c.model, step.body
+    model, body = compiled.model, step.body
     point = ZERO if step.joint is None else frames.transform_direction(body, model.jnt_pos[step.joint])
     first = step.joint is None or step.joint == int(model.body_jntadr[body])
     if not first:
@@ -84,17 +88,17 @@ def joint_places(c: CompiledModel, frames: BodyFrames, step: TreeJoint) -> tuple
 
 
 def _compute_child_pose(
-    c: CompiledModel, frames: BodyFrames, step: TreeJoint, parent: BodyPose, q: Any, qd: Any
+    compiled: CompiledModel, frames: BodyFrames, step: TreeJoint, parent: BodyPose, q: Any, qd: Any
 ) -> BodyPose:
-    model, R_C0 = c.model, np.array(frames.attitudes[step.body])
-    parent_point, point = (np.array(place) for place in joint_places(c, frames, step))
+    model, R_C0 = compiled.model, np.array(frames.attitudes[step.body])
+    parent_point, point = (np.array(place) for place in find_joint_places(compiled, frames, step))
     S, sigma, slid, speed = parent.S, parent.sigma, np.zeros(3), np.zeros(3)
     if step.joint is not None:
         q_index, rate_index = int(model.jnt_qposadr[step.joint]), int(model.jnt_dofadr[step.joint])
         axis = np.array(frames.transform_direction(step.body, model.jnt_axis[step.joint]))
         displacement = float(q[q_index]) - float(model.qpos0[q_index])
         if step.kind == FREE:
-            S = np.array(exact_rotation_from_quaternion(q[q_index + 3 : q_index + 7])) @ R_C0.T
+            S = np.array(make_exact_rotation(q[q_index + 3 : q_index + 7])) @ R_C0.T
             return BodyPose(
                 S,
                 np.array(q[q_index : q_index + 3]),
@@ -102,7 +106,7 @@ def _compute_child_pose(
                 qd[rate_index : rate_index + 3],
             )
         if step.kind == "ball":
-            S = parent.S @ R_C0 @ np.array(exact_rotation_from_quaternion(q[q_index : q_index + 4])) @ R_C0.T
+            S = parent.S @ R_C0 @ np.array(make_exact_rotation(q[q_index : q_index + 4])) @ R_C0.T
             sigma = parent.sigma + S @ R_C0 @ qd[rate_index : rate_index + 3]
         elif step.kind == "pin":
             S = parent.S @ np.array(rotation_about(to_vec(axis), displacement))
@@ -121,7 +125,9 @@ INDEPENDENCE_THRESHOLDS = (0.1, 1e-3, 1e-6)
 
 
 class HeldJoints(NamedTuple):
-    """joints: numbers of the joints that drives hold, in MuJoCo's order
+    """What determines the coordinates of all joints.
+
+    joints: numbers of the joints that drives hold, in MuJoCo's order
     couplings: the couplings that determine other joints
     """
 
@@ -129,13 +135,13 @@ class HeldJoints(NamedTuple):
     couplings: tuple[JointEquality, ...]
 
 
-def choose_held_joints(c: CompiledModel, tree: JointTree, closures: LoopClosures, q: Any) -> HeldJoints:
+def choose_held_joints(compiled: CompiledModel, tree: JointTree, closures: LoopClosures, q: Any) -> HeldJoints:
     """Choose the held joints. A coupling is dropped if nothing holds its leader; its joint is then treated as any
     other.
     """
     couplings = [*closures.couplings]
     while True:
-        joints = _choose_for_couplings(c, tree, closures, couplings, q)
+        joints = _choose_for_couplings(compiled, tree, closures, couplings, q)
         without_leader = _find_coupling_without_leader(couplings, joints)
         if without_leader is None:
             return HeldJoints(joints, tuple(couplings))
@@ -143,7 +149,7 @@ def choose_held_joints(c: CompiledModel, tree: JointTree, closures: LoopClosures
 
 
 def _choose_for_couplings(
-    c: CompiledModel, tree: JointTree, closures: LoopClosures, couplings: list[JointEquality], q: Any
+    compiled: CompiledModel, tree: JointTree, closures: LoopClosures, couplings: list[JointEquality], q: Any
 ) -> tuple[int, ...]:
     followers = {coupling.follower for coupling in couplings}
     movable = [joint for joint, step in tree.step_by_joint.items() if step.kind in COORDINATE_KEYS]
@@ -151,11 +157,11 @@ def _choose_for_couplings(
     if not closures.imported_equalities:
         return tuple(joints)
     leaders = {coupling.leader for coupling in couplings}
-    actuated = set(_actuated_joints(c))
+    actuated = set(_actuated_joints(compiled))
     order = sorted(joints, key=lambda joint: (joint not in leaders, joint not in actuated))
-    dofs = [int(c.model.jnt_dofadr[joint]) for joint in order]
+    dofs = [int(compiled.model.jnt_dofadr[joint]) for joint in order]
     imported_equalities = closures.imported_equalities | {coupling.equality for coupling in couplings}
-    return tuple(sorted(order[k] for k in _iter_independent(_equality_rows(c, imported_equalities, q), dofs)))
+    return tuple(sorted(order[k] for k in _iter_independent(_equality_rows(compiled, imported_equalities, q), dofs)))
 
 
 def _find_coupling_without_leader(couplings: list[JointEquality], joints: tuple[int, ...]) -> JointEquality | None:
@@ -171,17 +177,17 @@ def _find_coupling_without_leader(couplings: list[JointEquality], joints: tuple[
     return None
 
 
-def _actuated_joints(c: CompiledModel) -> Iterator[int]:
+def _actuated_joints(compiled: CompiledModel) -> Iterator[int]:
     """Yield the joints that an actuator moves."""
-    kinds = [int(c.mujoco.mjtTrn.__members__[word]) for word in ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")]
-    for number in range(int(c.model.nu)):
-        if int(c.model.actuator_trntype[number]) in kinds:
-            yield int(c.model.actuator_trnid[number][0])
+    kinds = [int(compiled.mujoco.mjtTrn.__members__[word]) for word in ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")]
+    for number in range(int(compiled.model.nu)):
+        if int(compiled.model.actuator_trntype[number]) in kinds:
+            yield int(compiled.model.actuator_trnid[number][0])
 
 
-def _equality_rows(c: CompiledModel, equalities: frozenset[int], q: Any) -> Any:
+def _equality_rows(compiled: CompiledModel, equalities: frozenset[int], q: Any) -> Any:
     """Compute the constraint rows (rows, rates) of the equalities that the spec holds."""
-    mujoco, model = c.mujoco, c.model
+    mujoco, model = compiled.mujoco, compiled.model
     data = mujoco.MjData(model)
     data.qpos[:] = q
     previous = int(model.opt.jacobian)
@@ -229,7 +235,7 @@ class StartKeys(NamedTuple):
 
 
 def find_starts(
-    c: CompiledModel,
+    compiled: CompiledModel,
     tree: JointTree,
     closures: LoopClosures,
     held_joints: HeldJoints,
@@ -245,8 +251,8 @@ def find_starts(
     """
     starts: dict[str, StartKeys] = {}
     driven = {*held_joints.joints, *(coupling.follower for coupling in held_joints.couplings)}
-    all_poses = compute_poses(c, frames, tree, q, qd)
-    drawn = compute_poses(c, frames, tree, c.model.qpos0, np.zeros(int(c.model.nv)))
+    all_poses = compute_poses(compiled, frames, tree, q, qd)
+    drawn = compute_poses(compiled, frames, tree, compiled.model.qpos0, np.zeros(int(compiled.model.nv)))
     tied = _find_tied_bodies(tree, closures)
     for step in tree.steps:
         pose = all_poses[step.child]
@@ -277,18 +283,20 @@ def _find_tied_bodies(tree: JointTree, closures: LoopClosures) -> set[str]:
 
 
 def _make_near_start(pose: BodyPose, drawn_pose: BodyPose, can_shift: bool) -> StartKeys:
-    """Make the pose near which the assembly starts; empty if that is the drawn pose and joints place the body there.
+    """Make the pose near which the assembly starts; empty if that is the drawn pose, joints place the body there, and
+    it is at rest.
 
     can_shift: a slide, or no joint at all, leaves the position open. Without `near` a spec would start at the origin.
     """
     attitude = _attitude_keys(pose)
     distance = float(np.abs(np.asarray(pose.p) - np.asarray(drawn_pose.p)).max())
-    if not (can_shift or attitude or distance > DRAWN_TOLERANCE * float(np.abs(drawn_pose.p).max(initial=1.0))):
+    has_rates = bool(np.any(pose.v) or np.any(pose.sigma))
+    is_moved = distance > DRAWN_TOLERANCE * float(np.abs(drawn_pose.p).max(initial=1.0))
+    if not (can_shift or attitude or is_moved or has_rates):
         return StartKeys({}, {})
-    rates = bool(np.any(pose.v) or np.any(pose.sigma))
     notes = (
         {"near": "its start velocities follow from its constraints; without constraints it starts at rest"}
-        if rates
+        if has_rates
         else {}
     )
     return StartKeys({"near": {"position": round_vector(to_vec(pose.p)), **attitude}}, notes)

@@ -29,34 +29,38 @@ from heuncli.scene.importers.spec_text import format_decimal
 JOINT_TRANSMISSIONS = ("mjTRN_JOINT", "mjTRN_JOINTINPARENT")
 
 
-def sum_actuator_damping(c: CompiledModel, transmissions: tuple[str, ...], part: int) -> float:
+def sum_actuator_damping(compiled: CompiledModel, transmissions: tuple[str, ...], part: int) -> float:
     """Return the damping that the actuators on a joint or tendon add to it, by these transmissions."""
-    damping = getattr(c.model, "actuator_damping", None)
+    damping = getattr(compiled.model, "actuator_damping", None)
     if damping is None:  # versions before 3.5
         return 0.0
-    kinds = {int(c.mujoco.mjtTrn.__members__[word]) for word in transmissions}
+    kinds = {int(compiled.mujoco.mjtTrn.__members__[word]) for word in transmissions}
     return sum(
-        float(damping[k]) * float(c.model.actuator_gear[k][0]) ** 2
-        for k in range(int(c.model.nu))
-        if int(c.model.actuator_trntype[k]) in kinds and int(c.model.actuator_trnid[k][0]) == part
+        float(damping[k]) * float(compiled.model.actuator_gear[k][0]) ** 2
+        for k in range(int(compiled.model.nu))
+        if int(compiled.model.actuator_trntype[k]) in kinds and int(compiled.model.actuator_trnid[k][0]) == part
     )
 
 
-def sum_joint_damping(c: CompiledModel, joint: int) -> float:
+def sum_joint_damping(compiled: CompiledModel, joint: int) -> float:
     """Return the linear damping coefficient of a joint, with that of its actuators."""
-    return float(c.model.dof_damping[c.model.jnt_dofadr[joint]]) + sum_actuator_damping(c, JOINT_TRANSMISSIONS, joint)
+    return float(compiled.model.dof_damping[compiled.model.jnt_dofadr[joint]]) + sum_actuator_damping(
+        compiled, JOINT_TRANSMISSIONS, joint
+    )
 
 
 class TendonSpring:
     """The spring and damper of a tendon: stiffness, damping, and the slack range of its length."""
 
-    def __init__(self, c: CompiledModel, tendon: int) -> None:
-        self.stiffness = float(c.model.tendon_stiffness[tendon])
-        self.damping = float(c.model.tendon_damping[tendon]) + sum_actuator_damping(c, ("mjTRN_TENDON",), tendon)
-        self.low, self.high = (float(length) for length in c.model.tendon_lengthspring[tendon])
-        if c.is_disabled("PASSIVE", "SPRING"):
+    def __init__(self, compiled: CompiledModel, tendon: int) -> None:
+        self.stiffness = float(compiled.model.tendon_stiffness[tendon])
+        self.damping = float(compiled.model.tendon_damping[tendon]) + sum_actuator_damping(
+            compiled, ("mjTRN_TENDON",), tendon
+        )
+        self.low, self.high = (float(length) for length in compiled.model.tendon_lengthspring[tendon])
+        if compiled.is_disabled("PASSIVE", "SPRING"):
             self.stiffness = 0.0
-        if c.is_disabled("PASSIVE", "DAMPER"):
+        if compiled.is_disabled("PASSIVE", "DAMPER"):
             self.damping = 0.0
 
     def __bool__(self) -> bool:
@@ -82,24 +86,27 @@ class TendonSpring:
         return format_sum(terms)
 
 
-def is_imported_tendon(c: CompiledModel, tendon: int) -> bool:
+def is_imported_tendon(compiled: CompiledModel, tendon: int) -> bool:
     """Return whether the spring and the damper of a tendon can be in a spec."""
-    return find_straight_tendon_sites(c, tendon) is not None or find_fixed_tendon_terms(c, tendon) is not None
+    return (
+        find_straight_tendon_sites(compiled, tendon) is not None
+        or find_fixed_tendon_terms(compiled, tendon) is not None
+    )
 
 
 def iter_tendon_springs(
-    c: CompiledModel, closer: ClosureBuilder, tree: JointTree, assign_name: AssignName
+    compiled: CompiledModel, closer: ClosureBuilder, tree: JointTree, assign_name: AssignName
 ) -> Iterator[DescribedEntry]:
     """Yield the springs and dampers of straight and fixed tendons."""
-    for tendon in range(c.count("tendon")):
-        spring = TendonSpring(c, tendon)
+    for tendon in range(compiled.count("tendon")):
+        spring = TendonSpring(compiled, tendon)
         if not spring:
             continue
-        name = c.name("tendon", tendon) or f"tendon_{tendon + 1}"
-        terms = find_fixed_tendon_terms(c, tendon)
+        name = compiled.name("tendon", tendon) or f"tendon_{tendon + 1}"
+        terms = find_fixed_tendon_terms(compiled, tendon)
         if terms is not None:
-            yield from _iter_fixed_torques(c, tendon, terms, spring, tree, name, assign_name)
-        sites = find_straight_tendon_sites(c, tendon)
+            yield from _iter_fixed_torques(compiled, tendon, terms, spring, tree, name, assign_name)
+        sites = find_straight_tendon_sites(compiled, tendon)
         if sites is None:
             continue
         site_ends = [closer.find_site_end(site) for site in sites]
@@ -113,11 +120,11 @@ def iter_tendon_springs(
             keys["damping"] = spring.damping
         if not spring.is_plain:
             keys = {"type": "spring", "from": ends[0], "to": ends[1], "force": spring.format_force("length", "rate")}
-        yield DescribedEntry(entry_name, keys, c.describe_part("tendon", tendon))
+        yield DescribedEntry(entry_name, keys, compiled.describe_part("tendon", tendon))
 
 
 def _iter_fixed_torques(
-    c: CompiledModel,
+    compiled: CompiledModel,
     tendon: int,
     terms: dict[int, float],
     spring: TendonSpring,
@@ -128,7 +135,9 @@ def _iter_fixed_torques(
     """Yield what a fixed tendon exerts in each of its joints."""
     steps = tree.step_by_joint
     # the spec counts coordinates from the drawn pose, so the length there is a summand
-    drawn = sum(factor * float(c.model.qpos0[c.model.jnt_qposadr[joint]]) for joint, factor in terms.items())
+    drawn = sum(
+        factor * float(compiled.model.qpos0[compiled.model.jnt_qposadr[joint]]) for joint, factor in terms.items()
+    )
     coordinates = [
         (factor, f"{steps[joint].name}.{COORDINATE_KEYS[steps[joint].kind]}") for joint, factor in terms.items()
     ]
@@ -140,7 +149,7 @@ def _iter_fixed_torques(
     for joint, factor in terms.items():
         law = spring.format_force(length, rate, factor)
         keys = {"type": "torque", "joint": steps[joint].name, "value": law}
-        yield DescribedEntry(assign_name(f"{name}_{steps[joint].name}"), keys, c.describe_part("tendon", tendon))
+        yield DescribedEntry(assign_name(f"{name}_{steps[joint].name}"), keys, compiled.describe_part("tendon", tendon))
 
 
 def _format_offset(value: float) -> str:

@@ -61,7 +61,7 @@ def compute_frames(model: Any) -> BodyFrames:
     owners, attitudes, origins = [0], [IDENTITY], [ORIGIN]
     for body in range(1, int(model.nbody)):
         parent = int(model.body_parentid[body])
-        attitude = compose_rotations(attitudes[parent], exact_rotation_from_quaternion(model.body_quat[body]))
+        attitude = compose_rotations(attitudes[parent], make_exact_rotation(model.body_quat[body]))
         parent_owner = owners[parent]
         jointless = not model.body_jntnum[body]
         is_massless = float(model.body_mass[body]) < MIN_MASS or float(model.body_mass[parent_owner]) < MIN_MASS
@@ -75,7 +75,7 @@ def compute_frames(model: Any) -> BodyFrames:
     return BodyFrames(tuple(owners), tuple(attitudes), tuple(origins))
 
 
-def exact_rotation_from_quaternion(quaternion: Any) -> Matrix:
+def make_exact_rotation(quaternion: Any) -> Matrix:
     """Make the rotation matrix of a quaternion w, x, y, z; exact for rotations by right angles."""
     w, x, y, z = (float(q) for q in quaternion)
     return compose_rotations(IDENTITY, rotation_from_quaternion((w, x, y, z)))
@@ -95,7 +95,7 @@ class PartMass(NamedTuple):
     inertia: Matrix
 
 
-def mass_properties(model: Any, frames: BodyFrames, owner: int) -> PartMass:
+def compute_mass_properties(model: Any, frames: BodyFrames, owner: int) -> PartMass:
     """Compute the mass properties of a body together with its parts.
 
     I = sum of I_k + m_k (|d_k|^2 1 - d_k d_k^T), d_k from the common centre to that of part k.
@@ -122,7 +122,7 @@ def _part_mass_properties(model: Any, frames: BodyFrames, body: int) -> PartMass
     body.
     """
     A1, A2, A3 = to_vec(model.body_inertia[body])
-    R = compose_rotations(frames.attitudes[body], exact_rotation_from_quaternion(model.body_iquat[body]))
+    R = compose_rotations(frames.attitudes[body], make_exact_rotation(model.body_iquat[body]))
     center = frames.transform_point(body, model.body_ipos[body])
     principal: Matrix = ((A1, 0.0, 0.0), (0.0, A2, 0.0), (0.0, 0.0, A3))
     return PartMass(float(model.body_mass[body]), center, rotate_tensor(R, principal))
@@ -155,7 +155,9 @@ class TreeJoint(NamedTuple):
 
 
 class JointTree(NamedTuple):
-    """names: the spec's names of those bodies of MuJoCo that are bodies of the spec (0: the ground)
+    """The bodies of the spec, and the joints that carry them.
+
+    names: the spec's names of those bodies of MuJoCo that are bodies of the spec (0: the ground)
     originals: their names in MuJoCo
     carriers: the bodies between stacked joints, each with the MuJoCo body that it carries
     """
@@ -171,13 +173,13 @@ class JointTree(NamedTuple):
         return {step.joint: step for step in self.steps if step.joint is not None}
 
 
-def build_tree(c: CompiledModel, frames: BodyFrames) -> JointTree:
+def build_tree(compiled: CompiledModel, frames: BodyFrames) -> JointTree:
     """Build the joint tree of a model."""
     owners = sorted(set(frames.owners) - {0})
-    originals = {body: c.name("body", body) or f"body_{body}" for body in owners}
-    joints = {body: _find_joints(c, body) for body in owners}
+    originals = {body: compiled.name("body", body) or f"body_{body}" for body in owners}
+    joints = {body: _find_joints(compiled, body) for body in owners}
     joint_originals = {
-        joint: _find_joint_name(c, originals[body], joint, body_joints)
+        joint: _find_joint_name(compiled, originals[body], joint, body_joints)
         for body, body_joints in joints.items()
         for joint, _ in body_joints
     }
@@ -194,7 +196,7 @@ def build_tree(c: CompiledModel, frames: BodyFrames) -> JointTree:
 
     def steps() -> Iterator[TreeJoint]:
         for body in owners:
-            at = name_by_body[frames.owners[int(c.model.body_parentid[body])]]
+            at = name_by_body[frames.owners[int(compiled.model.body_parentid[body])]]
             for joint, kind in joints[body]:
                 child = carrier_names.get(joint, name_by_body[body])
                 yield TreeJoint(joint, kind, body, joint_names[joint], at, child)
@@ -205,19 +207,20 @@ def build_tree(c: CompiledModel, frames: BodyFrames) -> JointTree:
     return JointTree(name_by_body, originals, {carrier_names[joint]: body for joint, body in carriers}, tuple(steps()))
 
 
-def _find_joints(c: CompiledModel, body: int) -> list[tuple[int, str]]:
+def _find_joints(compiled: CompiledModel, body: int) -> list[tuple[int, str]]:
     """List the joints of a body and their types, the one nearest to its parent first."""
-    kinds = {int(getattr(c.mujoco.mjtJoint, word)): kind for word, kind in JOINT_TYPES.items()}
-    first = int(c.model.body_jntadr[body])
+    kinds = {int(getattr(compiled.mujoco.mjtJoint, word)): kind for word, kind in JOINT_TYPES.items()}
+    first = int(compiled.model.body_jntadr[body])
     return [
-        (k, kinds.get(int(c.model.jnt_type[k]), FREE)) for k in range(first, first + int(c.model.body_jntnum[body]))
+        (k, kinds.get(int(compiled.model.jnt_type[k]), FREE))
+        for k in range(first, first + int(compiled.model.body_jntnum[body]))
     ]
 
 
-def _find_joint_name(c: CompiledModel, body: str, joint: int, body_joints: list[tuple[int, str]]) -> str:
+def _find_joint_name(compiled: CompiledModel, body: str, joint: int, body_joints: list[tuple[int, str]]) -> str:
     """Return a joint's name; without one, that of its body, with a number if there are several."""
     position = [number for number, _ in body_joints].index(joint) + 1
-    return c.name("joint", joint) or (f"{body}_{position}" if len(body_joints) > 1 else body)
+    return compiled.name("joint", joint) or (f"{body}_{position}" if len(body_joints) > 1 else body)
 
 
 # Points

@@ -29,7 +29,7 @@ LAST_WITH_MODEL_AXES = (1, 4)  # axes of joints are along the model's frame up t
 SCENERY_URIS = ("sun", "ground_plane", "ground plane")  # models that every world has and that do not move
 
 
-def described(_content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str) -> DescribedMachine:
+def read_model(_content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str) -> DescribedMachine:
     """Read the machine that an SDF describes. Raises SpecError with all problems, in the order of their lines."""
     fields = UrdfFields(file, "right-angles" in options.repair)
     version = _read_version(root, fields)

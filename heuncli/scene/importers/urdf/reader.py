@@ -225,7 +225,7 @@ MASSLESS_HINT = (
 )
 
 
-def described(_content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str) -> DescribedMachine:
+def read_model(_content: bytes, file: str, root: XmlElement, options: ImportOptions, sha256: str) -> DescribedMachine:
     """Read the machine that a URDF describes. Raises SpecError with all problems, in the order of their lines."""
     fields = UrdfFields(file, "right-angles" in options.repair)
     return translate_robot(read_robot(root, fields), options, fields, sha256)
