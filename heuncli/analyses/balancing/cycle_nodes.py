@@ -32,10 +32,9 @@ from heuncli.results.results import Array, Indices
 Interpolant = Callable[[Array], Array]  # maps places (m,) to numbers (m, ...)
 TAIL_FRACTION = 4  # the highest 1/TAIL_FRACTION of the orders estimates the error of all
 TAIL_FACTOR = 4.0  # times the largest of these: error of any order by noise and by higher orders
-JUMP_PLACE_ERROR = (
-    1e-11  # of a cycle: error of the place of a jump: an event is located to the rounding of its coordinates
-)
-# of a cycle: rounding of a place in it, and of coordinates that follow from it
+# error of the place of a jump, relative to a cycle: an event is located to the rounding of its coordinates
+JUMP_PLACE_ERROR = 1e-11
+# rounding of a place, relative to its cycle, and of coordinates that follow from it
 PLACE_ROUNDING = tolerances.SUM_ROUNDING
 LENGTH_DIGITS = 13  # digits to which lengths of pieces are compared
 

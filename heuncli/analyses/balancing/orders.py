@@ -25,9 +25,8 @@ from heuncli.base.records import record, replace
 from heuncli.results.results import Array, Indices, Mask
 
 FIRST_ORDERS = 64
-MIN_DOUBLINGS = (
-    4  # doublings of the number of orders, after which two in a row without a significant order end the search
-)
+# doublings of the number of orders, after which two in a row without a significant order end the search
+MIN_DOUBLINGS = 4
 MAX_ORDERS, MAX_WORK = 10_000, 4_000_000  # orders per turn; orders times pieces
 SLOPE_PLACES = 33  # places of a piece at which its slopes are computed
 

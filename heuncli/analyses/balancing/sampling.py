@@ -138,15 +138,15 @@ def compute_residuals(
     noise: errors of the values in addition to those at the nodes
     """
     sums = {name: values.sum(axis=1) for name, values in kinds.items()}
-    magnitudes = compute_vector_magnitudes(sums, nodes)
+    residuals = compute_vector_magnitudes(sums, nodes)
     for name, values in kinds.items():
         largest = float(np.sqrt(np.sum(sums[name] ** 2, axis=1)).max())
         terms = float(np.sqrt(np.sum(values**2, axis=2)).sum(axis=1).max())
         if largest <= max(tolerances.CANCELS * terms, thresholds[name]):
-            magnitudes[name] = Residual(0.0, 0.0, float(nodes.begin), max(largest, thresholds[name]))
+            residuals[name] = Residual(0.0, 0.0, float(nodes.begin), max(largest, thresholds[name]))
         else:
-            magnitudes[name] = replace(magnitudes[name], error=magnitudes[name].error + noise[name])
-    return magnitudes
+            residuals[name] = replace(residuals[name], error=residuals[name].error + noise[name])
+    return residuals
 
 
 def compute_vector_magnitudes(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Residual]:

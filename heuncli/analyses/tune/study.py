@@ -31,7 +31,8 @@ def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, 
     """Find the tolerance range of each variable. Impure: tries variants."""
     trials.phase = "freedom"
     floor, hundredth = trials.floor * trials.scale, HUNDREDTH * abs(best.goal)
-    hundredth *= hundredth > floor  # 0 if it does not exceed the floor
+    if hundredth <= floor:
+        hundredth = 0.0
     ranges = []
     for index in range(len(best.place)):
         down, up = (_SideSearch(trials, best, index, sign) for sign in (-1.0, 1.0))
