@@ -24,7 +24,7 @@ from heuncli.analyses.balancing.loaded_scene import (
     sum_load_powers,
 )
 from heuncli.analyses.balancing.results import BalanceResults, Flywheel, FlywheelRequest
-from heuncli.analyses.balancing.series import legendre_polynomials
+from heuncli.analyses.balancing.series import evaluate_legendre
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
@@ -298,7 +298,7 @@ def make_work_curve(numbers: CycleNumbers, bodies: int) -> tuple[WorkCurve, floa
     piece = np.repeat(np.arange(len(parts)), parts.astype(int) + 1)
     share = np.concatenate([np.arange(n + 1) / n for n in parts])
     x = nodes.begins[piece] + share * (nodes.ends - nodes.begins)[piece]
-    P = legendre_polynomials(2.0 * share - 1.0, coefficients.shape[1] + 1)
+    P = evaluate_legendre(2.0 * share - 1.0, coefficients.shape[1] + 1)
     W = np.einsum("mn,mn->m", P, work[piece][:, :, 0])
     interpolated = np.einsum("mn,mnc->mc", P[:, :-1], coefficients[piece])
     finer = nodes.halve_pieces(HALVINGS)

@@ -12,8 +12,9 @@ import math
 import numpy as np
 
 from heuncli.analyses.sweep_rows import is_jump
-from heuncli.analyses.tune.results import Ending, ToleranceMove, ToleranceRange, Trial, Trials, TuneResults
+from heuncli.analyses.tune.results import Ending, ToleranceMove, ToleranceRange, Trial, TuneResults
 from heuncli.analyses.tune.search import OVERVIEW_PHASE, descend, descend_from, search_globally
+from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.measures import VariantResult
 
 HUNDREDTH = 0.01
