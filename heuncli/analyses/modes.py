@@ -15,7 +15,7 @@ Along an indifferent direction the equilibrium is known only as well as the path
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 import numpy as np
@@ -149,7 +149,16 @@ def to_results(spec: Spec, spec_modes: SpecModes) -> SceneModes:
         modes=tuple(spec_modes.modes),
         shapes=tuple(shapes),
         largest=tuple(find_largest_coordinates(shape, linearised_state.layout.size) for shape in shapes),
+        sticking_paths=tuple(dict.fromkeys(iter_sticking_friction(linearised_state))),
     )
+
+
+def iter_sticking_friction(linearised_state: LinearisedState) -> Iterator[str]:
+    """Yield the paths of the dry frictions that stick in a state."""
+    layout = linearised_state.layout
+    for k in layout.friction_contacts:
+        if linearised_state.holding[k] > 0.0:
+            yield layout.contacts[k].name
 
 
 def set_up_at_rest(spec: Spec) -> Setup:

@@ -1,8 +1,13 @@
 """Derivatives of measures by numbers of a spec, where a measure is known only within an error: by finite differences.
 
-The step is chosen so that the difference of two steps is about the noise: it begins at the cube root of the stated
-error and changes by factors of four. Where m has a kink or a jump, smaller steps show whether it is at the value or
-near it.
+A measure m of a number p is known within an error e. At a step h:
+    D(h) = (m(p+h) - m(p-h)) / 2h             central difference
+    K(h) = (m(p+h) - 2 m(p) + m(p-h)) / h     change of the chords' slopes at p: of order h where m is smooth
+    difference = |D(h/2) - D(h)|              error of (4 D(h/2) - D(h)) / 3, the derivative
+    excess = |K(h/2) - K(h)/2|                0 where m is smooth; at a kink half of the jump of the slope
+The step is chosen so that the difference is about the noise, a multiple of e/h: it begins at the cube root of the
+stated error and changes by factors of four. Where m has a kink or a jump, smaller steps show whether it is at the value
+or near it.
 """
 
 from __future__ import annotations
@@ -76,23 +81,33 @@ class SpreadSum(NamedTuple):
     largest: tuple[float, float] | None = None
 
 
-FIRST_STEP, MAX_STEP, MIN_STEP = 2.0**-8, 2.0**-4, 2.0**-24  # steps, of the number's size
-SUFFICIENT_ERROR = 1e-6  # of the derivative: an error small enough to keep the step
+FIRST_STEP, MAX_STEP, MIN_STEP = 2.0**-8, 2.0**-4, 2.0**-24  # steps, relative to the number's size
+SUFFICIENT_ERROR = 1e-6  # error relative to the derivative, small enough to keep the step
 IMBALANCE = 4.0  # ratio of noise and difference of two steps above which the step is changed
 MAX_STEP_CHANGES = 5
-KINK_RATIO, JUMP_RATIO = 0.75, 1.5  # K(h/2) / K(h): between 1/2 and 1, between 1 and 2
-MAX_DISAGREEMENT = 0.1  # of a one-sided derivative: if two steps differ by more, far above the noise, there is none
-SIGNIFICANCE = 4.0  # times its noise: size of K or X that shows a kink
-THIRD_STEP = 0.37  # of a step: the third one
-MAX_DEVIATION = 0.3  # of the difference of two steps: permitted deviation of the third from h^2 between them
-STEP_REDUCTION = 1.0 / 16.0  # of a step: the next one towards a kink or a jump
-NOISE_FACTOR = 3.0 + 8.0  # times e/h: the noise of R and of X
+KINK_RATIO = 0.75  # K(h/2) / K(h) of a kink, at least: 1/2 where m is smooth, 1 at a kink
+JUMP_RATIO = 1.5  # K(h/2) / K(h) of a jump, at least: 1 at a kink, 2 at a jump
+# difference of two steps relative to a one-sided derivative: above it, and far above the noise, there is no derivative
+MAX_DISAGREEMENT = 0.1
+SIGNIFICANCE = 4.0  # ratio of K or of the excess to its noise that shows a kink
+THIRD_STEP = 0.37  # third step, relative to the first of a pair
+# deviation of D at the third step from a parabola through the other two, relative to their difference
+MAX_DEVIATION = 0.3
+STEP_REDUCTION = 1.0 / 16.0  # ratio of each step to the one before, towards a kink or a jump
+# noise of a pair in units of e/h: sums of the factors of all values, 3 for the difference, 8 for the excess
+NOISE_FACTOR = 3.0 + 8.0
+# noise of a one-sided pair in units of e/h: twice the chord over h/4, of 8 e/h, and that over h/2, of 4 e/h
+SIDE_NOISE_FACTOR = 2.0 * 8.0 + 4.0
+SLOPE_CHANGE_NOISE_FACTOR = 4.0  # noise of K in units of e/h
 NOT_SMOOTH_CODE = "not-smooth"
 
 
 class StepPair(NamedTuple):
-    """Differences at a step and its half: the derivative, the difference between the two, the noise, and |X|
-    (excess).
+    """Differences at a step and its half: the derivative, and what its error consists of.
+
+    value: derivative extrapolated from both
+    difference: that of the two; excess: see above, 0 on one side
+    noise: effect of the errors of the measure
     """
 
     step: float
@@ -103,7 +118,7 @@ class StepPair(NamedTuple):
 
     @property
     def error(self) -> float:
-        """The error bound of the derivative."""
+        """Error bound of the derivative."""
         return self.difference + self.noise + self.excess
 
 
@@ -132,21 +147,21 @@ class Differences:
         """Return the largest error at these distances."""
         return max(self.evaluate(distance).error for distance in distances)
 
-    def compute_central_difference(self, h: float) -> float:
-        """Return D at a step."""
-        return (self.get_value(h) - self.get_value(-h)) / (2.0 * h)
+    def compute_central_difference(self, step: float) -> float:
+        """Return the central difference D at a step."""
+        return (self.get_value(step) - self.get_value(-step)) / (2.0 * step)
 
-    def compute_curvature(self, h: float) -> float:
-        """Return K at a step, with its sign."""
-        return (self.get_value(h) - 2.0 * self.get_value(0.0) + self.get_value(-h)) / h
+    def compute_slope_change(self, step: float) -> float:
+        """Return K, the change of the chords' slopes from one side of the number to the other."""
+        return (self.get_value(step) - 2.0 * self.get_value(0.0) + self.get_value(-step)) / step
 
-    def compute_pair(self, h: float) -> StepPair:
+    def compute_pair(self, step: float) -> StepPair:
         """Return the central differences at a step and its half."""
-        full_step, half_step = self.compute_central_difference(h), self.compute_central_difference(0.5 * h)
+        full_step, half_step = self.compute_central_difference(step), self.compute_central_difference(0.5 * step)
         value = (4.0 * half_step - full_step) / 3.0
-        error = self.get_largest_error(0.0, h, -h, 0.5 * h, -0.5 * h) + 0.25 * abs(value) * self.rounding
-        excess = abs(self.compute_curvature(0.5 * h) - 0.5 * self.compute_curvature(h))
-        return StepPair(h, value, abs(half_step - full_step), NOISE_FACTOR * error / h, excess)
+        error = self.get_largest_error(0.0, step, -step, 0.5 * step, -0.5 * step) + 0.25 * abs(value) * self.rounding
+        excess = abs(self.compute_slope_change(0.5 * step) - 0.5 * self.compute_slope_change(step))
+        return StepPair(step, value, abs(half_step - full_step), NOISE_FACTOR * error / step, excess)
 
     def is_quadratic(self, pair: StepPair) -> bool:
         """Return whether D is quadratic in the step at a third one, within the error."""
@@ -157,45 +172,47 @@ class Differences:
         deviation = abs(self.compute_central_difference(third_step) - expected)
         return deviation <= MAX_DEVIATION * pair.difference + pair.excess + pair.noise
 
-    def compute_side_pair(self, h: float, sign: int, start: float = 0.0) -> StepPair:
+    def compute_side_pair(self, step: float, sign: int, start: float = 0.0) -> StepPair:
         """Return one-sided differences, extrapolated from a start distance to the number: at a step, its half, its
         quarter.
         """
-        base = self.get_value(sign * start)
-        ends = [sign * (start + x) for x in (h, 0.5 * h, 0.25 * h)]
+        base, lengths = self.get_value(sign * start), (step, 0.5 * step, 0.25 * step)
+        ends = [sign * (start + length) for length in lengths]
         first, second, third = (
-            (self.get_value(x) - base) / (sign * step) for x, step in zip(ends, (h, 0.5 * h, 0.25 * h), strict=True)
+            (self.get_value(end) - base) / (sign * length) for end, length in zip(ends, lengths, strict=True)
         )
         value, coarser = 2.0 * third - second, 2.0 * second - first
-        noise = 20.0 * self.get_largest_error(sign * start, *ends) / h + 4.0 * abs(value) * self.rounding / h
-        shift = start * 8.0 * abs(third - second) / h  # the second derivative, over the distance
-        return StepPair(h, value, abs(value - coarser) + shift, noise)
+        error = self.get_largest_error(sign * start, *ends)
+        noise = SIDE_NOISE_FACTOR * error / step + 4.0 * abs(value) * self.rounding / step
+        shift = start * 8.0 * abs(third - second) / step  # the second derivative, over the distance
+        return StepPair(step, value, abs(value - coarser) + shift, noise)
 
-    def measure_kink(self, h: float) -> tuple[float, float]:
+    def measure_slope_change(self, step: float) -> tuple[float, float]:
         """Return |K| at a step, and its noise."""
-        return abs(self.compute_curvature(h)), 4.0 * self.get_largest_error(0.0, h, -h) / h
+        error = self.get_largest_error(0.0, step, -step)
+        return abs(self.compute_slope_change(step)), SLOPE_CHANGE_NOISE_FACTOR * error / step
 
 
 def compute_derivative(evaluate: Callable[[float], NoisyValue], number: float, size: float) -> NoisyDerivative:
     """Compute dm/dp at a number.
 
     evaluate: function that gives m at a distance from the number
-    size: range over which the number is expected to matter
+    size: range over which the number is expected to matter; all steps are relative to it
     """
     differences = Differences(evaluate, number)
     if differences.base.value is None:
         return NoisyDerivative(None, kind="refused", why=differences.base.why)
-    h = choose_first_step(differences.base, size)
+    step = choose_first_step(differences.base, size)
     for _ in range(2):
-        has_below, has_above = differences.has_values(-h, -0.5 * h), differences.has_values(h, 0.5 * h)
+        has_below, has_above = differences.has_values(-step, -0.5 * step), differences.has_values(step, 0.5 * step)
         if has_below and has_above:
-            return compute_central(differences, h, size)
+            return compute_central(differences, step, size)
         if (has_below or has_above) and differences.has_values(
-            *(0.25 * h * (1 if has_above else -1) * k for k in (1, 2, 4))
+            *(0.25 * step * (1 if has_above else -1) * k for k in (1, 2, 4))
         ):
-            return compute_one_sided(differences, h, 1 if has_above else -1, size)
-        h /= 64.0
-    return NoisyDerivative(None, kind="refused", why=evaluate(64.0 * h).why)
+            return compute_one_sided(differences, step, 1 if has_above else -1, size)
+        step /= 64.0
+    return NoisyDerivative(None, kind="refused", why=evaluate(64.0 * step).why)
 
 
 def choose_first_step(base: NoisyValue, size: float) -> float:
@@ -209,12 +226,12 @@ def choose_first_step(base: NoisyValue, size: float) -> float:
     return step * size
 
 
-def compute_central(differences: Differences, h: float, size: float) -> NoisyDerivative:
+def compute_central(differences: Differences, step: float, size: float) -> NoisyDerivative:
     """Compute the derivative by differences on both sides."""
-    if all(differences.get_value(x) == differences.get_value(0.0) for x in (h, -h, 0.5 * h, -0.5 * h)):
-        return NoisyDerivative(0.0, kind="nothing", step=h)
+    if all(differences.get_value(x) == differences.get_value(0.0) for x in (step, -step, 0.5 * step, -0.5 * step)):
+        return NoisyDerivative(0.0, kind="nothing", step=step)
     pairs = [
-        find_best_pair(differences.compute_pair, lambda x: differences.has_values(x, -x, 0.5 * x, -0.5 * x), h, size)
+        find_best_pair(differences.compute_pair, lambda x: differences.has_values(x, -x, 0.5 * x, -0.5 * x), step, size)
     ]
     quadratic = [each for each in pairs if differences.is_quadratic(each)]
     if (
@@ -234,23 +251,24 @@ def compute_central(differences: Differences, h: float, size: float) -> NoisyDer
 
 def has_kink(differences: Differences, pair: StepPair, significance: float) -> bool:
     """Return whether K stays or grows from a step to its half, by more than `significance` times its noise."""
-    (full_step, _), (half_step, noise) = differences.measure_kink(pair.step), differences.measure_kink(0.5 * pair.step)
-    return pair.excess > significance * pair.noise and half_step > max(significance * noise, KINK_RATIO * full_step)
+    full_change, _ = differences.measure_slope_change(pair.step)
+    half_change, noise = differences.measure_slope_change(0.5 * pair.step)
+    return pair.excess > significance * pair.noise and half_change > max(significance * noise, KINK_RATIO * full_change)
 
 
 def compute_smaller_steps(differences: Differences, first_pair: StepPair, size: float) -> list[StepPair]:
     """Compute differences at smaller steps, until the noise exceeds all else."""
     pairs: list[StepPair] = []
-    h = STEP_REDUCTION * first_pair.step
-    while h >= MIN_STEP * size and differences.has_values(h, -h, 0.5 * h, -0.5 * h):
-        pairs.append(differences.compute_pair(h))
+    step = STEP_REDUCTION * first_pair.step
+    while step >= MIN_STEP * size and differences.has_values(step, -step, 0.5 * step, -0.5 * step):
+        pairs.append(differences.compute_pair(step))
         if pairs[-1].noise > max(pairs[-1].difference, pairs[-1].excess):
             break
-        h *= STEP_REDUCTION
+        step *= STEP_REDUCTION
     return pairs
 
 
-def compute_one_sided(differences: Differences, h: float, sign: int, size: float) -> NoisyDerivative:
+def compute_one_sided(differences: Differences, step: float, sign: int, size: float) -> NoisyDerivative:
     """Compute the derivative on the side that has values, at smaller steps if these give another derivative.
 
     From one side, a kink at c does not show at steps much larger than c: they give the derivative beyond it. So smaller
@@ -261,10 +279,10 @@ def compute_one_sided(differences: Differences, h: float, sign: int, size: float
         """Return whether the measure is known at a step, its half and its quarter."""
         return differences.has_values(*(0.25 * x * sign * k for k in (1, 2, 4)))
 
-    best = find_best_pair(lambda x: differences.compute_side_pair(x, sign), has_step, h, size)
-    largest, disagreement, h = abs(best.value), 0.0, 0.25 * best.step
-    while h >= MIN_STEP * size and has_step(h):
-        pair = differences.compute_side_pair(h, sign)
+    best = find_best_pair(lambda x: differences.compute_side_pair(x, sign), has_step, step, size)
+    largest, disagreement, step = abs(best.value), 0.0, 0.25 * best.step
+    while step >= MIN_STEP * size and has_step(step):
+        pair = differences.compute_side_pair(step, sign)
         largest = max(largest, abs(pair.value))
         if pair.noise > largest:
             break
@@ -273,7 +291,7 @@ def compute_one_sided(differences: Differences, h: float, sign: int, size: float
             best, disagreement = pair, 0.0
         elif pair.error <= IMBALANCE * best.error:
             disagreement = max(disagreement, difference)
-        h *= 0.25
+        step *= 0.25
     why = differences.evaluate(-sign * best.step).why
     if best.difference > SIGNIFICANCE * best.noise and best.difference > MAX_DISAGREEMENT * abs(best.value):
         return NoisyDerivative(None, kind="refused", why=why, step=best.step)
@@ -281,22 +299,22 @@ def compute_one_sided(differences: Differences, h: float, sign: int, size: float
 
 
 def find_best_pair(
-    compute_pair: Callable[[float], StepPair], has_step: Callable[[float], bool], h: float, size: float
+    compute_pair: Callable[[float], StepPair], has_step: Callable[[float], bool], step: float, size: float
 ) -> StepPair:
     """Find the differences with the least error, changing the step so that the larger part of the error decreases."""
-    best = compute_pair(h)
+    best = compute_pair(step)
     for _ in range(MAX_STEP_CHANGES):
         if best.error <= SUFFICIENT_ERROR * abs(best.value):
             break
         if best.difference + best.excess > IMBALANCE * best.noise:
-            h *= 0.25
+            step *= 0.25
         elif best.noise > IMBALANCE * best.difference:
-            h *= 4.0
+            step *= 4.0
         else:
             break
-        if not MIN_STEP * size <= h <= MAX_STEP * size or not has_step(h):
+        if not MIN_STEP * size <= step <= MAX_STEP * size or not has_step(step):
             break
-        next_pair = compute_pair(h)
+        next_pair = compute_pair(step)
         if next_pair.error >= best.error:
             break
         best = next_pair
@@ -308,9 +326,9 @@ def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size:
     kinked = [each for each in pairs if has_kink(differences, each, SIGNIFICANCE)]
     step = min(kinked or pairs, key=lambda each: each.step).step
     distance = 0.5 * step
-    (full_step, _), (half_step, _) = differences.measure_kink(step), differences.measure_kink(distance)
-    if kinked and half_step > JUMP_RATIO * full_step:
-        return make_refusal(f"jump of {half_step * distance:.3g} within {distance:.2g} of the value", step)
+    (full_change, _), (half_change, _) = (differences.measure_slope_change(x) for x in (step, distance))
+    if kinked and half_change > JUMP_RATIO * full_change:
+        return make_refusal(f"jump of {half_change * distance:.3g} within {distance:.2g} of the value", step)
     sides = [compute_outside(differences, sign, distance, pairs[0].step, size) for sign in (-1, 1)]
     largest = max((abs(each.value) for each in sides if each), default=0.0)
     side_derivatives = [(each.value, each.error) for each in sides if each and is_determined(each, largest)]
@@ -328,7 +346,7 @@ def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size:
     )
 
 
-def compute_outside(differences: Differences, sign: int, distance: float, h: float, size: float) -> StepPair | None:
+def compute_outside(differences: Differences, sign: int, distance: float, step: float, size: float) -> StepPair | None:
     """Return the derivative on one side, outside of a distance within which the measure has a kink; None if it has no
     values there.
     """
@@ -338,8 +356,8 @@ def compute_outside(differences: Differences, sign: int, distance: float, h: flo
         return differences.has_values(*(sign * (distance + x * part) for part in (0.0, 0.25, 0.5, 1.0)))
 
     return (
-        find_best_pair(lambda x: differences.compute_side_pair(x, sign, distance), has_step, h, size)
-        if has_step(h)
+        find_best_pair(lambda x: differences.compute_side_pair(x, sign, distance), has_step, step, size)
+        if has_step(step)
         else None
     )
 

@@ -197,9 +197,10 @@ class JumpFinder:
         if isinstance(x, str):
             return
         for k, window in enumerate(self._windows):
-            one = row.result.measures[k] if row.result.measures else None
-            value = math.nan if one is None or one.value is None else one.value
-            window.append(SweptSample(row.number, x, value, (one and one.error) or 0.0))
+            measured = row.result.measures[k] if row.result.measures else None
+            value = math.nan if measured is None or measured.value is None else measured.value
+            error = 0.0 if measured is None or measured.error is None else measured.error
+            window.append(SweptSample(row.number, x, value, error))
         self._judge(from_end=3)
 
     def _end_course(self) -> None:

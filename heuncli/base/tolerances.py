@@ -105,6 +105,8 @@ NAMED_ORDER = (
 LISTED_ORDER = 1e-4  # likewise: a smaller one is no digit of a table of four digits, and is listed only on request
 # relative to the mean magnitude of the torque: a load that is typed with six digits to match another balances that well
 NO_NET_WORK = 1e-6
+# speed fluctuation: rounding of the two extreme rates is 2e-7 of their difference, six digits of a flywheel remain
+EVEN_RATE = 1e-9
 NO_SQUARE = 1e-12  # relative to the largest square: of a millionth of the largest load, a digit that no table shows
 NO_WEIGHT = (
     1e-9  # relative to the heaviest product: the iteration ends at half the digits of EPS, a tenth of that is rounding

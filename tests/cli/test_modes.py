@@ -66,6 +66,18 @@ def test_the_whole_thing_driven_has_none(heun: Heun, folder: Path) -> None:
     assert done.returncode == 0 and "0 degrees of freedom, so no modes" in done.stdout
 
 
+def test_a_table_names_the_friction_that_sticks(heun: Heun, folder: Path) -> None:
+    frictions = "{rub: {type: friction, joint: rail, force: 10}, grip: {type: friction, joint: hinge, torque: 1}}"
+    (folder / "held.yaml").write_text(f"{SCENE}forces: {frictions}\n{ASKED}")
+    text = heun("modes", "held.yaml").stdout
+    assert "\n       held by friction: forces.rub, forces.grip\n       0 degrees of freedom, so no modes\n" in text
+    block = json.loads(heun("modes", "held.yaml", "--format", "json").stdout)
+    assert block["held"] == ["forces.rub", "forces.grip"] and block["modes"] == []
+    (folder / "half.yaml").write_text(with_force("{type: friction, joint: rail, force: 10}"))
+    block = json.loads(heun("modes", "half.yaml", "--format", "json").stdout)
+    assert block["held"] == ["forces.f"] and [mode["shape"]["rail.travel"] for mode in block["modes"]] == [[0.0, 0.0]]
+
+
 # 4e-19 m off the root, where its slope would read as 8e9 N/m
 NEAR_A_ROOT = with_force("{type: torque, joint: rail, value: '-10*sqrt(rail.travel + 4e-19)'}")
 

@@ -73,6 +73,18 @@ def test_what_runs_evenly_needs_no_wheel() -> None:
     assert "no flywheel needed" in " ".join(told.notes)
 
 
+@pytest.mark.parametrize("delta", [1e-14, 1e-307])
+def test_an_unevenness_within_rounding_is_refused(delta: float) -> None:
+    """At 1e-14 the inertia was off by 0.2 %, at 1e-307 it was no number."""
+    with pytest.raises(SolveError, match=r"rounding of the speeds.*no-flywheel"):
+        wheel(SHAFT.replace("LAW", TORQUE), rate=200.0 * RPM, flywheel=FlywheelRequest("shaft", delta))
+
+
+def test_an_inertia_beyond_all_numbers_is_refused() -> None:
+    with pytest.raises(SolveError, match=r"no flywheel has a speed fluctuation of 0.01 .*no-flywheel"):
+        wheel(SHAFT.replace("LAW", TORQUE), rate=1e-153, flywheel=FlywheelRequest("shaft", 0.01))
+
+
 def test_the_engine_runs_as_a_run_has_it() -> None:
     """Two turns of a free run with the wheel, from the start told, between the extremes told."""
     text = (SPECS / "engine.yaml").read_text()

@@ -8,13 +8,9 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 import pytest
 
-from heuncli.analyses.tune.results import (
-    Trials,
-    TuneGoal,
-    TuneResults,
-    TuneTask,
-)
+from heuncli.analyses.tune.results import TuneGoal, TuneResults, TuneTask
 from heuncli.analyses.tune.study import Tuning
+from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.evaluation import Values
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, Comparison, MeasureValue, VariantResult
 from heuncli.analyses.variants.parameters import DesignVariable

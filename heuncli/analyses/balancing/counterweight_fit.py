@@ -58,20 +58,20 @@ class Candidate:
     by_product: Array
     by_square: Array
 
-    def effect(self, U: Array) -> Array:
+    def compute_response(self, U: Array) -> Array:
         """Return the response (n,) to a weight of product U (2,)."""
         size = math.sqrt(float(U @ U))
         if size == 0.0:
             return np.zeros_like(self.by_mass)
-        return np.asarray(self.by_product @ U + size * self.size_effect(U / size))
+        return np.asarray(self.by_product @ U + size * self.compute_size_response(U / size))
 
-    def size_effect(self, u: Array) -> Array:
+    def compute_size_response(self, u: Array) -> Array:
         """Return the part of the response (n,) per unit of |U| that the mass and the second moments cause, for
         direction u (2,).
         """
         return np.asarray(self.by_mass / self.radius + self.radius * (self.by_square @ u @ u))
 
-    def slope(self, U: Array) -> Array:
+    def compute_slope(self, U: Array) -> Array:
         """Return the derivative (n, 2) of the response with respect to U."""
         size = math.sqrt(float(U @ U))
         if size == 0.0:
@@ -144,7 +144,9 @@ def compute_residual(constant: Array, candidates: Sequence[Candidate], U: Array)
     """Return the force and moment (n,) that remain with the weights."""
     return np.asarray(
         constant
-        + sum((one.effect(product) for one, product in zip(candidates, U, strict=True)), np.zeros_like(constant))
+        + sum(
+            (one.compute_response(product) for one, product in zip(candidates, U, strict=True)), np.zeros_like(constant)
+        )
     )
 
 
@@ -170,7 +172,8 @@ def solve_sizes(constant: Array, candidates: Sequence[Candidate], directions: di
         free_directions = {k: directions[k] for k in free}
         columns = [one.by_product for k, one in enumerate(candidates) if k not in directions]
         columns += [
-            (candidates[k].by_product @ u + candidates[k].size_effect(u))[:, None] for k, u in free_directions.items()
+            (candidates[k].by_product @ u + candidates[k].compute_size_response(u))[:, None]
+            for k, u in free_directions.items()
         ]
         if not columns:
             return U
@@ -197,7 +200,9 @@ def refine_products(constant: Array, candidates: Sequence[Candidate], U: Array) 
     def compute_gradient(x: Array) -> tuple[Array, Array]:
         """Return the gradient of half the squared residual, and the Jacobian."""
         products = x.reshape(-1, 2)
-        J = np.concatenate([one.slope(each) for one, each in zip(active_candidates, products, strict=True)], axis=1)
+        J = np.concatenate(
+            [one.compute_slope(each) for one, each in zip(active_candidates, products, strict=True)], axis=1
+        )
         return J.T @ compute_residual(constant, active_candidates, products), J
 
     x = U[active].ravel()

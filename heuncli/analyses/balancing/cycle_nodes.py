@@ -18,11 +18,11 @@ import numpy as np
 
 from heuncli.analyses.balancing.series import (
     MAX_NODES,
-    coefficient_matrix,
-    fourier_integrals,
-    gauss_nodes,
-    integral_matrix,
-    legendre_polynomials,
+    compute_coefficient_matrix,
+    compute_fourier_integrals,
+    compute_gauss_nodes,
+    compute_integral_matrix,
+    evaluate_legendre,
 )
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
@@ -32,10 +32,9 @@ from heuncli.results.results import Array, Indices
 Interpolant = Callable[[Array], Array]  # maps places (m,) to numbers (m, ...)
 TAIL_FRACTION = 4  # the highest 1/TAIL_FRACTION of the orders estimates the error of all
 TAIL_FACTOR = 4.0  # times the largest of these: error of any order by noise and by higher orders
-JUMP_PLACE_ERROR = (
-    1e-11  # of a cycle: error of the place of a jump: an event is located to the rounding of its coordinates
-)
-# of a cycle: rounding of a place in it, and of coordinates that follow from it
+# error of the place of a jump, relative to a cycle: an event is located to the rounding of its coordinates
+JUMP_PLACE_ERROR = 1e-11
+# rounding of a place, relative to its cycle, and of coordinates that follow from it
 PLACE_ROUNDING = tolerances.SUM_ROUNDING
 LENGTH_DIGITS = 13  # digits to which lengths of pieces are compared
 
@@ -180,7 +179,7 @@ class PieceNodes:
     def places(self) -> Array:
         """Places of the nodes, (n,), ascending."""
         return np.concatenate([
-            0.5 * (a + b) + 0.5 * (b - a) * gauss_nodes(int(n))[0]
+            0.5 * (a + b) + 0.5 * (b - a) * compute_gauss_nodes(int(n))[0]
             for a, b, n in zip(self.begins, self.ends, self.sizes, strict=True)
         ])  # fmt: skip
 
@@ -193,7 +192,8 @@ class PieceNodes:
     def weights(self) -> Array:
         """Quadrature weights of the nodes for a mean, (n,)."""
         piece_weights = [
-            0.5 * (b - a) * gauss_nodes(int(n))[1] for a, b, n in zip(self.begins, self.ends, self.sizes, strict=True)
+            0.5 * (b - a) * compute_gauss_nodes(int(n))[1]
+            for a, b, n in zip(self.begins, self.ends, self.sizes, strict=True)
         ]
         weights = np.concatenate(piece_weights)
         return np.asarray(weights / weights.sum())
@@ -230,7 +230,7 @@ class PieceNodes:
         for n in np.unique(self.sizes):
             k = np.flatnonzero(self.sizes == n)
             rows = first[k][:, None] + np.arange(n)
-            coefficients[k] = np.einsum("cn,pnm->pcm", coefficient_matrix(int(n)), flat[rows])
+            coefficients[k] = np.einsum("cn,pnm->pcm", compute_coefficient_matrix(int(n)), flat[rows])
         return coefficients
 
     def compute_amplitudes(self, values: Array, orders: Indices) -> Array:
@@ -244,7 +244,7 @@ class PieceNodes:
         for i, (h, d) in enumerate(zip(half.tolist(), digits.tolist(), strict=True)):
             pieces_by_length.setdefault(round(h, d), []).append(i)
         for pieces in pieces_by_length.values():
-            integrals = fourier_integrals(k * half[pieces[0]])
+            integrals = compute_fourier_integrals(k * half[pieces[0]])
             for i in pieces:
                 wave = half[i] * np.exp(-1j * k * middle[i])
                 total += wave[:, None] * (integrals @ coefficients[i])
@@ -296,12 +296,12 @@ class PieceNodes:
         """Evaluate polynomials with coefficients (p, MAX_NODES, columns) at places (m,), (m, columns)."""
         k = np.maximum(np.searchsorted(self.begins, x, side="right") - 1, 0)
         u = np.clip((2.0 * x - self.begins[k] - self.ends[k]) / (self.ends[k] - self.begins[k]), -1.0, 1.0)
-        return np.asarray(np.einsum("mn,mnc->mc", legendre_polynomials(u, coefficients.shape[1]), coefficients[k]))
+        return np.asarray(np.einsum("mn,mnc->mc", evaluate_legendre(u, coefficients.shape[1]), coefficients[k]))
 
     def integrate(self, coefficients: Array) -> Array:
         """Return the coefficients (p, MAX_NODES + 1, columns) of the integral from the beginning of the cycle."""
         half = 0.5 * (self.ends - self.begins)
-        integral = np.einsum("kn,pnm->pkm", integral_matrix(), coefficients) * half[:, None, None]
+        integral = np.einsum("kn,pnm->pkm", compute_integral_matrix(), coefficients) * half[:, None, None]
         piece_integrals = integral.sum(axis=1)  # every polynomial is 1 at the end
         integral[:, 0] += np.cumsum(piece_integrals, axis=0) - piece_integrals
         return np.asarray(integral)

@@ -9,6 +9,7 @@ inertia in the turning-moment diagram at a constant rate.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -23,7 +24,7 @@ from heuncli.analyses.balancing.loaded_scene import (
     sum_load_powers,
 )
 from heuncli.analyses.balancing.results import BalanceResults, Flywheel, FlywheelRequest
-from heuncli.analyses.balancing.series import legendre_polynomials
+from heuncli.analyses.balancing.series import evaluate_legendre
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
@@ -175,12 +176,7 @@ def find_flywheel(scene: LoadedScene, joint: str, mean: float, delta: float) -> 
     course, constant_torque, work_errors = make_work_curve(numbers, len(scene.setup.scene.mechanism.bodies))
     energy, mean_inertia = course.find_energy_range(mean), float(course.weights @ course.eps_nodes)
     present = course.compute_unevenness(mean, 0.0)
-    added = 0.0
-    if present > delta:
-        upper_inertia = energy / (delta * mean**2) + float(course.eps.max())
-        while course.compute_unevenness(mean, upper_inertia) > delta:
-            upper_inertia *= 2.0
-        added = find_root(lambda J: delta - course.compute_unevenness(mean, J), 0.0, upper_inertia)
+    added = find_added_inertia(course, mean, delta, energy) if present > delta else 0.0
     slowest, fastest = course.find_rate_extremes(mean, added)
     E0 = course.find_initial_energy(mean, added)
     start = float(course.compute_rates(E0, added)[0])
@@ -204,6 +200,29 @@ def find_flywheel(scene: LoadedScene, joint: str, mean: float, delta: float) -> 
     )
 
 
+def find_added_inertia(course: WorkCurve, mean: float, delta: float, energy: float) -> float:
+    """Find the inertia J of the flywheel that a machine with a larger unevenness needs [kg m2].
+
+    energy [J]: ΔE
+
+    Raises SolveError [no-flywheel] if it is too large for a number.
+    """
+    upper_inertia = energy / (delta * mean**2) + float(course.eps.max())
+    while math.isfinite(upper_inertia) and course.compute_unevenness(mean, upper_inertia) > delta:
+        upper_inertia *= 2.0
+    if not math.isfinite(upper_inertia):
+        message = f"no flywheel has a speed fluctuation of {delta:g} at a mean speed of {mean:.3g} rad/s"
+        raise SolveError(Problem("no-flywheel", message, hint="choose a higher --rate"))
+    return find_root(lambda J: delta - course.compute_unevenness(mean, J), 0.0, upper_inertia)
+
+
+def require_resolved_unevenness(delta: float) -> None:
+    """Raise SolveError [no-flywheel] for an unevenness that rounding of the rates hides."""
+    if delta < tolerances.EVEN_RATE:
+        message = f"--flywheel {delta:g}: so small a speed fluctuation is hidden by the rounding of the speeds"
+        raise SolveError(Problem("no-flywheel", message, hint=f"at least {tolerances.EVEN_RATE:g}"))
+
+
 class WorkErrors(NamedTuple):
     """Errors of the constant torque, the work and the reduced inertia."""
 
@@ -216,7 +235,7 @@ def estimate_errors(
     work_errors: WorkErrors, mean: float, delta: float, energy: float, inertia: float, present: float
 ) -> dict[str, float]:
     """Estimate the errors of a flywheel's results from ΔE = ∫k - ½ ε ω² and J + ε = ΔE/(δ ω²), to which all are
-    proportional.
+    proportional. That of J is at least the rounding of δ, a difference of two rates.
     """
     energy_error = 2.0 * (work_errors.work + 0.5 * work_errors.inertia * mean**2)
     relative_error = energy_error / energy if energy > 0.0 else 0.0
@@ -226,7 +245,7 @@ def estimate_errors(
         "even": work_errors.constant_torque,
         "own": work_errors.inertia,
         "present": present * relative_error,
-        "added": inertia * relative_error + work_errors.inertia,
+        "added": inertia * max(relative_error, tolerances.EPS / delta) + work_errors.inertia,
         "textbook": energy_error / (delta * mean**2) + work_errors.inertia,
         "start": rate_error,
         "fastest": rate_error,
@@ -279,7 +298,7 @@ def make_work_curve(numbers: CycleNumbers, bodies: int) -> tuple[WorkCurve, floa
     piece = np.repeat(np.arange(len(parts)), parts.astype(int) + 1)
     share = np.concatenate([np.arange(n + 1) / n for n in parts])
     x = nodes.begins[piece] + share * (nodes.ends - nodes.begins)[piece]
-    P = legendre_polynomials(2.0 * share - 1.0, coefficients.shape[1] + 1)
+    P = evaluate_legendre(2.0 * share - 1.0, coefficients.shape[1] + 1)
     W = np.einsum("mn,mn->m", P, work[piece][:, :, 0])
     interpolated = np.einsum("mn,mnc->mc", P[:, :-1], coefficients[piece])
     finer = nodes.halve_pieces(HALVINGS)
@@ -352,6 +371,7 @@ def find_requested_flywheel(spec: Spec, scene: PreparedScene, plan: CyclePlan, r
     if plan.rate is None:
         message = "the mean speed of the machine is not known"
         raise SolveError(Problem("no-flywheel", message, hint="for example --rate 1500rpm"))
+    require_resolved_unevenness(request.delta)
     require_position_loads(scene.mechanism)
     loaded_scene = make_loaded_scene(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0)
     return find_flywheel(loaded_scene, plan.joint, abs(plan.rate), request.delta)

@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from heuncli.analyses.balancing.angle_laws import find_deviations, iter_angle_laws
 from heuncli.analyses.balancing.cycle import drop_rates, make_driven_mechanism, require_determined
 from heuncli.analyses.balancing.cycle_nodes import PieceNodes
 from heuncli.analyses.balancing.cycle_plan import CyclePlan
@@ -26,7 +27,7 @@ from heuncli.analyses.balancing.orders import (
     magnitudes,
     make_order_rows,
 )
-from heuncli.analyses.balancing.piece_resolver import CycleResolver, find_deviations, iter_angle_laws, make_scales
+from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_scales
 from heuncli.analyses.balancing.results import CycleLoad, OrderRow
 from heuncli.analyses.balancing.sampling import compute_square_root_magnitudes
 from heuncli.base import tolerances

@@ -19,15 +19,14 @@ import numpy as np
 from heuncli.analyses.balancing.cycle import MassEffects
 from heuncli.analyses.balancing.cycle_nodes import CycleNodes, PieceNodes
 from heuncli.analyses.balancing.results import OrderRow
-from heuncli.analyses.balancing.series import MAX_NODES, compute_rotating_vectors, legendre_polynomials
+from heuncli.analyses.balancing.series import MAX_NODES, compute_rotating_vectors, evaluate_legendre
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.results.results import Array, Indices, Mask
 
 FIRST_ORDERS = 64
-MIN_DOUBLINGS = (
-    4  # doublings of the number of orders, after which two in a row without a significant order end the search
-)
+# doublings of the number of orders, after which two in a row without a significant order end the search
+MIN_DOUBLINGS = 4
 MAX_ORDERS, MAX_WORK = 10_000, 4_000_000  # orders per turn; orders times pieces
 SLOPE_PLACES = 33  # places of a piece at which its slopes are computed
 
@@ -114,7 +113,7 @@ def compute_decay(nodes: PieceNodes, values: Array) -> tuple[float, float]:
     coefficients = nodes.compute_coefficients(values)
     jumps = np.sqrt(np.sum(nodes.compute_jumps(coefficients) ** 2, axis=1)).sum()
     half = 0.5 * (nodes.ends - nodes.begins)
-    slopes = np.einsum("mn,pnc->pmc", polynomial_slopes(), coefficients) / half[:, None, None]
+    slopes = np.einsum("mn,pnc->pmc", compute_legendre_slopes(), coefficients) / half[:, None, None]
     inner_bends = np.sqrt(np.sum(np.diff(slopes, axis=1) ** 2, axis=2)).sum()
     break_bends = slopes[:, 0] - np.roll(slopes[:, -1], 1, axis=0)
     bends = inner_bends + np.sqrt(np.sum(break_bends**2, axis=1)).sum()
@@ -122,10 +121,10 @@ def compute_decay(nodes: PieceNodes, values: Array) -> tuple[float, float]:
 
 
 @cache
-def polynomial_slopes() -> Array:
+def compute_legendre_slopes() -> Array:
     """Return the slopes of P_0 ... at equally spaced places of [-1, 1], (SLOPE_PLACES, MAX_NODES)."""
     u = np.linspace(-1.0, 1.0, SLOPE_PLACES)
-    P = legendre_polynomials(u)
+    P = evaluate_legendre(u)
     slopes = np.zeros_like(P)
     for n in range(1, MAX_NODES):
         slopes[:, n] = n * P[:, n - 1] + u * slopes[:, n - 1]

@@ -21,7 +21,7 @@ from heuncli.analyses.balancing.orders import (
 )
 from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_scales
 from heuncli.analyses.balancing.results import BalanceOptions, BalanceResults, OrderRow, Residual
-from heuncli.analyses.balancing.series import relative_tail
+from heuncli.analyses.balancing.series import compute_relative_tail
 from heuncli.base import tolerances
 from heuncli.base.records import replace
 from heuncli.results.results import Array
@@ -50,7 +50,9 @@ def sample_evenly(followed_scene: FollowedScene, reference_point: Array) -> Cycl
         cycle = followed_scene.evaluate_cycle(followed_scene.make_even_nodes(count))
         effects = compute_mass_effects(cycle, reference_point)
         kinds = {"force": effects.force, "moment": effects.moment, "torque": effects.half_slope}
-        largest_tail = max(relative_tail(values, TAIL_FRACTION, effects.terms[name]) for name, values in kinds.items())
+        largest_tail = max(
+            compute_relative_tail(values, TAIL_FRACTION, effects.terms[name]) for name, values in kinds.items()
+        )
         is_rounding = largest_tail < tolerances.CANCELS and largest_tail * MIN_REDUCTION > previous_tail
         if largest_tail <= tolerances.ORDERS_SETTLED or is_rounding:
             return cycle if is_resolved(followed_scene, cycle, reference_point) else None
@@ -138,15 +140,15 @@ def compute_residuals(
     noise: errors of the values in addition to those at the nodes
     """
     sums = {name: values.sum(axis=1) for name, values in kinds.items()}
-    magnitudes = compute_vector_magnitudes(sums, nodes)
+    residuals = compute_vector_magnitudes(sums, nodes)
     for name, values in kinds.items():
         largest = float(np.sqrt(np.sum(sums[name] ** 2, axis=1)).max())
         terms = float(np.sqrt(np.sum(values**2, axis=2)).sum(axis=1).max())
         if largest <= max(tolerances.CANCELS * terms, thresholds[name]):
-            magnitudes[name] = Residual(0.0, 0.0, float(nodes.begin), max(largest, thresholds[name]))
+            residuals[name] = Residual(0.0, 0.0, float(nodes.begin), max(largest, thresholds[name]))
         else:
-            magnitudes[name] = replace(magnitudes[name], error=magnitudes[name].error + noise[name])
-    return magnitudes
+            residuals[name] = replace(residuals[name], error=residuals[name].error + noise[name])
+    return residuals
 
 
 def compute_vector_magnitudes(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Residual]:

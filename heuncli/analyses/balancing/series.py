@@ -26,32 +26,32 @@ MILLER_EXTRA_ORDERS = 24  # orders above the last from which Miller's recurrence
 
 
 @cache
-def gauss_nodes(n: int) -> tuple[Array, Array]:
+def compute_gauss_nodes(n: int) -> tuple[Array, Array]:
     """Return the Gauss nodes and weights on [-1, 1], (n,) each; the weights add up to 2."""
     k = np.arange(1.0, n)
     off_diagonal = np.diag(k / np.sqrt(4.0 * k * k - 1.0), 1)
     u = np.linalg.eigvalsh(off_diagonal + off_diagonal.T)
     u = 0.5 * (u - u[::-1])
     for _ in range(NEWTON_STEPS):
-        P = legendre_polynomials(u, n + 1)
+        P = evaluate_legendre(u, n + 1)
         slope = n * (P[:, n - 1] - u * P[:, n]) / (1.0 - u * u)
         u = u - P[:, n] / slope
-    P = legendre_polynomials(u, n + 1)
+    P = evaluate_legendre(u, n + 1)
     slope = n * (P[:, n - 1] - u * P[:, n]) / (1.0 - u * u)
     return u, 2.0 / ((1.0 - u * u) * slope * slope)
 
 
 @cache
-def coefficient_matrix(n: int) -> Array:
+def compute_coefficient_matrix(n: int) -> Array:
     """Return the matrix (MAX_NODES, n) from values at n nodes to coefficients; rows from n on are 0."""
-    u, w = gauss_nodes(n)
+    u, w = compute_gauss_nodes(n)
     found = np.zeros((MAX_NODES, n))
     k = np.arange(n)
-    found[:n] = (k + 0.5)[:, None] * legendre_polynomials(u).T[:n] * w
+    found[:n] = (k + 0.5)[:, None] * evaluate_legendre(u).T[:n] * w
     return found
 
 
-def legendre_polynomials(u: Array, count: int = MAX_NODES) -> Array:
+def evaluate_legendre(u: Array, count: int = MAX_NODES) -> Array:
     """Return P_0 ... P_(count - 1) at places (m,), (m, count)."""
     found = np.ones((len(u), count))
     if count > 1:
@@ -62,7 +62,7 @@ def legendre_polynomials(u: Array, count: int = MAX_NODES) -> Array:
 
 
 @cache
-def integral_matrix() -> Array:
+def compute_integral_matrix() -> Array:
     """Return the matrix (MAX_NODES + 1, MAX_NODES) from coefficients to those of the integral from -1 on."""
     found = np.zeros((MAX_NODES + 1, MAX_NODES))
     found[0, 0] = found[1, 0] = 1.0
@@ -71,25 +71,25 @@ def integral_matrix() -> Array:
     return found
 
 
-def fourier_integrals(omega: Array) -> Array:
+def compute_fourier_integrals(omega: Array) -> Array:
     """Return ∫ P_n e^{-iωu} du over [-1, 1] at ω >= 0 (m,), complex (m, MAX_NODES)."""
-    return np.asarray(2.0 * spherical_bessel(omega) * (-1j) ** np.arange(MAX_NODES))
+    return np.asarray(2.0 * evaluate_bessel(omega) * (-1j) ** np.arange(MAX_NODES))
 
 
-def spherical_bessel(x: Array) -> Array:
+def evaluate_bessel(x: Array) -> Array:
     """Return j_0 ... j_(MAX_NODES - 1) at x >= 0 (m,), (m, MAX_NODES)."""
     found = np.zeros((len(x), MAX_NODES))
     small, large = x < SMALL, x > MAX_NODES
     middle = ~small & ~large
     found[small], found[middle], found[large] = (
-        bessel_series(x[small]),
-        bessel_downward(x[middle]),
-        bessel_upward(x[large]),
+        evaluate_bessel_series(x[small]),
+        evaluate_bessel_downward(x[middle]),
+        evaluate_bessel_upward(x[large]),
     )
     return found
 
 
-def bessel_series(x: Array) -> Array:
+def evaluate_bessel_series(x: Array) -> Array:
     """Return j_n from the first two terms of its power series, (m, MAX_NODES)."""
     found = np.zeros((len(x), MAX_NODES))
     power = np.ones_like(x)
@@ -99,7 +99,7 @@ def bessel_series(x: Array) -> Array:
     return found
 
 
-def bessel_upward(x: Array) -> Array:
+def evaluate_bessel_upward(x: Array) -> Array:
     """Return j_n by upward recurrence from j_0 and j_1, (m, MAX_NODES); x must exceed n."""
     found = np.zeros((len(x), MAX_NODES))
     sine, cosine = np.sin(x), np.cos(x)
@@ -110,7 +110,7 @@ def bessel_upward(x: Array) -> Array:
     return found
 
 
-def bessel_downward(x: Array) -> Array:
+def evaluate_bessel_downward(x: Array) -> Array:
     """Return j_n by downward recurrence, scaled to the larger of j_0 and j_1, (m, MAX_NODES)."""
     found = np.zeros((len(x), MAX_NODES))
     above, here, part = np.zeros_like(x), np.full_like(x, MILLER_START), 1.0 / x
@@ -128,7 +128,7 @@ def bessel_downward(x: Array) -> Array:
 AXES = np.eye(3)
 
 
-def relative_tail(values: Array, quarter: int, terms: float) -> float:
+def compute_relative_tail(values: Array, quarter: int, terms: float) -> float:
     """Return the size of the highest orders of values (n, ...) relative to the largest order except the mean; 0 if they
     are rounding.
 

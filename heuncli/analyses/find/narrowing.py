@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from enum import IntEnum
 from operator import attrgetter
 
 import numpy as np
@@ -20,8 +21,19 @@ from heuncli.base import tolerances
 
 MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
 WIDE_BRACKET = 1000.0  # times the narrowest bracket: a wider one, across which a jump has the same size
+SUFFICIENT_REDUCTION = 0.5  # of a bracket: if the two sides of a pole leave less, the middle need not follow
+# of a bracket: what remains if both sides of a predicted pole or edge, at a share of it, enclose it; with some slack
+ENCLOSED_SHARES = 2.5
 MIN_BRACKET = 10.0  # times the narrowest bracket: a comparison bracket that is not wider proves no jump
 FIRST_POLE_SHARE, MIN_POLE_SHARE = 0.05, 1e-6  # of a bracket: distance to both sides of the predicted pole
+
+
+class PlaceRule(IntEnum):
+    """Rules for the next place between two neighbours, in the order in which they follow when one gains too little."""
+
+    PREDICTED_ROOT = 0
+    PAST_ROOT = 1
+    MIDDLE = 2
 
 
 def narrow_all(course: MeasureCourse) -> None:
@@ -45,33 +57,35 @@ def narrow_pair(course: MeasureCourse, i: int) -> None:
     sides of the root of the inverse measure are tried, ever closer to it.
     """
     left, right = course.samples[i], course.samples[i + 1]
-    failures, pole_share = 0, FIRST_POLE_SHARE
+    rule, pole_share = PlaceRule.PREDICTED_ROOT, FIRST_POLE_SHARE
     while right.x - left.x > course.finest:
-        if failures and (pole := course.find_pole(course.samples.index(left))) is not None:
+        if rule != PlaceRule.PREDICTED_ROOT and (pole := course.find_pole(course.samples.index(left))) is not None:
             width = right.x - left.x
             left, right = narrow_pole(course, left, right, pole, pole_share)
             if left.gap is None or right.gap is None or not left.side or not right.side:
                 return
-            is_narrower = right.x - left.x < 2.5 * pole_share * width
+            is_narrower = right.x - left.x < ENCLOSED_SHARES * pole_share * width
             pole_share = max(pole_share * pole_share, MIN_POLE_SHARE) if is_narrower else FIRST_POLE_SHARE
-            failures = 1 if right.x - left.x < 0.5 * width else 2
-            if is_narrower or failures == 1:
+            is_reduced = right.x - left.x < SUFFICIENT_REDUCTION * width
+            rule = PlaceRule.PAST_ROOT if is_reduced else PlaceRule.MIDDLE
+            if is_narrower or is_reduced:
                 continue
-        x = (
-            0.5 * (left.x + right.x)
-            if failures > 1
-            else step_past_root(course, left, right)
-            if failures
-            else predict_root(course, left, right)
-        )
         best = min(left.distance, right.distance)
-        sample = course.sample_and_learn(x)
+        sample = course.sample_and_learn(choose_root_place(course, left, right, rule))
         if sample.gap is None or sample.side == 0:
             return
-        failures = 0 if abs(sample.gap) < MAX_REMAINING_GAP * best else failures + 1
+        is_closer = abs(sample.gap) < MAX_REMAINING_GAP * best
+        rule = PlaceRule.PREDICTED_ROOT if is_closer else PlaceRule(min(rule + 1, PlaceRule.MIDDLE))
         left, right = (sample, right) if sample.side == left.side else (left, sample)
     is_jump = not is_steep(course, left, right) and is_jump_size(course, left, right)
     (course.jumps if is_jump else course.steep).add((left.x, right.x))
+
+
+def choose_root_place(course: MeasureCourse, left: Sample, right: Sample, rule: PlaceRule) -> float:
+    """Return the next place to evaluate between two neighbours on different sides, by a rule."""
+    if rule == PlaceRule.PREDICTED_ROOT:
+        return predict_root(course, left, right)
+    return step_past_root(course, left, right) if rule == PlaceRule.PAST_ROOT else 0.5 * (left.x + right.x)
 
 
 def narrow_pole(course: MeasureCourse, left: Sample, right: Sample, pole: float, share: float) -> tuple[Sample, Sample]:
@@ -240,7 +254,7 @@ def close_edge(course: MeasureCourse, solved_sample: Sample, failed_sample: Samp
         for x in (predicted - fraction * width, predicted + fraction * width):
             if min(solved_sample.x, failed_sample.x) < x < max(solved_sample.x, failed_sample.x):
                 solved_sample, failed_sample = evaluate_between(course, solved_sample, failed_sample, x)
-        is_trusted = abs(failed_sample.x - solved_sample.x) < 2.5 * fraction * old_width
+        is_trusted = abs(failed_sample.x - solved_sample.x) < ENCLOSED_SHARES * fraction * old_width
         fraction = max(fraction * fraction, MIN_FRACTION) if is_trusted else FIRST_FRACTION
 
 

@@ -71,17 +71,16 @@ def follow_new_minimum(course: MeasureCourse) -> bool:
 def find_widest_uncertain(course: MeasureCourse) -> int | None:
     """Return the widest pair of neighbours with uncertain behaviour between them; None if there is none."""
     ends = find_range_ends(course)
-    pairs = [
-        (right.x - left.x, -i)
-        for i, left, right in course.iter_pairs()
-        if (left.x, right.x) not in course.searched_pairs
-    ]
-    for _, i in sorted(pairs, reverse=True):
-        surroundings = (*(sample.x for sample in course.samples[max(-i - 2, 0) : 4 - i]), course.distrust, len(ends))
+    widths = {
+        i: right.x - left.x for i, left, right in course.iter_pairs() if (left.x, right.x) not in course.searched_pairs
+    }
+    for i in sorted(widths, key=lambda i: -widths[i]):  # of equally wide ones the first
+        neighbours = course.samples[max(i - 2, 0) : i + 4]
+        surroundings = (*(sample.x for sample in neighbours), course.distrust, len(ends))
         if surroundings in course.certain:
             continue
-        if is_uncertain(course, -i, ends):
-            return -i
+        if is_uncertain(course, i, ends):
+            return i
         course.certain.add(surroundings)
     return None
 

@@ -1,14 +1,8 @@
 """Choose Lagrange's coordinates, and relate their rates to the rates of the tree's freedoms.
-    q' = C u,   u = T z what the closed chains admit,   u = S q',   S = T (C T)^-1
-C: rows of the chosen coordinates on the n rates u of the tree. Rotations of balls, and the six rates of a free body,
-are quasi-velocities: components of angular velocity and of velocity along the world's axes, which are not rates of any
-coordinates.
-
-Rodrigues-Cayley vectors as coordinates of bodies that turn freely (no. 20, and the end of no. 22).
-    k = tan(angle / 2) n, of the turn from where the body's axes are those of the world
-    w = W k',   W = 2/(1 + k^2) (1 + k^),   W^-1 = (1 + k k' - k^) / 2              (42), (43)
-    w. = W (k'' - 2 k . k' / (1 + k^2) k'),   so   k'' = W^-1 w. + 2 k . k' / (1 + k^2) k'
-They are true coordinates: with them Lagrange's equations hold for the rotation of a ball, too.
+    q̇ = C u,   u = T z,   u = S q̇,   S = T (C T)⁻¹
+C: rows of the chosen coordinates on the n rates u of the tree. T: the motions that the closed chains admit. Rotations
+of balls, and the six rates of a free body, are quasi-velocities: components of angular velocity and of velocity along
+the world's axes, which are not rates of any coordinates.
 """
 
 from __future__ import annotations
@@ -17,6 +11,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from heuncli.analyses.lagrange.rodrigues import (
+    RODRIGUES_NAMES,
+    compute_rodrigues_rates,
+    make_rodrigues_rows,
+)
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, is_length
@@ -30,56 +29,9 @@ from heuncli.multibody.mechanism.model import Joint, Mechanism
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import cross_matrix, cross_rows, quaternion_from_matrix
+from heuncli.scene.shapes.rotations import cross_rows
 
 OPTION_WORD = "rodrigues"  # value of --coordinates that selects them
-RODRIGUES_NAMES = ("kappa_x", "kappa_y", "kappa_z")
-HALF_TURN = 1e-3  # [rad] to a half turn: there k exceeds 2000, and its equations lose six digits
-
-
-def make_rodrigues_rows(layout: Layout, linear_equations: LinearisedEquations) -> dict[str, Array]:
-    """Return the rows of k' on the rates of the tree, for bodies on balls and free bodies.
-
-    Raises SolveError [half-turn] close to half a turn.
-    """
-    rows_by_name: dict[str, Array] = {}
-    for place, link in enumerate(layout.spanning.links):
-        if layout.bodies["ball"][place] and not layout.mechanism.planar:
-            name = layout.mechanism.bodies[link.body].name
-            W_inverse = compute_rodrigues_inverse(compute_rodrigues_vector(linear_equations.attitudes[place], name))
-            rows_by_name |= {
-                f"{name}.{axis}": row
-                for axis, row in zip(RODRIGUES_NAMES, W_inverse @ linear_equations.twists[place, :3], strict=True)
-            }
-    return rows_by_name
-
-
-def compute_rodrigues_vector(R: Array, body: str) -> Array:
-    """Return k (3,) of an attitude, body to world. Raises SolveError [half-turn] where it is unbounded."""
-    q = quaternion_from_matrix(R)
-    if abs(q[0]) < np.sin(0.5 * HALF_TURN):
-        message = f"{body} within {HALF_TURN:g} rad of 180 deg from the world axes: its Rodrigues vector is unbounded"
-        hint = "choose body axes closer to the world axes"
-        raise SolveError(Problem("half-turn", message, hint=hint))
-    return np.asarray(q[1:] / q[0])
-
-
-def compute_rodrigues_inverse(k: Array) -> Array:
-    """Return W^-1 (3, 3)."""
-    return np.asarray(0.5 * (np.eye(3) + np.outer(k, k) - cross_matrix(k)))
-
-
-def compute_rodrigues_rates(R: Array, omega: Array, alpha: Array, body: str) -> tuple[Array, Array]:
-    """Return k' and k'' of attitudes (n_t, 3, 3) with these angular velocities and accelerations, (n_t, 3) each."""
-    rates, accelerations = np.zeros_like(omega), np.zeros_like(omega)
-    for i, attitude in enumerate(R):
-        k = compute_rodrigues_vector(attitude, body)
-        W_inverse = compute_rodrigues_inverse(k)
-        rates[i] = W_inverse @ omega[i]
-        accelerations[i] = W_inverse @ alpha[i] + 2.0 * float(k @ rates[i]) / (1.0 + float(k @ k)) * rates[i]
-    return rates, accelerations
-
-
 PROBLEM_CODE = "no-coordinate"
 PIVOT_RATIO = 0.1  # of the largest remaining pivot: the first in the file that reaches this is taken
 TRUE_COORDINATES = ("angle", "travel", "length", *RODRIGUES_NAMES)  # coordinates; all others are quasi-velocities

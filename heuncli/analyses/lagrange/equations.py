@@ -1,10 +1,12 @@
-"""Lagrange's equations at an instant: e q'' + C = k + Q, and the origin of each term (no. 18, 19; (29) to (39)).
-    x = sum x_i q_i', w = sum w_i q_i'            partials of the velocities, (29), (30)
-    e_ij = sum m x_i . x_j + w_i . I w_j          E = q' e q' / 2,   p = e q' (35),   n = e^-1,   F = p n p / 2
-    C_i = sum m x_i . x.. + w_i . (I w. + w x I w)    of the accelerations at q'' = 0, e q'' taken off: (37)
-    k_i = sum k . x_P,i + M . w_i                 (34), by cause
-C is quadratic in the rates: C(q') = G q' with 2 G e_k = C(q' + e_k) - C(q') - C(e_k), and gamma^(i)_lk = (C_i(e_l +
-e_k) - C_i(e_l) - C_i(e_k)) / 2, from the kernel's solutions at other rates.
+"""Lagrange's equations at an instant: ε q̈ + C = k + Q, and the origin of each term (no. 18, 19; (29) to (39)).
+    v = Σ s_i q̇_i,   ω = Σ t_i q̇_i            s_i, t_i: partials of the velocities, Partials.shift and turn; (29), (30)
+    ε_ij = Σ m s_i · s_j + t_i · I t_j        E = q̇ᵀ ε q̇ / 2,   p = ε q̇ (35),   η = ε⁻¹,   F = pᵀ η p / 2
+    C_i = Σ m s_i · a + t_i · (I ω̇ + ω × I ω)  of the accelerations a, ω̇ without loads, less ε q̈: (37)
+    k_i = Σ K · s_i + M · t_i                 of loads K at their points and M, by cause: (34)
+The sums are over the bodies, of mass m and inertia I about the centre. C is quadratic in the rates: C(q̇) = G q̇. With
+u_k, the rates of which only that of coordinate k is 1,
+    2 G u_k = C(q̇ + u_k) - C(q̇) - C(u_k),   γ_ilk = (C_i(u_l + u_k) - C_i(u_l) - C_i(u_k)) / 2
+from the kernel's solutions at other rates.
 """
 
 from __future__ import annotations
@@ -72,7 +74,7 @@ def make_partials(layout: Layout, linear_equations: LinearisedEquations, S: Arra
 
 
 def invert_inertia(names: Sequence[str], epsilon: Array) -> Array:
-    """Return n = e^-1. Raises SolveError [no-inertia] if a motion has no inertia."""
+    """Return η = ε⁻¹. Raises SolveError [no-inertia] if a motion has no inertia."""
     try:
         L = np.linalg.cholesky(epsilon)
     except np.linalg.LinAlgError:
@@ -112,7 +114,7 @@ class VelocityTerms:
         return np.asarray(forces - compute_accelerations(layout, self.choice.names, velocity_motion) @ self.epsilon)
 
     def coriolis_matrix(self, rates: Array) -> Array:
-        """Return G (f, f) with C = G q', such that the rate of e minus 2 G is antisymmetric; rates (f,)."""
+        """Return G (f, f) with C = G q̇, such that the rate of ε minus 2 G is antisymmetric; rates (f,)."""
         f = len(rates)
         unit = np.eye(f) * max(float(np.abs(rates).max(initial=0.0)), 1.0)
         C = self.compute_terms(np.vstack([rates, rates + unit, unit]))
@@ -124,7 +126,7 @@ class VelocityTerms:
         pairs = [(l, k) for l in range(f) for k in range(l, f)]
         unit = np.eye(f)
         C = self.compute_terms(np.array([unit[l] + unit[k] for l, k in pairs]))
-        twice = {pair: C[n] for n, pair in enumerate(pairs)}  # C(2 e_l) = 4 C(e_l)
+        twice = {pair: C[n] for n, pair in enumerate(pairs)}  # C(2 u_l) = 4 C(u_l)
         gamma = np.zeros((f, f, f))
         for (l, k), value in twice.items():
             diagonal_part = 0.25 * (twice[l, l] + twice[k, k])

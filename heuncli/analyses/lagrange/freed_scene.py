@@ -173,20 +173,28 @@ class Instant:
         return recover(self.setup, self.driven_recovered, False)
 
 
+def get_start_time(spec: Spec) -> float:
+    """Return the instant of a state, or 0, where all else starts [s]."""
+    return float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+
+
+def make_start_state(spec: Spec) -> Spec:
+    """Return the spec of the state in which a spec starts."""
+    times = (get_start_time(spec),)
+    return spec._replace(analysis=spec.analysis._replace(type="state", times=times, duration=None, conditions=()))
+
+
 def make_instant(spec: Spec, time: float | None, time_limit: float | None) -> Instant:
     """Return the start of a state or motion, an equilibrium, or an instant of a motion."""
     kind = spec.analysis.type
+    t = get_start_time(spec)
     if time is not None and kind == "motion" and time > 0.0:
         setup, recovered = solve_until(spec, time, time_limit)
         heading, t = f"at t = {time:.6g} s", time
     else:
         if kind != "rest":
-            t = float(spec.analysis.times[0]) if kind == "state" else 0.0
-            spec = spec._replace(
-                analysis=spec.analysis._replace(type="state", times=(t,), duration=None, conditions=())
-            )
+            spec = make_start_state(spec)
         setup = set_up(spec, reduce=False)
-        t = float(spec.analysis.times[0]) if kind == "state" else 0.0
         runner, layout = setup.runner, setup.scene.layout
         recovered = runner.evaluate(np.array([t]), layout.y0[None, :])
         heading = "at the rest position" if kind == "rest" else f"at t = {t:.6g} s"

@@ -10,7 +10,7 @@ import numpy as np
 
 from heuncli.analyses.lagrange.coordinates import compute_accelerations, compute_length, compute_rates
 from heuncli.analyses.lagrange.equations import get_velocity_motion
-from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives
+from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives, get_start_time, make_start_state
 from heuncli.analyses.lagrange.results import InertiaCurve
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.joint_kinds import RATES
@@ -95,7 +95,7 @@ def compute_mean(curve: InertiaCurve) -> tuple[float, float]:
 def compute_curve(spec: Spec, coordinate_range: CoordinateRange) -> InertiaCurve:
     """Return inertia and forces at the requested values."""
     start, rate = find_start(spec, coordinate_range)
-    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
+    t = get_start_time(spec)
     order = np.argsort(coordinate_range.values)
     values = coordinate_range.values[order]
     branches = [values[values < start][::-1], values[values >= start]]
@@ -118,9 +118,8 @@ def compute_curve(spec: Spec, coordinate_range: CoordinateRange) -> InertiaCurve
 
 def find_start(spec: Spec, coordinate_range: CoordinateRange) -> tuple[float, float]:
     """Return the value of the coordinate at the start, and its rate."""
-    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
-    analysis = spec.analysis._replace(type="state", times=(t,), duration=None, conditions=())
-    setup = set_up(spec._replace(analysis=analysis), reduce=False)
+    t = get_start_time(spec)
+    setup = set_up(make_start_state(spec), reduce=False)
     layout = setup.scene.layout
     recovered = setup.runner.evaluate(np.array([t]), layout.y0[None, :])
     states = make_body_states(layout, recovered)

@@ -30,6 +30,7 @@ from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.motion.linearisation.smoothness import iter_without_derivative
 from heuncli.multibody.mechanism.loads import JointLoad, Load, PointLoad
+from heuncli.multibody.tree.layout import rate_indices
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 
@@ -170,8 +171,6 @@ def get_load_unit(instant: Instant, name: str) -> str:
 
 def find_rate_indices(scene: FreedScene) -> Array:
     """Return the indices of the rates in the state."""
-    from heuncli.multibody.tree.layout import rate_indices
-
     indices = rate_indices(scene.layout)
     return indices[indices >= 0]
 

@@ -11,13 +11,11 @@ from typing import Any
 import numpy as np
 
 from heuncli.analyses.lagrange.coordinates import (
-    RODRIGUES_NAMES,
     CoordinateChoice,
     choose_coordinates,
     compute_accelerations,
     compute_length,
     compute_rates,
-    compute_rodrigues_vector,
     make_candidate_rows,
 )
 from heuncli.analyses.lagrange.equations import (
@@ -34,6 +32,7 @@ from heuncli.analyses.lagrange.equations import (
 )
 from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
 from heuncli.analyses.lagrange.results import ApparentInertia, ImpulseResults, LagrangeResults, SectionForces, get_units
+from heuncli.analyses.lagrange.rodrigues import RODRIGUES_NAMES, compute_rodrigues_vector
 from heuncli.analyses.lagrange.state_space import compute_state_space
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import is_length
@@ -46,7 +45,7 @@ from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_coup
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.compose.blocks import make_blocks as blocks_of
+from heuncli.study.compose.blocks import make_blocks
 from heuncli.study.compose.impulses import Impulses
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import attach_locations
@@ -141,7 +140,7 @@ def compute_apparent_inertia(
     """
     place, colon, direction = name.partition(":")
     if colon:
-        row, unit = make_point_row(instant, partials, place, direction, name) @ np.eye(len(eta)), "kg"
+        row, unit = make_point_row(instant, partials, place, direction, name), "kg"
     else:
         rows = make_candidate_rows(instant.freed_scene.layout, instant.linear_equations)
         if name not in rows:
@@ -207,7 +206,8 @@ def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> Lagran
     eta = invert_inertia(choice.names, epsilon)
     partials = make_partials(layout, instant.linear_equations, choice.S)
     states = make_body_states(instant.setup.scene.layout, instant.driven_recovered, instant.setup.steady_spin_axes)
-    q1, q2 = (move(layout, choice.names, states)[0] for move in (compute_rates, compute_accelerations))
+    q1 = compute_rates(layout, choice.names, states)[0]
+    q2 = compute_accelerations(layout, choice.names, states)[0]
     terms = VelocityTerms(instant.freed_scene, choice, partials, epsilon, instant.t, instant.state, instant.holding)
     C = terms.compute_terms(q1[None, :])[0]
     freed_states = make_body_states(layout, instant.freed_recovered)
@@ -329,7 +329,7 @@ def list_section_forces(instant: Instant, partials: Partials) -> dict[str, Secti
     """Return s'_i of each section: what the piece beyond the cut exerts on the rest."""
     if not instant.setup.cuts:
         return {}
-    block = blocks_of(instant.recovery, {"sections"})["sections"]
+    block = make_blocks(instant.recovery, {"sections"})["sections"]
     return {cuts.name: compute_section_forces(block[cuts.name], 0, partials, cuts.body) for cuts in instant.setup.cuts}
 
 

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.tune.results import Trial, Trials
+from heuncli.analyses.tune.results import Trial
+from heuncli.analyses.tune.trials import Trials
 from heuncli.results.results import Array
 
 FIRST_STEP, MAX_STEP, MIN_STEP = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box

@@ -12,8 +12,9 @@ import math
 import numpy as np
 
 from heuncli.analyses.sweep_rows import is_jump
-from heuncli.analyses.tune.results import Ending, ToleranceMove, ToleranceRange, Trial, Trials, TuneResults
+from heuncli.analyses.tune.results import Ending, ToleranceMove, ToleranceRange, Trial, TuneResults
 from heuncli.analyses.tune.search import OVERVIEW_PHASE, descend, descend_from, search_globally
+from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.measures import VariantResult
 
 HUNDREDTH = 0.01
@@ -31,7 +32,8 @@ def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, 
     """Find the tolerance range of each variable. Impure: tries variants."""
     trials.phase = "freedom"
     floor, hundredth = trials.floor * trials.scale, HUNDREDTH * abs(best.goal)
-    hundredth *= hundredth > floor  # 0 if it does not exceed the floor
+    if hundredth <= floor:
+        hundredth = 0.0
     ranges = []
     for index in range(len(best.place)):
         down, up = (_SideSearch(trials, best, index, sign) for sign in (-1.0, 1.0))

@@ -38,7 +38,7 @@ class Recipe(NamedTuple):
     text: the spec as it was read
     overrides: set in all variants
     case: the load case that they are applied to
-    files: the files named in the spec, as they were read; None: they are read from the spec's folder (files.py)
+    files: the files named in the spec, as they were read; None: they are read from the spec's folder
     """
 
     path: str

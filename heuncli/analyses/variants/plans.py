@@ -233,7 +233,7 @@ def _draw_joint(law: str, columns: int, samples: int, seed: int | tuple[int, int
 
     generator = np.random.Generator(np.random.PCG64(seed))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of counts that are no power of two: see warn_unbalanced
+        warnings.simplefilter("ignore", UserWarning)  # of counts that are no power of two: see make_imbalance_warning
         if law == "sobol":
             found: Array = qmc.Sobol(columns, seed=generator).random(samples)
         else:

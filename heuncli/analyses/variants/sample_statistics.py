@@ -162,7 +162,7 @@ def compute_sobol_indices(rows: Array, repetitions: Places | None = None) -> tup
 
 
 def _draw_weights(count: int) -> Array:
-    """Draw how often each of `count` units is drawn, (DRAWINGS, count): the same numbers for the same count."""
+    """Draw how often each of `count` units is drawn, (RESAMPLES, count): the same numbers for the same count."""
     generator = np.random.Generator(np.random.PCG64(count))
     found: Array = generator.multinomial(count, np.full(count, 1.0 / count), size=RESAMPLES).astype(np.float64)
     return found

@@ -288,12 +288,14 @@ class SceneModes:
     shapes: tuple[dict[str, complex], ...]
     largest: tuple[tuple[str, ...], ...]  # the coordinates that move most in each mode, lengths relative to the size
     omitted_paths: tuple[str, ...] = ()  # forces left out and drives held, as `forces.push`
+    sticking_paths: tuple[str, ...] = ()  # dry friction that sticks, as `forces.rub`
 
     def to_block(self) -> dict[str, Any]:
         """Return the modes as in the JSON output."""
         rows = [mode_to_block(mode, shape) for mode, shape in zip(self.modes, self.shapes, strict=True)]
         without = {"without": list(self.omitted_paths)} if self.omitted_paths else {}
-        return {"at": self.reference, "steady": self.is_steady, **without, "modes": rows}
+        held = {"held": list(self.sticking_paths)} if self.sticking_paths else {}
+        return {"at": self.reference, "steady": self.is_steady, **without, **held, "modes": rows}
 
 
 def mode_to_block(mode: Mode, shape: dict[str, complex]) -> dict[str, Any]:

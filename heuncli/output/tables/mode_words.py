@@ -21,6 +21,8 @@ def describe_modes(scene_modes: SceneModes) -> list[str]:
     lines = [f"small oscillations {STATE_PHRASES[scene_modes.reference]}{frame}"]
     if scene_modes.omitted_paths:
         lines.append(f"without {', '.join(map(describe_excluded, scene_modes.omitted_paths))}")
+    if scene_modes.sticking_paths:
+        lines.append(f"held by friction: {', '.join(scene_modes.sticking_paths)}")
     if not scene_modes.modes:
         return [*lines, "0 degrees of freedom, so no modes"]
     unstable = any(mode.growth > 0.0 for mode in scene_modes.modes)

@@ -7,7 +7,7 @@ import numpy as np
 from heuncli.analyses.balancing.counterweight_fit import Candidate, WeightPlace
 from heuncli.analyses.balancing.flywheel import choose_constant_torque
 from heuncli.analyses.balancing.orders import classify_order, format_direction, format_remaining_orders
-from heuncli.analyses.balancing.results import BalanceOptions, OrderRow
+from heuncli.analyses.balancing.results import BalanceOptions, FlywheelRequest, OrderRow
 from heuncli.analyses.balancing.sampling import select_shown_orders
 from heuncli.analyses.balancing.study import balance
 from heuncli.base.errors import SolveError
@@ -72,6 +72,23 @@ def unbalanced(x: float) -> str:
     return "nothing" if torque == 0.0 else "a torque" if torque == -2.0 * x else f"{torque}"
 
 
+def turning_evenly(x: float) -> str:
+    """A flywheel that lets a shaft under a wave of torque fluctuate by x."""
+    text = """
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+bodies: {s: {mass: 1, center: [0, 0, 0], inertia: [5, 5, 5], points: {c: [0, 0, 0]}}}
+joints: {s: {type: pin, from: ground.O, to: s.c, axis: [0, 0, 1]}}
+forces: {tool: {type: torque, joint: s, value: 40*sin(2*s.angle)}}
+"""
+    try:
+        wheel = balance(load("scene.yaml", text), BalanceOptions(rate=2.0, flywheel=FlywheelRequest("", x))).flywheel
+    except SolveError as error:
+        return error.problems[0].code
+    assert wheel is not None and abs(wheel.added / (10.0 / x) - 1.0) <= 2e-7
+    return "sized"
+
+
 def weighing(x: float) -> str:
     """A place where a weight's own mass does x of what its product does."""
     place = WeightPlace(0, "rim", np.zeros(3), 1.0)
@@ -88,6 +105,7 @@ PART = Part(
         Row("NAMED_ORDER", named, "smaller", "named"),
         Row("LISTED_ORDER", listed, "on request", "listed"),
         Row("NO_NET_WORK", unbalanced, "nothing", "a torque"),
+        Row("EVEN_RATE", turning_evenly, "no-flywheel", "sized"),
         Row("NO_EFFECT", weighing, "linear", "by its mass"),
     ),
     exempt={

@@ -8,8 +8,9 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from heuncli.analyses.tune.results import Trials, TuneResults
+from heuncli.analyses.tune.results import TuneResults
 from heuncli.analyses.tune.study import Tuning
+from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
 from heuncli.analyses.variants.parameters import format_value
