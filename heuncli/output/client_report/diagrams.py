@@ -148,7 +148,7 @@ def _make_figure(
 ) -> Figure:
     """Make the figure of one load in some cases."""
     style = choose_family([greatest.ends], data).style
-    curves = [style.size * course.find_numbers(greatest.path) for course in courses]
+    curves = [style.per_si * course.find_numbers(greatest.path) for course in courses]
     known = np.concatenate([curve[np.isfinite(curve)] for curve in curves])
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
     x_values = np.concatenate([course.x for course in courses])
@@ -173,7 +173,7 @@ def _mark_greatest(
         time = greatest.extreme.time
         if course.run is not greatest.run or ends is None or time is None:
             continue
-        value = greatest.family.style.size * greatest.value
+        value = greatest.family.style.per_si * greatest.value
         x = float(course.x[int(np.argmin(np.abs(course.times - time)))])
         where = f"{x:.0f}°" if crank is not None else f"{format_instant(time, course.run)} s"
         if math.isfinite(value):

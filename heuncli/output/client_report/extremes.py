@@ -175,10 +175,10 @@ def choose_style_in_unit(
     style = choose_reader_style(unit, scale, data.units, error)
     if unit_scale == scale:
         return style
-    size = choose_reader_style(unit, unit_scale, data.units).size
+    per_si = choose_reader_style(unit, unit_scale, data.units).per_si
     shown_unit = choose_reader_style(unit, unit_scale, data.units).unit
-    shift = round(math.log10(style.size / size)) if style.size != size else 0
-    return ReaderStyle(shown_unit, size, max(style.decimals + shift, 0), size * error)
+    shift = round(math.log10(style.per_si / per_si)) if style.per_si != per_si else 0
+    return ReaderStyle(shown_unit, per_si, max(style.decimals + shift, 0), per_si * error)
 
 
 def format_power(value: float, digits: int = 1) -> str:
@@ -208,8 +208,8 @@ def describe_place(place: CutPosition | None, units: Units) -> str:
 
 
 def _format_distance(place: CutPosition, units: Units) -> str:
-    unit, size = units.find("m")
-    text = f"{round(place.s, PLACE_DECIMALS) * size:.{DECIMALS.get(unit, 4)}f}"
+    unit, per_si = units.find("m")
+    text = f"{round(place.s, PLACE_DECIMALS) * per_si:.{DECIMALS.get(unit, 4)}f}"
     return text.rstrip("0").rstrip(".")
 
 

@@ -213,12 +213,12 @@ def _make_panels(
     """Yield the sketches of the bars of a section, and the panels of its quantities on the same axis."""
     length = max(bar.bar.length for bar in bars)
     style = choose_reader_style("m", length, units)
-    x = Scaling(f"s [{style.unit}]", *choose_ends(0.0, style.size * length, margin=0.02))
+    x = Scaling(f"s [{style.unit}]", *choose_ends(0.0, style.per_si * length, margin=0.02))
     sketched = _list_distinct_bars(bars)
     for source_name, bar in sketched.items():
         title = f"{name}: {source_name}" if len(sketched) > 1 else name * has_title
-        yield make_sketch(_mark_couples(bar), x, bar.length, style.size, style.unit, title)
-    places = sorted({style.size * attachment.s for bar in sketched.values() for attachment in bar.attachments})
+        yield make_sketch(_mark_couples(bar), x, bar.length, style.per_si, style.unit, title)
+    places = sorted({style.per_si * attachment.s for bar in sketched.values() for attachment in bar.attachments})
     for k, quantity in enumerate(quantities):
         panel = make_panel(quantity, bars, units, style, is_inverted=tension_side and quantity in INVERTED)
         symbol = quantity.rpartition(".")[2]
@@ -262,23 +262,23 @@ def _mark_couples(bar: WholeBar) -> list[BarAttachment]:
 
 
 def make_sketch(
-    attachments: Sequence[BarAttachment], x: Scaling, length: float, size: float, unit: str, title: str = ""
+    attachments: Sequence[BarAttachment], x: Scaling, length: float, per_si: float, unit: str, title: str = ""
 ) -> Panel:
     """Make the sketch of a bar on the horizontal axis of its diagrams.
 
-    length: of the bar [m]; size: display units in a metre
+    length: of the bar [m]; per_si: display units in a metre
     """
-    items = tuple(_iter_items(attachments, length, size, unit))
+    items = tuple(_iter_items(attachments, length, per_si, unit))
     return Panel(x._replace(hides_label=True), Scaling("", -LOWER, UPPER), items, HEIGHT, is_bare=True, title=title)
 
 
-def _iter_items(attachments: Sequence[BarAttachment], length: float, size: float, unit: str) -> Iterator[Item]:
+def _iter_items(attachments: Sequence[BarAttachment], length: float, per_si: float, unit: str) -> Iterator[Item]:
     """Yield the bar, what acts on it, and the dimension line."""
-    end = size * length
+    end = per_si * length
     corners = np.array([[0.0, -HALF_DEPTH], [end, -HALF_DEPTH], [end, HALF_DEPTH], [0.0, HALF_DEPTH]])
     yield Polygon("bar", corners, is_filled=True)
     for attachment in attachments:
-        s = size * attachment.s
+        s = per_si * attachment.s
         symbol = SYMBOLS.get(attachment.kind)
         if symbol is None:
             yield Arrow(s, HALF_DEPTH + ARROW_LENGTH, 0.0, -ARROW_LENGTH, None)
@@ -292,8 +292,8 @@ def _iter_items(attachments: Sequence[BarAttachment], length: float, size: float
     for attachment in attachments:
         texts.setdefault(attachment.s, []).append(attachment.name.replace("_", " "))
     for s, names in texts.items():
-        yield PlaceLabel(size * s, HALF_DEPTH, ", ".join(names), ", ".join(names))
-    ticks = sorted({0.0, end, *(size * attachment.s for attachment in attachments)})
+        yield PlaceLabel(per_si * s, HALF_DEPTH, ", ".join(names), ", ".join(names))
+    ticks = sorted({0.0, end, *(per_si * attachment.s for attachment in attachments)})
     strokes = [[(0.0, -DIMENSION), (end, -DIMENSION)]]
     strokes += [[(s, -DIMENSION - TICK), (s, -DIMENSION + TICK)] for s in ticks]
     yield Strokes(np.array(strokes))
