@@ -99,7 +99,7 @@ def estimate_error(last: RestPose, displacements: list[Array]) -> Array:
     return max(shares, key=last.coordinates.max_magnitude)
 
 
-def perturbed_states(evaluator: Evaluator, rest_pose: RestPose, displacement: Array) -> tuple[Array, ...]:
+def perturb_states(evaluator: Evaluator, rest_pose: RestPose, displacement: Array) -> tuple[Array, ...]:
     """Return the states displaced by (n,) towards another search's pose, in both directions, with what is held at rest
     there.
     """

@@ -47,7 +47,7 @@ TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 NO_EXTREMES: Mapping[str, Extremes] = MappingProxyType({})
 AXIS: EntryKeys = ("foundation", "axis")
-RUN_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"
+SERIES_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"
 AXIS_NOTE = "the central axis has no extremes: show it at given times with --at or --all"
 SECTIONS = frozenset({"sections"})
 
@@ -255,13 +255,13 @@ def make_page(
 def select_instants(results: Results, which: slice) -> Results:
     """Return the results at some of their instants."""
 
-    def those(keys: tuple[str, ...], value: Any) -> Any:
+    def select(keys: tuple[str, ...], value: Any) -> Any:
         if isinstance(value, dict):
-            return {key: those((*keys, key), member) for key, member in value.items()}
+            return {key: select((*keys, key), member) for key, member in value.items()}
         row = find_quantity(keys)
         return value[which] if row is not None and row.is_timed else value
 
-    blocks = {block: those((block,), getattr(results, block)) for block in REPORT_OF}
+    blocks = {block: select((block,), getattr(results, block)) for block in REPORT_OF}
     sums = [_select_sum_instants(block, which) for block in results.certain_sums]
     return replace(results, time=results.time[which], certain_sums=sums, **blocks)
 
@@ -335,7 +335,9 @@ def make_tables_of_page(study: Study, searched: SearchedPage, query: TablesQuery
         if not extremes.is_searched:
             tables.insert(0, OutputTable("", notes=(NOT_SEARCHED,)))
         if page.has_cut_series and page.doubtful.instants:
-            tables.append(OutputTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + RUN_EXTREMES_SUFFIX,)))
+            tables.append(
+                OutputTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + SERIES_EXTREMES_SUFFIX,))
+            )
         if AXIS in query.selection.entries:
             tables.append(OutputTable("", notes=(AXIS_NOTE,)))
     tables = add_pins_note(tables, study)

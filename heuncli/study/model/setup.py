@@ -54,7 +54,8 @@ class Setup:
     """All that is known of a scene before anything moves.
 
     spec: the part that is solved
-    cuts: of the requested sections; a search replaces series of cuts by their whole lengths
+    cuts: of the requested sections; a search puts a Stretch in the place of each series of cuts, for code that needs no
+    more of them than PlaceableCuts (loads/kinetostatics/cuts.py)
     method: None if nothing is integrated
     reduction: the smaller scene that is integrated in its place, and why; None if nothing is integrated, or the whole
     scene

@@ -119,12 +119,12 @@ def find_sensor_reaction(
     if sensor.joint is not None:
         load = next(load for load in joints if load.joint.name == sensor.joint)
         return load.point, load.force, load.moment
-    from heuncli.loads.kinetostatics.sections import find_attachments, section_block  # few sensors read a cut
+    from heuncli.loads.kinetostatics.sections import find_attachments, make_section_block  # few sensors read a cut
 
     mechanism = setup.scene.mechanism
     cuts = next(cuts for cuts in setup.cuts if cuts.name == sensor.section).for_impulse
     attached = find_attachments(cuts.body, states, [*list_whole_joint_actions(joints), *acting])
-    block = section_block(cuts, states, mechanism.gravity, attached, {}, mechanism.planar)
+    block = make_section_block(cuts, states, mechanism.gravity, attached, {}, mechanism.planar)
     return block["point"], block["force"], block["moment"]
 
 
@@ -387,7 +387,7 @@ class LoadErrors(ErrorEstimates):
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the cuts' loads in body axes, and the difference of the bodies' own orientation between the runs."""
         from heuncli.loads.kinetostatics.sections import (  # as in recover
-            acceleration_matrix,
+            find_acceleration_matrix,
             find_attachments,
             find_piece_loads,
         )
@@ -395,7 +395,7 @@ class LoadErrors(ErrorEstimates):
         gravity = self.setup.scene.mechanism.gravity
         for cuts in self.setup.cuts:
             attached = find_attachments(cuts.body, states, actions)
-            force, moment = find_piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), attached)
+            force, moment = find_piece_loads(cuts, find_acceleration_matrix(cuts.body, states, gravity), attached)
             R = states.R[:, cuts.body]
             count = len(R) // len(self.is_requested)
             first_run = R[0::count]
