@@ -257,7 +257,7 @@ def find_bending_poses(
                     *(rest_accelerations(other, rest_pose, displaced_states) for other in others),
                 )
             ]
-            uncertainty = tolerances.HELD * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
+            uncertainty = tolerances.REAL_STIFFNESS_FACTOR * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
             # the rotation of the motion's direction adds a part of the push along held directions
             rotation_effect = (
                 MAX_ROTATION_RATIO

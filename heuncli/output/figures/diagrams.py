@@ -16,6 +16,7 @@ so M1 > 0 pulls on the side of e2, M2 > 0 on that of -e1. The ordinates of M1 po
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from enum import Enum
 
 import numpy as np
 
@@ -55,11 +56,20 @@ REFERENCES = {
 }
 HEIGHT = 104.0  # pixels; the axis of the sketch is in pixels, too, with the bar about 0
 UPPER, LOWER = 44.0, 60.0  # pixels above and below the bar's axis
-HALF_DEPTH = 5.0  # of the bar
+HALF_DEPTH = 5.0  # half the depth of the drawn bar
 ARROW_LENGTH = 24.0
-DIMENSION, TICK = 48.0, 4.0  # of the dimension line below the axis, and half of its ticks
+DIMENSION, TICK = 48.0, 4.0  # distance of the dimension line below the axis, and half the height of its ticks
 SYMBOLS = {"support": "foot", "clamp": "clamp", "joint": "circle", "mass": "mass", "couple": "turning"}  # else arrows
 DOWN = (0.0, -1.0)
+
+
+class Verdict(Enum):
+    """What a quantity is along a bar."""
+
+    SHOWN = "it differs from zero somewhere, or is open somewhere"
+    ZERO = "zero but for rounding"
+    WITHIN_ERROR = "zero within its stated error, while others of its unit are larger than theirs"
+    UNKNOWN = "no larger than its stated error, as all others of its unit"
 
 
 def make_diagrams(
@@ -157,7 +167,7 @@ def _choose_quantities(bars: Sequence[BarCurves], wanted: str) -> tuple[list[str
 
     wanted: only those that begin with these words; slopes are drawn only if they are wanted by name
     """
-    zero, within, shown = list[str](), list[str](), list[str]()
+    zero, zero_within_error, shown = list[str](), list[str](), list[str]()
     common = [q for q in bars[0].bar.quantities if all(q in bar.bar.quantities for bar in bars)]
     for quantity in common:
         if quantity != wanted and (
@@ -165,13 +175,17 @@ def _choose_quantities(bars: Sequence[BarCurves], wanted: str) -> tuple[list[str
         ):
             continue
         verdicts = {_classify(bar, quantity) for bar in bars}
-        matching_list = zero if verdicts == {"zero"} else within if verdicts <= {"zero", "within"} else shown
-        matching_list.append(quantity)
+        if verdicts == {Verdict.ZERO}:
+            zero.append(quantity)
+        elif verdicts <= {Verdict.ZERO, Verdict.WITHIN_ERROR}:
+            zero_within_error.append(quantity)
+        else:
+            shown.append(quantity)
     notes = [f"all zero, not drawn: {_join_symbols(zero)}"] if zero else []
-    if within:
-        error = {bars[0].bar.find_unit(q): max(bar.bar.find_error(q) for bar in bars) for q in within}
+    if zero_within_error:
+        error = {bars[0].bar.find_unit(q): max(bar.bar.find_error(q) for bar in bars) for q in zero_within_error}
         errors_text = ", ".join(f"{format_error(size)} {unit}" for unit, size in error.items())
-        notes.append(f"zero within the stated error ({errors_text}), not drawn: {_join_symbols(within)}")
+        notes.append(f"zero within the stated error ({errors_text}), not drawn: {_join_symbols(zero_within_error)}")
     partly_open = [q for q in shown if any(_is_open_at_times(bar, q) for bar in bars)]
     if partly_open:
         notes.append(f"open at some times, not included in the band: {_join_symbols(partly_open)}")
@@ -188,17 +202,17 @@ def _is_open_at_times(bar: BarCurves, quantity: str) -> bool:
     return bool(has_known) and bar.bar.is_open_somewhere(quantity)
 
 
-def _classify(curves: BarCurves, quantity: str) -> str:
-    """Classify a quantity as "zero", "within" its error, "unknown", or "some"; what is open is "some"."""
+def _classify(curves: BarCurves, quantity: str) -> Verdict:
+    """Classify a quantity by its largest magnitude, its rounding and its stated error; what is open is shown."""
     bar, magnitude = curves.bar, curves.find_magnitude(quantity)
     if curves.is_partly_open(quantity):
-        return "some"
+        return Verdict.SHOWN
     if magnitude <= bar.stated_errors.rounding_of(bar.find_unit(quantity)) or magnitude == 0.0:
-        return "zero"
+        return Verdict.ZERO
     if not curves.is_zero(quantity):
-        return "some"
+        return Verdict.SHOWN
     family = [q for q in bar.quantities if bar.find_unit(q) == bar.find_unit(quantity)]
-    return "within" if any(not curves.is_zero(q) for q in family) else "unknown"
+    return Verdict.WITHIN_ERROR if any(not curves.is_zero(q) for q in family) else Verdict.UNKNOWN
 
 
 def _make_panels(

@@ -117,7 +117,7 @@ def make_extremes_table(
     """Make the table of the lowest and highest value of each quantity over length and time, with place and instant."""
     extremes = select_extremes(series, extremes)
     styles = _choose_styles(series, stated_errors, extremes)
-    span = float(np.ptp(times))
+    span, has_times = float(np.ptp(times)), len(times) > 1
     rows: list[tuple[Cell, ...]] = []
     channels = series.channels[: len(extremes.low)]
     for i, channel in enumerate(channels):
@@ -128,14 +128,17 @@ def make_extremes_table(
             continue
         label, unit = channel.label, unit if unit != "1" else ""
         if low.text == high.text:
-            rows.append((label, unit, low, "", "", high, "", ""))
+            rows.append((label, unit, low, "", "", high, "", "") if has_times else (label, unit, low, "", high, ""))
+            continue
+        where = [format_place(place, series) for place in extremes.places[i]]
+        if not has_times:
+            rows.append((label, unit, low, where[0], high, where[1]))
             continue
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
             "" if _is_constant(per_si * channel.values[:, series.find_nearest_cut(place)], styles[channel.unit]) else t
             for place, t in zip(extremes.places[i], clock, strict=True)
         )
-        where = [format_place(place, series) for place in extremes.places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     ends_columns = [
         column
@@ -143,12 +146,10 @@ def make_extremes_table(
         for column in (
             OutputColumn(word),
             OutputColumn("at s", unit=series.length[0]),
-            OutputColumn("t", "instant", "s"),
+            *([OutputColumn("t", "instant", "s")] if has_times else []),
         )
     ]
     columns = (OutputColumn("", "text"), OutputColumn("", "text"), *ends_columns)
-    if len(times) == 1:
-        columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
         return OutputTable(series.heading, notes=("all values 0",))
     is_open = any(format_cell(cell) == OPEN for row in rows for cell in row)

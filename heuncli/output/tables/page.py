@@ -132,6 +132,7 @@ class Page(NamedTuple):
         return tables
 
     def _collect_shares(self, results: Results) -> Mapping[str, Any]:
+        """Collect the loads by cause of all channels, by path."""
         from heuncli.output.tables import cause_tables
 
         return cause_tables.collect_shares(iter_channels(results, self.labels), results)
@@ -214,10 +215,12 @@ class Page(NamedTuple):
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
     def _make_last_tables(self, show_all: bool = False) -> list[OutputTable]:
+        """Make the tables at the end of the page: determinate sums, events, impulses."""
         sums = make_sums_table(self.results, self.stated_errors, self.last_instant)
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
     def _make_event_tables(self, show_all: bool) -> list[OutputTable]:
+        """Make the table of the instants at which conditions are met, if there are any."""
         if not self.results.events:
             return []
         from heuncli.output.tables.event_tables import make_events_table  # if there are conditions
@@ -225,6 +228,7 @@ class Page(NamedTuple):
         return [make_events_table(self.results, all_instants=show_all)]
 
     def _make_impulse_tables(self, show_all: bool) -> list[OutputTable]:
+        """Make the tables of impulses and impacts, if there are any."""
         if not self.results.impulses:
             return []
         from heuncli.output.tables.event_tables import ImpactReport, make_impulse_tables  # if there are impacts

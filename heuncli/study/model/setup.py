@@ -282,6 +282,7 @@ def build_with_cuts(spec: Spec, stages: Stages = NO_CACHE) -> tuple[Mechanism, t
     return mechanism, cuts
 
 
+# Problems of packages that know no paths of a spec set no entry_path: then the first entry that the text names.
 ENTRY_PATH = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|couplings|rolling|sections|analysis)\.\w+")
 # problems with impulses give the bare name of an entry
 IMPULSE_BLOCKS = ("impulses", "stops", "latches", "joints", "drives", "couplings", "rolling")
