@@ -264,7 +264,7 @@ def find_unsteadiness(linearised_state: LinearisedState, is_equilibrium: bool) -
         return None
     imbalance = find_distance_from_rest(linearised_state)
     if not imbalance <= max(
-        tolerances.OFF_BALANCE, tolerances.HELD * linearised_state.reach if is_equilibrium else 0.0
+        tolerances.OFF_BALANCE, tolerances.REAL_STIFFNESS_FACTOR * linearised_state.reach if is_equilibrium else 0.0
     ):
         return f"{find_most_accelerated(linearised_state)} accelerates" + (
             f", about {imbalance:.2g} from its rest position" if imbalance < 1.0 else ""

@@ -8,9 +8,8 @@ from __future__ import annotations
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.text_safety import escape
 
-MAX_MESSAGE_LENGTH = (
-    5000  # characters of a message that are shown: the longest expression, twice, and the text around it
-)
+# characters of a message that are shown: the longest expression, twice, and the text around it
+MAX_MESSAGE_LENGTH = 5000
 
 
 class SourceLocation(NamedTuple):

@@ -24,36 +24,37 @@ Motion = Literal["turning", "sliding"]
 class Hold(NamedTuple):
     """The constraint of a joint on the position of the `to` point.
 
-    gap_type: the gap that the assembly closes
-    guides: directions along which the point cannot leave the `from` point, and so those of the forces; one closure row
-    each
+    gap_type: what the assembly brings the point to: the `from` point, or its line, plane, distance or curve
+    held_directions: directions along which the point cannot leave the `from` point, and so those of the forces; one
+    closure row each (a "guide" in manual/theory.md, "Joints as rows")
     shifts: directions along which it is free
 
     A distance has one row, along the line between the points.
     """
 
     gap_type: Literal["point", "line", "plane", "distance", "curve"]
-    guides: tuple[Direction, ...]
+    held_directions: tuple[Direction, ...]
     shifts: tuple[Direction, ...] = ()
 
 
 class Turn(NamedTuple):
     """The constraint of a joint on the rotation of `to`.
 
-    condition: the condition that the assembly sets on its orientation
-    dots: pairs of directions d of `from` and e of `to` that stay perpendicular; one closure row each, with the moment e
-    × d
+    condition: the condition that the assembly sets on its orientation: none ("free"), one common axis ("axis"), axes at
+    right angles ("square"), shafts that turn alike at any bend ("alike"), the same attitude ("all")
+    perpendicular_pairs: pairs of directions d of `from` and e of `to` that stay perpendicular; one closure row each (a
+    "dot" in manual/theory.md, "Joints as rows"), with the moment e × d
     turns: the axes about which it is free, where it is not entirely free (`ball`)
-    sum_of_dots: one more closure row: a weighted sum of such products stays zero, where e is a direction of `from`
-    carried along by the bend at the start. No chain of axes leaves just these rotations free, so the tree has a ball
-    joint there and this row in addition.
+    weighted_pairs: one more closure row: a weighted sum of such products d·e stays zero, where e is a direction of
+    `from` carried along by the bend at the start. No chain of axes leaves just these rotations free, so the tree has a
+    ball joint there and this row in addition.
     """
 
     condition: Literal["free", "axis", "square", "alike", "all"]
-    dots: tuple[tuple[Direction, Direction], ...]
+    perpendicular_pairs: tuple[tuple[Direction, Direction], ...]
     turns: tuple[Direction, ...] = ()
     ball: bool = False
-    sum_of_dots: tuple[tuple[float, Direction, Direction], ...] = ()
+    weighted_pairs: tuple[tuple[float, Direction, Direction], ...] = ()
 
 
 POINT = Hold("point", ("first", "second", "axis"))
@@ -69,7 +70,7 @@ FREE = Turn("free", (), ball=True)
 ABOUT_AXIS = Turn("axis", (("axis", "first"), ("axis", "second")), ("axis",))
 ABOUT_TWO = Turn("square", (("axis", "to_axis"),), ("axis", "to_axis"))
 CONSTANT_VELOCITY = Turn(
-    "alike", (), sum_of_dots=((-0.5, "first", "second"), (0.5, "second", "first"))
+    "alike", (), weighted_pairs=((-0.5, "first", "second"), (0.5, "second", "first"))
 )  # by the bend alone
 NO_ROTATION = Turn("all", (("first", "second"), ("second", "axis"), ("axis", "first")))
 ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # the body stays parallel to the plane
@@ -124,14 +125,14 @@ class JointKind(NamedTuple):
     display_name: str | None = None
 
     @property
-    def guides(self) -> tuple[Direction, ...]:
+    def held_directions(self) -> tuple[Direction, ...]:
         """Directions, fixed in `from`, of the forces that it transmits."""
-        return self.hold.guides
+        return self.hold.held_directions
 
     @property
-    def dots(self) -> tuple[tuple[Direction, Direction], ...]:
+    def perpendicular_pairs(self) -> tuple[tuple[Direction, Direction], ...]:
         """Pairs of directions whose cross products are the moments that it transmits."""
-        return self.turn.dots
+        return self.turn.perpendicular_pairs
 
     @property
     def shifts(self) -> tuple[Direction, ...]:
@@ -153,7 +154,7 @@ class JointKind(NamedTuple):
         """Whether it is a constant-velocity joint: its two axes may bend, but neither turns about itself relative to
         the other.
         """
-        return bool(self.turn.sum_of_dots)
+        return bool(self.turn.weighted_pairs)
 
     @property
     def is_ball_in_tree(self) -> bool:
@@ -173,7 +174,11 @@ class JointKind(NamedTuple):
     @property
     def row_count(self) -> int:
         """The number of scalar constraints it makes."""
-        return 1 if self.keeps_distance else len(self.guides) + len(self.dots) + self.is_constant_velocity
+        return (
+            1
+            if self.keeps_distance
+            else len(self.held_directions) + len(self.perpendicular_pairs) + self.is_constant_velocity
+        )
 
     @property
     def is_rigid(self) -> bool:

@@ -21,10 +21,10 @@ def count_rank(sizes: Array, tolerance: float = tolerances.RANK, *, min_scale: f
     return int(np.count_nonzero(sizes > tolerance * max(min_scale, float(sizes[0])))) if len(sizes) else 0
 
 
-def null_space(A: Array, tolerance: float = tolerances.RANK, *, min_scale: float = 1.0) -> Array:
+def compute_null_space(A: Array, tolerance: float = tolerances.RANK, *, min_scale: float = 1.0) -> Array:
     """Return the null space of A (m, n), orthonormal columns (n, n - rank); tolerance, min_scale: of `count_rank`."""
-    _, sizes, V = np.linalg.svd(A, full_matrices=True)
-    return V[count_rank(sizes, tolerance, min_scale=min_scale) :].T
+    _, sizes, Vt = np.linalg.svd(A, full_matrices=True)
+    return Vt[count_rank(sizes, tolerance, min_scale=min_scale) :].T
 
 
 def split_null_space(A: Array, rounding: float) -> tuple[Array, Array]:
@@ -32,9 +32,9 @@ def split_null_space(A: Array, rounding: float) -> tuple[Array, Array]:
 
     rounding: absolute; singular values up to it count as zero
     """
-    _, sizes, V = np.linalg.svd(A, full_matrices=True)
+    _, sizes, Vt = np.linalg.svd(A, full_matrices=True)
     rank = int(np.count_nonzero(sizes > rounding))
-    return V[rank:].T, V[:rank].T
+    return Vt[rank:].T, Vt[:rank].T
 
 
 def solve_least_squares(A: Array, b: Array, tolerance: float | None = None) -> Array:
@@ -53,7 +53,7 @@ def solve_with_null_space(A: Array, b: Array) -> tuple[Array, Array, Array]:
     """
     if not A.size:
         return np.zeros(A.shape[1]), np.eye(A.shape[1]), b
-    U, sizes, V = np.linalg.svd(A, full_matrices=A.shape[0] < A.shape[1])
+    U, sizes, Vt = np.linalg.svd(A, full_matrices=A.shape[0] < A.shape[1])
     rank = count_rank(sizes)
-    x = V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank])
-    return x, V[rank:].T, b - A @ x
+    x = Vt[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank])
+    return x, Vt[rank:].T, b - A @ x

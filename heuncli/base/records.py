@@ -72,7 +72,7 @@ def _copy(original: T) -> T:
     """Return a record with the same fields."""
     cls: Any = type(original)
     copy: T = object.__new__(cls)
-    given = copy.__dict__  # complete, as that of `one` is
+    given = copy.__dict__  # complete after the loop
     for name in cls.__record_fields__:
         given[name] = getattr(original, name)
     return copy

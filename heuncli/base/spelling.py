@@ -12,12 +12,10 @@ from itertools import chain, islice
 from typing import Any
 
 MAX_LISTED = 20
-MAX_WORD_LENGTH = (
-    60  # characters of a word for which another one is suggested: comparing goes by the square of the length
-)
-MAX_EFFORT = (
-    16_000_000  # pairs of characters compared for a file, a quarter of a second: 40 words among 5,000 names of 5
-)
+# characters of a word for which another one is suggested: comparing goes by the square of the length
+MAX_WORD_LENGTH = 60
+# pairs of characters compared for a file, a quarter of a second: 40 words among 5,000 names of 5
+MAX_EFFORT = 16_000_000
 
 UNORDERED = (set, frozenset)  # their order changes from run to run
 WORD_OVERHEAD = 4  # characters that a name costs by itself

@@ -21,7 +21,7 @@ NO_SINGULAR_VALUE = EPS  # relative to the largest, times the longer side of an 
 RANK_OF_GAP = 100.0
 # [rad] or relative to the size: a displacement that leaves an accidental start position, far above RANK
 NEIGHBOUR = 1e-3
-MOVES = 1e-6  # rates drawn between -1 and 1: a smaller rest after projection onto the closures is rounding
+REMAINING_RATE = 1e-6  # rates drawn between -1 and 1: a smaller rest after projection onto the closures is rounding
 SUSPECT_PIVOT = 0.05  # pivots of ordinary loops stay above; below it, the step is searched for a singular position
 # factor on the ratio of remaining to initial search width: the value falls to zero at most that steeply
 SINGULAR_MET = 4.0
@@ -31,9 +31,10 @@ UNSEEN_GAP = 16.0 * EPS
 # relative to the largest value of its kind: six digits, as in a table; above it a value is unknown
 UNKNOWN_NEAR_SINGULAR = 1e-6
 # factor on the allowed residual of a row: rows left out meet less than this, all others meet it to rounding
-UNMET = 10.0
+UNMET_ROW_FACTOR = 10.0
 SINGULAR_FALL = 0.5  # relative to the largest value in the search: it falls to zero at a singular position
-PUSHED = 1e-8  # relative to the loads: their part along a motion of a position known to RANK, one digit above
+# relative to the loads: their part along a motion of a position known to RANK, one digit above
+LOAD_ALONG_FREE_MOTION = 1e-8
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
 # -- couplings: what of a drawing decides whether gears fit
@@ -51,9 +52,9 @@ OPEN_SHARE = 1e-8  # relative to a self-stress's largest component: a null vecto
 # 1e-8 are summed with levers up to a hundred times as long
 HELD_BY_OTHERS = 1e-12
 # relative to the largest strain: RANK again; a self-stress with less strain is not decided by the stiffness
-STRAINED = 1e-9
+STRAINED_SELF_STRESS = 1e-9
 # relative to a unit component: a smaller rest of self-stresses after a split is rounding of their parts
-STILL_OPEN = 1e-9
+OPEN_AFTER_SPLIT = 1e-9
 DEPENDENT_SHARES = 1e-7  # relative to a component's largest share: known to OPEN_SHARE, one digit for the elimination
 ABSENT_FACTOR = 1e-9  # relative to the largest, or to unit length: a smaller factor means that the component is absent
 WHOLE_FACTOR = 1e-9  # a factor this close to a whole number is that number; shares are not known better
@@ -75,7 +76,7 @@ NEARLY_FLAT = 1e-3  # the same: a drawing off by less was meant to be flat, whic
 # -- small oscillations
 # factor on the change of a stiffness entry or a load when model and position move by START_ROUNDING: the entry itself
 # errs by some tenths of that change, so after cancellation a rest above about 64 EPS of its terms is a real stiffness
-HELD = 8.0
+REAL_STIFFNESS_FACTOR = 8.0
 # relative to the norm, times the number of motions: effect of some dozen roundings in each entry
 EIGENVALUE = 64.0 * EPS
 FREELY_PUSHED = 1e-9  # relative to the loads along an unconstrained motion: a sum over positions closed to OPEN_GAP
@@ -84,9 +85,8 @@ OFF_BALANCE = 1e-9
 KINK = 1e-9  # relative to a coordinate, or 1: a position this close to a jump or kink of a law is on it (OPEN_GAP)
 # relative to the largest slope within KINK: a root doubles the slope at each step, a smooth law hardly changes it
 STEEP = 0.5
-STEADY_CHANGE = (
-    1e-8  # relative to the stiffness and loads: allowed change along a steady motion; rounding of long displacements
-)
+# relative to the stiffness and loads: allowed change along a steady motion; rounding of long displacements
+STEADY_CHANGE = 1e-8
 
 # -- orders
 CANCELS = 1e-9  # relative to the sum of the bodies' own amplitudes: models typed with ten digits balance that well
@@ -94,23 +94,20 @@ CANCELS = 1e-9  # relative to the sum of the bodies' own amplitudes: models type
 SAME_PERIOD = 1e-2
 # relative to the largest singular value: places of weights that differ by less in effect serve alike
 SAME_WEIGHT = 1e-10
-ORDERS_SETTLED = (
-    1e-12  # relative to the largest order: limit on the highest orders for all lower ones to be reported; FFT roundings
-)
+# relative to the largest order: limit on the highest orders for all lower ones to be reported; FFT roundings
+ORDERS_SETTLED = 1e-12
 
 NO_PART = 1e-9  # relative to the larger of two parts of an order: models typed with ten digits turn one way that well
-NAMED_ORDER = (
-    1e-3  # relative to the largest order: a smaller one alters no sum by a tenth of a percent, and is not named
-)
+# relative to the largest order: a smaller one alters no sum by a tenth of a percent, and is not named
+NAMED_ORDER = 1e-3
 LISTED_ORDER = 1e-4  # likewise: a smaller one is no digit of a table of four digits, and is listed only on request
 # relative to the mean magnitude of the torque: a load that is typed with six digits to match another balances that well
 NO_NET_WORK = 1e-6
 # speed fluctuation: rounding of the two extreme rates is 2e-7 of their difference, six digits of a flywheel remain
 EVEN_RATE = 1e-9
 NO_SQUARE = 1e-12  # relative to the largest square: of a millionth of the largest load, a digit that no table shows
-NO_WEIGHT = (
-    1e-9  # relative to the heaviest product: the iteration ends at half the digits of EPS, a tenth of that is rounding
-)
+# relative to the heaviest product: the iteration ends at half the digits of EPS, a tenth of that is rounding
+NO_WEIGHT = 1e-9
 # relative to the largest effect of a product: accelerations of a cycle are sums of hundreds of terms, with ten digits
 NO_EFFECT = 1e-10
 LAW_FOLLOWED = 1e-6  # relative to a law's range over the cycle: six digits, as in a table
@@ -141,9 +138,8 @@ SWEPT_JUMP = 10.0
 TOUCH_DOUBLES = 3.0
 
 # -- coordinates of Lagrange's equations
-COORDINATE_RATIO = (
-    1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
-)
+# largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
+COORDINATE_RATIO = 1e8
 NO_OFFSET = 1e-9  # rad/s^2, or of the size: what a pose that rests leaves of accelerations is rounding
 HALF_TURN = 1e-9  # relative to a quaternion's scalar part, known to 1e-15: six digits of its Rodrigues vector remain
 
@@ -187,16 +183,14 @@ NEAR_DRAWING = 0.5  # a joint's gap (by L) or angle, a body's shift or turn: a d
 # factor on the displacement to the nearest position: smallest rotations may lead this far; no body goes twice as far as
 # known
 FARTHER = 1.2
-DRIVE_FOLLOWED = (
-    1e-12  # relative to the size, or to the required accelerations: with a larger error a drive is not followed
-)
+# relative to the size, or to the required accelerations: with a larger error a drive is not followed
+DRIVE_FOLLOWED = 1e-12
 CLOSED = 1e-15  # relative to the size: as closed as rounding allows
 # relative to |C| |e|: square root of some dozen roundings; a smaller slope of a sum of squares is rounding
 NO_SLOPE = 1e-7
 POLISHED = 1e-12  # turns [rad] and shifts (by the size): nothing is left to polish
-SUM_OF_SQUARES_LIMIT = (
-    1e-5  # the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
-)
+# the same: squares of steps below 1e-5 are 1e-10 and drown in what closing leaves in the sums
+SUM_OF_SQUARES_LIMIT = 1e-5
 SAME_SUM = 1e-13  # relative to a sum of squares: hundreds of roundings
 DRAWN_IN_PLACE = 0.1  # a joint's gap (by L) or angle: a slip of the drawing is less, bodies drawn apart miss by a link
 # relative to the model size: bodies moved further by the assembly are listed above the tables; places typed with three
@@ -248,9 +242,8 @@ LEAST_EXTENT = 1e-9  # [m] reference length of IN_PLANE if everything is at the 
 TOUCHING = 1e3  # factor on IN_PLANE: closer outlines of a cut are one
 OUTLINES_APART = 1e-3  # relative to their radii: polygons of 96 sides deviate from their curves by 5e-4 of a radius
 OFF_AXIS = 2e-15  # sine of a normal to a body of revolution's axis: rounding of a unit vector, 9 EPS
-EQUAL_COMPONENTS = (
-    1e-9  # relative to a unit normal: equal components; x precedes y precedes z (manual/format.md, "Sections")
-)
+# relative to a unit normal: equal components; x precedes y precedes z (manual/format.md, "Sections")
+EQUAL_COMPONENTS = 1e-9
 MESH_DIGITS = 2.0**-21  # relative to the largest coordinate: eight steps of a float32, the precision of mesh files
 PARALLEL = 1e-9  # sine between directions typed with ten digits: below, they are one line
 OUTLINE_PRINCIPAL = 1e-4  # likewise for a mesh: corners have the digits of a float32, arcs are chords
@@ -329,9 +322,8 @@ IN_ONE_PLANE = 1e-9  # relative to a run's largest vector: out-of-plane componen
 # relative to the largest in-plane vector: larger out-of-plane components are reported; six digits, as in a table
 TOLD_ACROSS = 1e-6
 SAME_TURN_DRAWN = 2e-3  # relative to the largest vector: a pixel of a picture; closer rotations are drawn as one
-MAX_INTERPOLATED_TURN = (
-    1.57  # rad, a quarter turn: farther apart two instants do not show how a body turns from one to the other
-)
+# rad, a quarter turn: farther apart two instants do not show how a body turns from one to the other
+MAX_INTERPOLATED_TURN = 1.57
 NOTHING_ACTS = 100.0 * EPS  # relative to the summed forces: rounding of the sum, which has no direction to draw
 
 # -- rest

@@ -43,7 +43,11 @@ def counted() -> Iterator[Counts]:
         counting(Evaluator, "_recover", "answered", lambda _, arrays, *more: len(arrays["times"]), patch)
         counting(self_stress, "jacobian", "looked", lambda _, layout, times, *more: len(times), patch)
         counting(
-            sections, "section_block", "cuts", lambda cuts, states, *more: len(states.x) * cuts.points.shape[-2], patch
+            sections,
+            "make_section_block",
+            "cuts",
+            lambda cuts, states, *more: len(states.x) * cuts.points.shape[-2],
+            patch,
         )
         yield found
 

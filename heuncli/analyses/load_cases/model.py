@@ -20,7 +20,7 @@ from heuncli.base import units
 from heuncli.base.errors import Finding
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.sections import make_acceleration_matrix
+from heuncli.loads.kinetostatics.sections import compute_acceleration_matrix
 from heuncli.results.results import Array
 from heuncli.scene.shapes.inertia import pseudo_inertia
 from heuncli.scene.shapes.rotations import cross_vectors
@@ -78,7 +78,7 @@ class AccelerationField:
         4).
         """
         w, u = self.angular_velocity[None], self.angular_acceleration[None]
-        Q = make_acceleration_matrix(w, u, self.linear[None])[:, 0] @ P
+        Q = compute_acceleration_matrix(w, u, self.linear[None])[:, 0] @ P
         return -Q[:, 3], -np.array([Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1]])
 
     def estimate_largest_loads(self, P: Array) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from heuncli.analyses.motion_diagnostics.motion_events import MotionSearch
 from heuncli.analyses.motion_diagnostics.results import GrowthResults
 from heuncli.analyses.motion_diagnostics.twists import compute_twists
 from heuncli.base import tolerances
-from heuncli.base.linear_algebra import null_space
+from heuncli.base.linear_algebra import compute_null_space
 from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.methods.method import QUATERNION, Method
 from heuncli.motion.integration.run.runner import Runner
@@ -102,7 +102,7 @@ def find_out_of_plane_directions(disturbed_runs: DisturbedRuns) -> Array | None:
     T = disturbed_runs.find_directions()[: disturbed_runs.scale.n]
     T = T[:, : T.shape[1] // 2]
     in_plane_rows = in_plane_motion.swapaxes(1, 2).reshape(-1, disturbed_runs.scale.n) / weights
-    T = T @ null_space(in_plane_rows @ T, tolerances.FLAT)
+    T = T @ compute_null_space(in_plane_rows @ T, tolerances.FLAT)
     return np.block([[T, np.zeros_like(T)], [np.zeros_like(T), T]])
 
 

@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.linear_algebra import null_space
+from heuncli.base.linear_algebra import compute_null_space
 from heuncli.base.records import record
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.motion.integration.contacts.impulses import schedule_impulses, solve_impulse
@@ -202,7 +202,7 @@ class DisturbedRuns:
             start = self.project_states(0.0, self.compute_run_states(np.zeros(1)))
             J = jacobian(self.workspace, self.layout, np.zeros(1), start)
             rows = J.block(np.arange(len(self.layout.rows)), scale.coordinates.result_indices)[0] / scale.weights[:n]
-            T = null_space(rows, min_scale=0.0)
+            T = compute_null_space(rows, min_scale=0.0)
         return np.block([[T, np.zeros_like(T)], [np.zeros_like(T), T]])
 
     def compute_run_states(self, times: Array) -> Array:

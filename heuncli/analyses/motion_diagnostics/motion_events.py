@@ -222,7 +222,7 @@ def find_dead_centres(motion: MotionSearch) -> tuple[list[Event], list[str]]:
             continue
         c = len(loop.coordinates)
         largest = np.max(np.abs(np.nan_to_num(np.vstack([shares, neighbour_shares])[:, :c])), axis=0)
-        events += find_loop_dead_centres(motion, loop, continue_signs(shares), largest > tolerances.MOVES)
+        events += find_loop_dead_centres(motion, loop, continue_signs(shares), largest > tolerances.REMAINING_RATE)
     return events, skipped
 
 

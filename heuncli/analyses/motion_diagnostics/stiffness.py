@@ -15,7 +15,7 @@ from heuncli.analyses.motion_diagnostics.lyapunov import DisturbanceScale
 from heuncli.analyses.motion_diagnostics.motion_events import MotionSearch
 from heuncli.analyses.motion_diagnostics.results import StepLimits, StiffnessResults
 from heuncli.base import tolerances
-from heuncli.base.linear_algebra import null_space
+from heuncli.base.linear_algebra import compute_null_space
 from heuncli.base.method_rows import find_method
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.integration.methods.explicit import DOP853
@@ -110,7 +110,7 @@ def find_admitted_motions(evaluator: Evaluator, scale: DisturbanceScale, recover
     layout, n, state = evaluator.layout, scale.n, recovered.states[0]
     J = jacobian(evaluator.workspace, layout, recovered.times, recovered.states)
     rows = J.block(np.arange(len(layout.rows)), scale.coordinates.result_indices)[0] / scale.weights[:n]
-    T = null_space(rows[recovered.rows["closed"][0] > 0.0], min_scale=0.0)
+    T = compute_null_space(rows[recovered.rows["closed"][0] > 0.0], min_scale=0.0)
     step = math.sqrt(tolerances.EPS)
     displaced = scale.disturb_state(state, np.concatenate([step * T.T, np.zeros_like(T.T)], axis=1))
     times = np.full(len(displaced), float(recovered.times[0]))

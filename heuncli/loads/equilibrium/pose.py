@@ -89,7 +89,7 @@ def no_rest_problem(message: str, hint: str) -> Problem:
     return Problem(CODE, f"no rest position: {message}", hint=hint)
 
 
-def runaway_problem(coordinates: Coordinates, displacement: Array, distances: Array) -> Problem:
+def make_runaway_problem(coordinates: Coordinates, displacement: Array, distances: Array) -> Problem:
     """Make the problem of coordinates that move without end.
 
     displacement (n,): how far they came

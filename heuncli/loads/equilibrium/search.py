@@ -27,7 +27,7 @@ from heuncli.loads.equilibrium.pose import (
     jumping_load_problem,
     make_bearing_pose,
     make_pose,
-    runaway_problem,
+    make_runaway_problem,
     singular_pose_problem,
 )
 from heuncli.loads.equilibrium.slopes import (
@@ -139,7 +139,7 @@ class RestSearch:
         limit = np.where(self.coordinates.shifts, tolerances.RUN_AWAY, tolerances.TURNS_ON)
         relative_distances = self.coupled_pairs.take_minimum(distances / limit)
         if (relative_distances > 1.0).any():
-            raise SolveError(runaway_problem(self.coordinates, self.total_displacement, relative_distances))
+            raise SolveError(make_runaway_problem(self.coordinates, self.total_displacement, relative_distances))
         if self.standing_steps >= MAX_STANDING_STEPS and (problem := self.find_singularity(pose)):
             raise SolveError(problem)
         if self.steps >= MAX_STEPS * np.sqrt(tolerances.REST_BENT / self.tolerance):

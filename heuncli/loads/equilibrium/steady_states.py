@@ -249,7 +249,7 @@ def name_motion(coordinates: Coordinates, shape: Array) -> NamedMotion:
     """
     size = np.abs(shape) * coordinates.weights
     parts: dict[str, tuple[float, str]] = {}
-    for k in np.flatnonzero(size > tolerances.MOVES * size.max(initial=0.0)).tolist():
+    for k in np.flatnonzero(size > tolerances.REMAINING_RATE * size.max(initial=0.0)).tolist():
         name, turns = coordinates.find_owner(k)
         if name not in parts or abs(shape[k]) > abs(parts[name][0]):
             parts[name] = float(shape[k]), "rad" if turns else "m"

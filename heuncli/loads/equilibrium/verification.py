@@ -99,7 +99,7 @@ def estimate_error(last: RestPose, displacements: list[Array]) -> Array:
     return max(shares, key=last.coordinates.max_magnitude)
 
 
-def perturbed_states(evaluator: Evaluator, rest_pose: RestPose, displacement: Array) -> tuple[Array, ...]:
+def perturb_states(evaluator: Evaluator, rest_pose: RestPose, displacement: Array) -> tuple[Array, ...]:
     """Return the states displaced by (n,) towards another search's pose, in both directions, with what is held at rest
     there.
     """
@@ -257,7 +257,7 @@ def find_bending_poses(
                     *(rest_accelerations(other, rest_pose, displaced_states) for other in others),
                 )
             ]
-            uncertainty = tolerances.HELD * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
+            uncertainty = tolerances.REAL_STIFFNESS_FACTOR * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
             # the rotation of the motion's direction adds a part of the push along held directions
             rotation_effect = (
                 MAX_ROTATION_RATIO

@@ -27,7 +27,7 @@ from heuncli.loads.kinetostatics.member_stress import (
     compute_member_stresses,
     make_factors,
 )
-from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses, torsion_constant
+from heuncli.loads.kinetostatics.stress import MODULI, compute_stresses, compute_torsion_constant
 from heuncli.results.results import Array, Block, Mask
 from heuncli.scene.shapes.composite_solid import CompositeSolid
 from heuncli.scene.shapes.figures import (
@@ -240,7 +240,7 @@ def combine_rectangles(
     if not is_point_symmetric(offsets, size, tolerance):
         return "shear forces twist the combined cut shapes, because they lack 180-degree rotational symmetry"
     c1, c2 = (np.abs(offsets) + 0.5 * size).max(axis=0).tolist()
-    J = sum(torsion_constant(*one) for one in size.tolist())
+    J = sum(compute_torsion_constant(*one) for one in size.tolist())
     return "general", {"area": area, "I1": I1, "I2": I2, "J": J, "c1": c1, "c2": c2}
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,39 @@ if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
 
 
-MIN_RUN_FACTOR = 4.0  # times the plane tolerance: the distance at which corners of a run are separate (stretch.py)
+# shortest series of cuts, in plane tolerances: the distance at which corners of a stretch are separate (stretch.py)
+MIN_SERIES_LENGTH = 4.0
+
+
+class LoadAtPoint(Protocol):
+    """A load on a body, with the point at which it acts."""
+
+    @property
+    def point(self) -> Array:
+        """The point (3,), or (n_t, 3) if it moves over the body; body axes."""
+
+
+class PlaceableCuts(Protocol):
+    """What a scene may hold for a section: its Cuts or, while extremes are searched, a Stretch (stretch.py)."""
+
+    @property
+    def name(self) -> str:
+        """Name of the section."""
+
+    @property
+    def body(self) -> int:
+        """Number of the body that is cut."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what the planes meet."""
+
+    @property
+    def for_impulse(self) -> PlaceableCuts:
+        """The same for an impulse, without stresses and energies."""
+
+    def place_for_loads(self, attached_loads: Sequence[LoadAtPoint]) -> Cuts:
+        """Return the cuts to evaluate under these loads; those of a stretch move with loads that move over the body."""
 
 
 @record
@@ -43,7 +75,7 @@ class Cuts:
     n: normal
     e1, e2: axes in the plane, (e1, e2, n) right-handed
     points (k, 3): points of the planes
-    s (k,): distance along the run, None for a single cut
+    s (k,): distance along the series, None for a single cut
     side (k,): +1 just before what lies in the plane, -1 just beyond, 0 nothing there
     plane_tolerance: distance up to which a point counts as in the plane
     pieces (k, 4, 4): pseudo-inertias about the body's origin
@@ -54,7 +86,7 @@ class Cuts:
     warnings: sentences on what the planes meet
     form: the shapes that are cut
     is_impulse: whether the cuts are for an impulse, which has no stresses and no kinetic energy
-    beam: of a run whose deflection is computed
+    beam: of a series of cuts whose deflection is computed
 
     Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
     """
@@ -102,10 +134,8 @@ class Cuts:
         side = np.broadcast_to(self.side, self.points.shape[:-1])
         return CutForm(self.form, self.n, self.e1, (self.points @ self.n).ravel(), side.ravel())
 
-    def place_for_loads(self, attached_loads: Sequence[object]) -> Cuts:
-        """Return the cuts to evaluate under these loads: here the same; of a Stretch those at its nodes, which move
-        with a load.
-        """
+    def place_for_loads(self, attached_loads: Sequence[LoadAtPoint]) -> Cuts:
+        """Return these cuts: unlike the nodes of a stretch, they stay where they are under any loads."""
         return self
 
     @property
@@ -116,24 +146,24 @@ class Cuts:
 
 @record
 class Beam:
-    """A run whose deflection is computed (loads/kinetostatics/deflection.py).
+    """A series of cuts whose deflection is computed (loads/kinetostatics/deflection.py).
 
     theory: modulus, reference and length factor
-    run: its own cuts
+    series: its own cuts
     corners (m + 1,): heights along n, between which loads and compliance are polynomials
     nodes: the cuts between corners from which these follow, where no load moves over the body
     euler_load: [N]
     """
 
     theory: BeamTheory
-    run: Cuts
+    series: Cuts
     corners: Array
     nodes: Cuts
     euler_load: float
 
     @property
     def length(self) -> float:
-        """Length of the run [m]."""
+        """Length of the series [m]."""
         return float(self.corners[-1] - self.corners[0])
 
 
@@ -239,7 +269,7 @@ def _make_section_cuts(
         # kept also where nothing lies in the plane: joints may move into it during the run
         side = np.array([SIDE_SIGNS[section.side]])
     else:
-        if s[-1] <= MIN_RUN_FACTOR * plane_tolerance:
+        if s[-1] <= MIN_SERIES_LENGTH * plane_tolerance:
             message = (
                 f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are distinct only beyond "
                 f"{plane_tolerance:.3g} m"
@@ -270,7 +300,7 @@ def _make_section_cuts(
 
 
 def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
-    """Raise SpecError where the properties of a cut cannot be taken from the shapes; for a run, anywhere along it."""
+    """Raise SpecError where the properties of a cut, or of any along a series, cannot be taken from the shapes."""
     from heuncli.loads.kinetostatics.auto_properties import find_cut_properties
 
     cut_form = cuts.cut_form
@@ -293,7 +323,7 @@ def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
 
 
 def _cut_points(section: Section) -> tuple[Array, Array | None]:
-    """Return the points of the cuts (k, 3) and their distances along the run (k,), None for a single cut."""
+    """Return the points of the cuts (k, 3) and their distances along the series (k,), None for a single cut."""
     if section.at is not None:
         return np.array([section.at], dtype=float), None
     first, last = np.array(section.from_), np.array(section.to)
@@ -361,7 +391,7 @@ def _make_pieces(
     if form is NO_MATTER:
         return form.piece_inertias(n, points @ n, side), None, ()
     d, is_cut_series = points @ n, section.at is None
-    # the ends of a run may lie in end faces: there the inner limits are used
+    # the ends of a series may lie in end faces: there the inner limits are used
     inner_side = side.copy()
     if is_cut_series:
         inner_side[0], inner_side[-1] = BEYOND, BEFORE

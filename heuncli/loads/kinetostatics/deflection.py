@@ -11,7 +11,8 @@ are halved until it is resolved.
 
 A rigid body has no tangent of its own: the reference decides where deflection and slope are zero.
 
-Buckling by Euler: pi^2 E I/(factor L)^2 over the largest compression along the run, with the least I of any cut.
+Buckling by Euler: pi^2 E I/(factor L)^2 over the largest compression along the series of cuts, with the least I of any
+cut.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ from heuncli.loads.kinetostatics.cuts import Beam, Cuts, list_attachments, list_
 from heuncli.loads.kinetostatics.member_stress import find_given_factors
 from heuncli.loads.kinetostatics.sections import (
     AttachedLoad,
-    acceleration_matrix,
-    axis_component,
+    compute_axis_component,
+    find_acceleration_matrix,
     find_piece_loads,
     make_cut_places,
     shift_moment,
@@ -53,7 +54,7 @@ from heuncli.scene.file_format.models import BeamTheory, Spec
 from heuncli.scene.file_format.profiles import FAMILIES
 
 HALVINGS = 12  # of pieces, until the compliance is a polynomial: a 4096th of a taper
-MAX_PIECES = 4096  # into which a run is divided at most
+MAX_PIECES = 4096  # the most pieces of a stretch
 COMPLIANCE_ERROR = tolerances.QUADRATURE * 1e3  # relative to the largest of a piece
 CHECKED = np.array([-0.93, -0.45, 0.1, 0.62, 0.97])
 # Chebyshev coefficients of the first and second integral from -1 of each T_k, in columns
@@ -76,7 +77,10 @@ def add_beams(all_cuts: Sequence[Cuts], mechanism: Mechanism, spec: Spec) -> tup
 
 
 def make_beam(cuts: Cuts, theory: BeamTheory, mechanism: Mechanism) -> Beam:
-    """Make the beam of a run. Raises Finding where its compliance is unbounded or changes too fast to integrate."""
+    """Make the beam of a series of cuts.
+
+    Raises Finding where its compliance is unbounded or changes too fast to integrate.
+    """
     points = [attachment.place for attachment in list_attachments(mechanism, cuts.body)]
     lines = [line.place for line in list_distributed_loads(mechanism, cuts.body)]
     corners = make_stretch(cuts, points, lines).corners
@@ -160,7 +164,7 @@ def make_deflection_block(
     find_open: Callable[[Cuts], Mapping[str, Mask]],
     planar: bool = False,
 ) -> Block:
-    """Return deflections and slopes at the cuts of a run, (n_t, k), and its safety against buckling, (n_t,).
+    """Return deflections and slopes at the cuts of a series, (n_t, k), and its safety against buckling, (n_t,).
 
     find_open: returns which loads of cuts are indeterminate, (n_t, k) by name; what depends on them is nan
     """
@@ -168,8 +172,8 @@ def make_deflection_block(
     beam, theory = cuts.beam, cuts.beam.theory
     nodes = beam.nodes
     if any(load.point.ndim == 2 for load in attached_loads):
-        nodes = make_plain_stretch(beam.run, beam.corners).place_for_loads(attached_loads)
-    force, moment = find_piece_loads(nodes, acceleration_matrix(cuts.body, states, gravity), attached_loads)
+        nodes = make_plain_stretch(beam.series, beam.corners).place_for_loads(attached_loads)
+    force, moment = find_piece_loads(nodes, find_acceleration_matrix(cuts.body, states, gravity), attached_loads)
     if planar:
         force[2], moment[:2] = 0.0, 0.0
     places = make_cut_places(nodes, states)
@@ -177,7 +181,9 @@ def make_deflection_block(
     is_open = find_open(nodes)
     rows = {"N": (nodes.n, force), "M10": (nodes.e1, moment), "M20": (nodes.e2, moment)}
     N, M1, M2 = (
-        np.where(is_open[name], np.nan, axis_component(axis, v)) if name in is_open else axis_component(axis, v)
+        np.where(is_open[name], np.nan, compute_axis_component(axis, v))
+        if name in is_open
+        else compute_axis_component(axis, v)
         for name, (axis, v) in rows.items()
     )
     K = find_compliance(nodes) / theory.modulus
@@ -196,7 +202,7 @@ def make_deflection_block(
 def integrate_twice(
     curvature: Array, nodes: Array, s: Array, length: float, reference: str = "start"
 ) -> tuple[Array, Array]:
-    """Return deflection [m] and slope [rad] (n_t, k) at distances s (k,) or (n_t, k) from the start of a run.
+    """Return deflection [m] and slope [rad] (n_t, k) at distances s (k,) or (n_t, k) from the start of a series.
 
     curvature (n_t, 9 m): at the nodes (9 m,) or (n_t, 9 m), distances [m] from its start, of m pieces
     reference: chord: the deflection is 0 at both ends; start, end: deflection and slope are 0 there
@@ -213,7 +219,7 @@ def integrate_twice(
     h = 0.5 * (breaks - starts)
     slopes = accumulate_steps(h * once.sum(axis=2))
     deflections = accumulate_steps(2.0 * h * slopes[:, :-1] + h * h * twice.sum(axis=2))
-    rows = slice(None if nodes.ndim > 1 or s.ndim > 1 else 1)  # one, where nothing moves along the run
+    rows = slice(None if nodes.ndim > 1 or s.ndim > 1 else 1)  # one, where nothing moves along the series
     s = np.broadcast_to(s, (n_t, s.shape[-1]))[rows]
     piece = np.minimum((breaks[rows, None] < s[..., None]).sum(axis=2), h.shape[1] - 1)
 
@@ -243,7 +249,7 @@ def accumulate_steps(steps: Array) -> Array:
 
 
 def find_buckling_safety(N: Array, euler_load: float) -> Array:
-    """Return Euler's load over the largest compression along a run, (n_t,), from the normal forces at its nodes.
+    """Return Euler's load over the largest compression along a series, (n_t,), from the normal forces at its nodes.
 
     `tolerances.GREATEST_SAFETY` stands for all that is larger, and for tension, which has no bound.
     """

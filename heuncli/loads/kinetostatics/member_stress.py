@@ -1,11 +1,13 @@
 """Compute the stresses in a cross-section of a member, I, C, L, T or box, from its loads about the centroid.
 
     sigma = N/A + a u + b v,   [int u^2, int u v; int u v, int v^2] (a, b) = (-M2, M1)
-along the member's own width u and height v from the centroid, also where these are not principal axes. Shear by the
-flow q along thin walls (scene/shapes/member_section.py), q.Q/t; torsion by the moment about the shear centre (u_s,
-v_s),
+
+sigma is the normal stress; u and v are the distances from the centroid along the member's own width and height, also
+where these are not principal axes. Shear by the flow q along thin walls (scene/shapes/member_section.py), q.Q/t.
+Torsion by the moment about the shear centre (u_s, v_s),
 
     T_s = T - (u_s Q2 - v_s Q1),   in an open wall T_s t/J of opposite signs at its two faces; in a box by Bredt
+
 All are linear in N, a, b, Q1, Q2, T_s, with factors that lie in an interval over a part of a wall: the largest stresses
 are bounds over these parts. The normal stress is also taken at the named corners of the outline, unrounded.
 """
@@ -23,7 +25,7 @@ from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.profiles import FAMILIES, Family, Measures
 from heuncli.scene.shapes.member_section import MemberSection, make_member_section
 
-PARTS = 8  # of a wall
+PARTS = 8  # intervals into which a wall is divided
 Frame = tuple[float, float, float, float]  # rows e1, e2; columns width and height of the member
 UPRIGHT: Frame = (1.0, 0.0, 0.0, 1.0)
 

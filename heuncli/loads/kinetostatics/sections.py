@@ -4,9 +4,10 @@
     M'(P) = sum' (x - P) x k + couples - sum' (x - P) x m x..     about P [N m]
     N = s'.n (tension > 0), Q1 = s'.e1, Q2 = s'.e2, T = M'.n, M1 = M'.e1, M2 = M'.e2
 
-sum' runs over the piece, n points into it; k is its weight, the loads and the joints on it. With the acceleration
-matrix Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] sum' m (x.. - g) of a piece of pseudo-inertia P is the last column
-of Acc P, its moment about the body's origin the skew part of the rest. Heun (1901), (57)-(61), corrected.
+sum' runs over the piece, n points into it; k is its weight, the loads and the joints on it. sigma is here the angular
+velocity (in stress.py it is a stress). With the acceleration matrix Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g]
+sum' m (x.. - g) of a piece of pseudo-inertia P is the last column of Acc P, its moment about the body's origin the skew
+part of the rest. Heun (1901), (57)-(61), corrected.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class AttachedLoad:
     moment: Array
     line_end: Array | None = None
 
-    def fraction_on_pieces(self, cuts: Cuts) -> tuple[Array, Array]:
+    def find_fraction_on_pieces(self, cuts: Cuts) -> tuple[Array, Array]:
         """Return the fraction of it that acts on each piece, (k,), and that fraction times its place, (k, 3).
 
         (n_t, k) and (n_t, k, 3) where the point or the cuts move over the body.
@@ -49,7 +50,7 @@ class AttachedLoad:
         if self.line_end is None:
             fraction = mark_points_on_pieces(cuts, self.point)
             return fraction, fraction[..., None] * self.point[..., None, :]
-        return line_fraction_on_pieces(cuts, self.point, self.line_end)
+        return find_line_fraction_on_pieces(cuts, self.point, self.line_end)
 
 
 def find_attachments(body: int, states: BodyStates, actions: Sequence[Action]) -> list[AttachedLoad]:
@@ -106,7 +107,7 @@ def mark_points_on_pieces(cuts: Cuts, point: Array) -> Array:
     return mask
 
 
-def line_fraction_on_pieces(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
+def find_line_fraction_on_pieces(cuts: Cuts, start: Array, end: Array) -> tuple[Array, Array]:
     """Return the share of a force distributed from start to end that acts on the pieces, and that share times its
     place.
 
@@ -130,7 +131,7 @@ def line_fraction_on_pieces(cuts: Cuts, start: Array, end: Array) -> tuple[Array
     return fraction, fraction[..., None] * start + line_moment[..., None] * (end - start)
 
 
-def piece_energy(cuts: Cuts, states: BodyStates) -> Array:
+def compute_piece_energy(cuts: Cuts, states: BodyStates) -> Array:
     """Return E' = tr(V P V') / 2 of the pieces (n_t, k) [J], V = [hat(sigma), x_o.] in body axes, P their
     pseudo-inertias.
     """
@@ -145,14 +146,14 @@ def piece_energy(cuts: Cuts, states: BodyStates) -> Array:
     return np.asarray(0.5 * np.einsum(f"tia,{pieces},tib->tk", V, cuts.pieces, V))
 
 
-def acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
+def find_acceleration_matrix(body: int, states: BodyStates, gravity: Array) -> Array:
     """Return Acc = [hat(sigma.) + hat(sigma)^2, x_o.. - g] in body axes, rows first: (3, n_t, 4)."""
     R = states.R[:, body]
     vectors = np.array([states.omega[:, body], states.alpha[:, body], states.a[:, body] - gravity])
-    return make_acceleration_matrix(*to_body_axes(R, vectors))
+    return compute_acceleration_matrix(*to_body_axes(R, vectors))
 
 
-def make_acceleration_matrix(w: Array, u: Array, a: Array) -> Array:
+def compute_acceleration_matrix(w: Array, u: Array, a: Array) -> Array:
     """Return Acc (3, ..., n_t, 4) of angular velocity w, its rate u and the acceleration a of the origin, in body
     axes.
     """
@@ -170,7 +171,9 @@ def make_acceleration_matrix(w: Array, u: Array, a: Array) -> Array:
 
 
 def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[AttachedLoad]) -> tuple[Array, Array]:
-    """Return s' and M' about the cuts' own points, body axes, (3, n_t, k) each; A (3, n_t, 4): see acceleration_matrix.
+    """Return s' and M' about the cuts' own points, body axes, (3, n_t, k) each.
+
+    A (3, n_t, 4): see find_acceleration_matrix
 
     Inertia and the loads at fixed points are one product of instants and cuts for each component, (n_t, 4 + m) (4 + m,
     k); the levers from the cut's point are in the second factor. A load whose point moves over the body may change
@@ -180,7 +183,7 @@ def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[AttachedLoad
         return find_moving_piece_loads(cuts, A, attached_loads)
     P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
     fixed_loads = [a for a in attached_loads if a.point.ndim == 1]
-    shares = [a.fraction_on_pieces(cuts) for a in fixed_loads]
+    shares = [a.find_fraction_on_pieces(cuts) for a in fixed_loads]
     mask = np.array([part for part, _ in shares]).reshape(-1, len(cuts.points))
     first = np.array([moment for _, moment in shares]).reshape(-1, len(cuts.points), 3)
     B = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed_loads)], axis=-1) for i in range(3)]
@@ -217,7 +220,7 @@ def find_moving_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[Attac
     moment = np.stack([inertia[2, 1] - inertia[1, 2], inertia[0, 2] - inertia[2, 0], inertia[1, 0] - inertia[0, 1]])
     moment -= cross_first_axis(p, force)
     for a in attached_loads:
-        fraction, first = a.fraction_on_pieces(cuts)
+        fraction, first = a.find_fraction_on_pieces(cuts)
         F, M = (np.moveaxis(x, -1, 0)[..., None] for x in (a.force, a.moment))
         force += F * fraction
         moment += cross_first_axis(np.moveaxis(first, -1, 0) - p * fraction, F)
@@ -236,8 +239,8 @@ class CutPlaces:
 
     cut_points: the cuts' own points
     moment_points: where moments are reported
-    centroids: the centroids, where there are shapes, else `cut_points` R (n_t, 3, 3), origin (n_t, 3): the body's
-    attitude and position
+    centroids: the centroids, where there are shapes, else `cut_points`
+    R (n_t, 3, 3), origin (n_t, 3): the body's attitude and position
     """
 
     cuts: Cuts
@@ -267,7 +270,7 @@ class CutPlaces:
             force, moment, self.moment_points - self.cut_points
         )
 
-    def components(self, force: Array, moment: Array) -> Block:
+    def compute_components(self, force: Array, moment: Array) -> Block:
         """Return all components of loads given about the cuts' points; T0, M10, M20 about the centroid, for
         stresses.
         """
@@ -298,11 +301,11 @@ class CutPlaces:
                 ("M20", cuts.e2, centroid_moments),
             ]
         for output, (name, axis, v) in zip(space, rows, strict=False):
-            block[name] = axis_component(axis, v, output)
+            block[name] = compute_axis_component(axis, v, output)
         return block
 
 
-def axis_component(axis: Array, v: Array, output: Array | None = None) -> Array:
+def compute_axis_component(axis: Array, v: Array, output: Array | None = None) -> Array:
     """Return axis . v of vectors (3, n_t, k), (n_t, k); terms with a zero in axis are skipped."""
     (first, x), *rest = [(i, x) for i, x in enumerate(axis.tolist()) if x != 0.0]
     component: Array = np.multiply(v[first], x, out=output)
@@ -333,14 +336,14 @@ MOMENTS = frozenset({"moment", "T", "M1", "M2", "T0", "M10", "M20"})
 ABOUT_CENTROID = ("T0", "M10", "M20")
 
 
-def static_components(cuts: Cuts, states: BodyStates, attached_loads: Sequence[AttachedLoad]) -> Block:
+def compute_static_components(cuts: Cuts, states: BodyStates, attached_loads: Sequence[AttachedLoad]) -> Block:
     """Return section loads of the attached loads alone, without weight and inertia: (n_t, k), (n_t, k, 3)."""
-    return make_cut_places(cuts, states).components(
+    return make_cut_places(cuts, states).compute_components(
         *find_piece_loads(cuts, np.zeros((3, len(states.x), 4)), attached_loads)
     )
 
 
-def section_block(
+def make_section_block(
     cuts: Cuts,
     states: BodyStates,
     gravity: Array,
@@ -348,17 +351,17 @@ def section_block(
     indeterminate_masks: Mapping[str, Mask],
     planar: bool = False,
 ) -> Block:
-    """Make the block of one section: of a single cut without an axis of cuts, of a run with `s` and `side`.
+    """Make the block of one section: of a single cut without an axis of cuts, of a series with `s` and `side`.
 
-    indeterminate_masks: by names of `CutPlaces.components`; their values become nan
+    indeterminate_masks: by names of `CutPlaces.compute_components`; their values become nan
     """
     cut_places = make_cut_places(cuts, states)
-    force, moment = find_piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), attached_loads)
+    force, moment = find_piece_loads(cuts, find_acceleration_matrix(cuts.body, states, gravity), attached_loads)
     if planar:
         force[2], moment[:2] = 0.0, 0.0
     components = {
         name: np.where(indeterminate_masks[name], np.nan, value) if name in indeterminate_masks else value
-        for name, value in cut_places.components(force, moment).items()
+        for name, value in cut_places.compute_components(force, moment).items()
     }
     about_centroid = {name[:-1]: components.pop(name) for name in ABOUT_CENTROID if name in components}
     block: Block = {
@@ -368,12 +371,14 @@ def section_block(
         "open": [],
     } | components
     if not cuts.is_impulse:
-        block["energy"] = piece_energy(cuts, states)
+        block["energy"] = compute_piece_energy(cuts, states)
     if cuts.properties is not None:
-        block["stress"] = stress_of_cuts(cuts, {name: components[name] for name in ("N", "Q1", "Q2")} | about_centroid)
+        block["stress"] = compute_stresses_of_cuts(
+            cuts, {name: components[name] for name in ("N", "Q1", "Q2")} | about_centroid
+        )
     if cuts.line:
         is_determinate = np.isfinite(np.sum([components[name] for name in ("N", "Q1", "Q2", "T", "M1", "M2")], axis=0))
-        line = reduction_line(cut_places, force, moment)
+        line = find_reduction_line(cut_places, force, moment)
         block["line"] = {
             k: np.where(is_determinate[..., None] if v.ndim == 3 else is_determinate, v, np.nan)
             for k, v in line.items()
@@ -392,7 +397,7 @@ def take_first_cut(block: Block) -> Block:
     return {key: take_first_cut(value) if isinstance(value, dict) else value[:, 0] for key, value in block.items()}
 
 
-def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
+def compute_stresses_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
     """Return the stresses of all cuts, from the given properties or from those of the shapes."""
     assert cuts.properties is not None
     if cuts.properties.kind == "auto":
@@ -408,7 +413,7 @@ def stress_of_cuts(cuts: Cuts, loads: Mapping[str, Array]) -> Block:
 
 
 def find_moment_arm(cuts: Cuts) -> float:
-    """Return a length [m] that compares moments with forces: of the run of cuts; of a single one how far the mass
+    """Return a length [m] that compares moments with forces: of the series of cuts; of a single one how far the mass
     beyond it reaches from the body's origin, or, without such mass, how far the body reaches.
     """
     points = cuts.points.reshape(-1, 3)
@@ -419,7 +424,7 @@ def find_moment_arm(cuts: Cuts) -> float:
     return length or cuts.plane_tolerance / tolerances.IN_PLANE
 
 
-def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
+def find_reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
     """Find the points of the plane where force and moment in it are parallel: Q.p = -n.(Q x M_t)/N, direction n x Q.
 
     moment is about the cut's own point. point: the one nearest to that; pressure_centre: where the moment in the plane
@@ -428,13 +433,13 @@ def reduction_line(cut_places: CutPlaces, force: Array, moment: Array) -> Block:
     """
     cuts, cut_points, to_world_axes = cut_places.cuts, cut_places.cut_points, cut_places.to_world_axes
     n = cuts.n[:, None, None]
-    N, T = axis_component(cuts.n, force), axis_component(cuts.n, moment)
+    N, T = compute_axis_component(cuts.n, force), compute_axis_component(cuts.n, moment)
     Q, M_t = force - n * N, moment - n * T
     reach = find_moment_arm(cuts)
     size = np.sqrt(np.sum(force**2, axis=0)) + np.sqrt(np.sum(moment**2, axis=0)) / reach
     q = np.sqrt(np.sum(Q**2, axis=0))
     no_N, no_Q = np.abs(N) <= tolerances.NO_FORCE * size, q <= tolerances.NO_FORCE * size
-    twist = axis_component(cuts.n, cross_first_axis(Q, M_t))
+    twist = compute_axis_component(cuts.n, cross_first_axis(Q, M_t))
     free_N = np.where(no_N, np.nan, N)
     free_Q = np.where(no_Q | no_N, np.nan, q)
     n = np.broadcast_to(n, Q.shape)

@@ -109,11 +109,11 @@ def find_sensor_reaction(
     if sensor.joint is not None:
         load = next(load for load in joints if load.joint.name == sensor.joint)
         return Reaction(load.point, load.force, load.moment)
-    from heuncli.loads.kinetostatics.sections import find_attachments, section_block  # few sensors read a cut
+    from heuncli.loads.kinetostatics.sections import find_attachments, make_section_block  # few sensors read a cut
 
     own = next(own for own in cuts if own.name == sensor.section).for_impulse
     attached = find_attachments(own.body, states, [*list_whole_joint_actions(joints), *acting])
-    block = section_block(own, states, mechanism.gravity, attached, {}, mechanism.planar)
+    block = make_section_block(own, states, mechanism.gravity, attached, {}, mechanism.planar)
     return Reaction(block["point"], block["force"], block["moment"])
 
 

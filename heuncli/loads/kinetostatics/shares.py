@@ -29,9 +29,9 @@ from heuncli.loads.kinetostatics.foundation import find_ground_loads
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
 from heuncli.loads.kinetostatics.sections import (
     ABOUT_CENTROID,
+    compute_acceleration_matrix,
     find_attachments,
     find_piece_loads,
-    make_acceleration_matrix,
     make_cut_places,
     to_body_axes,
 )
@@ -236,7 +236,7 @@ def find_outside_loads(
     return loads
 
 
-def section_shares_block(
+def make_section_shares_block(
     cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares, is_open: Mapping[str, Mask]
 ) -> Block:
     """Return the shares in the loads of one section by cause; nan where the section's load is indeterminate.
@@ -258,7 +258,7 @@ def section_shares_block(
     cut_places = make_cut_places(cuts, states)
     component_shares = {
         name: np.where(is_open[name], np.nan, values) if name in is_open else values
-        for name, values in cut_places.components(force, moment).items()
+        for name, values in cut_places.compute_components(force, moment).items()
         if name not in ABOUT_CENTROID
     }
     block = shares.to_blocks(component_shares)
@@ -279,13 +279,13 @@ def piece_loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares:
     """Return the effect of the piece's inertia and of the joints on it for every cause, (3, n_c, n_t, k)."""
     actions = [*list_whole_joint_actions(shares.joints), *list_coupling_actions(shares.rigid_couplings)]
     joints = find_attachments(cuts.body, states, actions)
-    return find_piece_loads(cuts, acceleration_matrix_by_cause(cuts.body, layout, states, shares), joints)
+    return find_piece_loads(cuts, find_acceleration_matrix_by_cause(cuts.body, layout, states, shares), joints)
 
 
 def find_direct_loads(cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares) -> dict[str, tuple[Array, Array]]:
     """Return by cause the weight of the pieces, and the loads that act on them directly, (3, n_t, k)."""
     zeros = np.zeros((len(states.x), 3))
-    weight = make_acceleration_matrix(zeros, zeros, to_body_axes(states.R[:, cuts.body], zeros - gravity))
+    weight = compute_acceleration_matrix(zeros, zeros, to_body_axes(states.R[:, cuts.body], zeros - gravity))
     loads = {GRAVITY: find_piece_loads(cuts, weight, [])} if GRAVITY in shares.causes else {}
     for name in dict.fromkeys(action.name for action in shares.applied_actions):
         if attached_loads := find_attachments(
@@ -295,7 +295,7 @@ def find_direct_loads(cuts: Cuts, gravity: Array, states: BodyStates, shares: Sh
     return loads
 
 
-def acceleration_matrix_by_cause(body: int, layout: Layout, states: BodyStates, shares: Shares) -> Array:
+def find_acceleration_matrix_by_cause(body: int, layout: Layout, states: BodyStates, shares: Shares) -> Array:
     """Return Acc = [hat(sigma.) + hat(sigma)^2, x_o..] of every cause, (3, n_c, n_t, 4); only the motion has a
     sigma.
     """
@@ -309,4 +309,4 @@ def acceleration_matrix_by_cause(body: int, layout: Layout, states: BodyStates, 
         a[shares.find_index(MOTION)] += cross_rows(w, cross_rows(w, arm))
     if GRAVITY in shares.causes:
         a[shares.find_index(GRAVITY)] += layout.mechanism.gravity  # the kernel's is less g
-    return make_acceleration_matrix(*(to_body_axes(R, x) for x in (omega, alpha, a)))
+    return compute_acceleration_matrix(*(to_body_axes(R, x) for x in (omega, alpha, a)))

@@ -2,8 +2,9 @@
 
     sigma = N/A + (M1/I1) y2 - (M2/I2) y1,   tau_T = T/W_T,   tau_Q = k |Q|/A,   mises^2 = sigma^2 + 3 tau^2
 
-linear over the section, principal axes e1, e2; k by the section's own shape: tau_Q is the largest of Jourawski's Q S/(I
-b), for a ring across its middle. How they combine, and the maxima: at the functions below.
+sigma is here the normal stress (in sections.py the angular velocity). It is linear over the section; e1, e2 are the
+principal axes. k is that of the section's shape: tau_Q is the largest of Jourawski's Q S/(I b), for a ring across its
+middle. How the stresses combine, and their maxima: at the functions below.
 
 The largest shear and von Mises stress over a shape follow from the distribution of both:
 
@@ -26,9 +27,9 @@ from heuncli.results.results import Array, Block
 
 # Section fields
 
-NEWTON_STEPS = 8  # rounds from a start within a factor 1.5 of the solution: doubling digits, four would do
-CELLS = 10  # per half extent: the error of a cell is a few per cent of the largest stress
-TERMS = 1000  # of the torsion's series: the rest is some 1e-6 along the short sides, and less elsewhere
+NEWTON_STEPS = 8  # Newton's rounds from a start within a factor 1.5 of the solution: doubling digits, four would do
+CELLS = 10  # cells per half extent: the error of a cell is a few per cent of the largest stress
+TERMS = 1000  # terms of the torsion's series: the rest is some 1e-6 along the short sides, and less elsewhere
 CHUNK = 512  # places in time and along a run treated together: the cells' arrays stay in the cache
 
 
@@ -55,26 +56,26 @@ class StressFields:
 Largest = Callable[[StressFields], tuple[Array, Array]]  # shear and von Mises
 
 
-def circle_maxima(stress: StressFields) -> tuple[Array, Array]:
+def find_circle_maxima(stress: StressFields) -> tuple[Array, Array]:
     """Return the maxima of a solid circle: both on its edge, where tau = torsion + shear x u runs along it.
 
     Inside, tau = torsion (n x u) + q - (q.u) u (the textbooks' directions: at the ends of chords along the edge):
     linear along a chord normal to Q, as sigma is. So mises^2 is convex along it, and largest at an end.
     """
-    return np.abs(stress.torsion) + stress.shear_magnitude, np.sqrt(max_on_edge(stress))
+    return np.abs(stress.torsion) + stress.shear_magnitude, np.sqrt(find_max_on_edge(stress))
 
 
-def tube_maxima(stress: StressFields) -> tuple[Array, Array]:
+def find_tube_maxima(stress: StressFields) -> tuple[Array, Array]:
     """Return the maxima of a ring: on its edge, as for a thin one; inside thick walls shear does not reduce the
     torsion.
 
     Along a chord the shear by Jourawski is constant: convex again, and below shear * (cos of the place)^2.
     """
     unrelieved = (np.abs(stress.axial) + np.hypot(*stress.bend)) ** 2 + 3.0 * stress.torsion**2
-    return np.abs(stress.torsion) + stress.shear_magnitude, np.sqrt(np.maximum(max_on_edge(stress), unrelieved))
+    return np.abs(stress.torsion) + stress.shear_magnitude, np.sqrt(np.maximum(find_max_on_edge(stress), unrelieved))
 
 
-def max_on_edge(stress: StressFields) -> Array:
+def find_max_on_edge(stress: StressFields) -> Array:
     """Return the largest (axial + bend.u)^2 + 3 (torsion + (shear2, -shear1).u)^2 on the circle |u| = 1.
 
     u.H u + 2 g.u + c is nowhere above c + l + g.(l - H)^-1 g for any l above the eigenvalues of H. The smallest of
@@ -111,7 +112,7 @@ def max_on_edge(stress: StressFields) -> Array:
     return np.asarray((largest + a * a + t * t) * scale * scale)
 
 
-def unknown_shape_maxima(stress: StressFields) -> tuple[Array, Array]:
+def bound_unknown_shape_maxima(stress: StressFields) -> tuple[Array, Array]:
     """Return bounds for a section of unknown shape: as if all largest stresses acted at one place."""
     shear = np.abs(stress.torsion) + stress.shear_magnitude
     return shear, np.sqrt(
@@ -124,9 +125,9 @@ def make_rectangle_maxima(width: float, height: float) -> Largest:
 
     All stresses are linear in the loads, with factors that lie in an interval over a cell.
     """
-    middle, half = rectangle_factors(width, height)
+    middle, half = find_rectangle_factors(width, height)
 
-    def rectangle_maxima(fields: StressFields) -> tuple[Array, Array]:
+    def find_rectangle_maxima(fields: StressFields) -> tuple[Array, Array]:
         loads = np.stack(np.broadcast_arrays(fields.axial, *fields.bend, *fields.shear, fields.torsion)).reshape(6, -1)
         shear, mises = np.empty((2, loads.shape[1]))
         for first in range(0, loads.shape[1], CHUNK):
@@ -137,17 +138,17 @@ def make_rectangle_maxima(width: float, height: float) -> Largest:
             mises[first : first + CHUNK] = np.sqrt((sigma * sigma + 3.0 * square).max(axis=0))
         return shear.reshape(np.shape(fields.axial)), mises.reshape(np.shape(fields.axial))
 
-    return rectangle_maxima
+    return find_rectangle_maxima
 
 
 @lru_cache(maxsize=32)
-def rectangle_factors(width: float, height: float) -> tuple[Array, Array]:
+def find_rectangle_factors(width: float, height: float) -> tuple[Array, Array]:
     """Return midpoints and half widths of the intervals: rows sigma, tau1, tau2 of all cells, columns the loads of
     `StressFields`.
     """
     u = np.linspace(0.0, 1.0, CELLS + 1)
     parabola = 1.0 - u * u
-    twist1, twist2 = torsion_stresses(width, height, u)
+    twist1, twist2 = compute_torsion_stresses(width, height, u)
     # both fall with one coordinate and grow with the other: phi_xy has one sign in a quadrant
     low1, high1, low2, high2 = twist1[1:, :-1], twist1[:-1, 1:], twist2[:-1, 1:], twist2[1:, :-1]
     i, j = np.meshgrid(np.arange(CELLS), np.arange(CELLS), indexing="ij")
@@ -164,14 +165,14 @@ def rectangle_factors(width: float, height: float) -> tuple[Array, Array]:
     return 0.5 * (ends[0] + ends[1]), 0.5 * np.abs(ends[1] - ends[0])
 
 
-def torsion_stresses(width: float, height: float, u: Array) -> tuple[Array, Array]:
+def compute_torsion_stresses(width: float, height: float, u: Array) -> tuple[Array, Array]:
     """Return magnitudes of the torsional stresses along e1 and e2 at (u[i], u[j]), u in half sides, relative to the
     largest.
 
     Saint-Venant's series, Timoshenko, Goodier, Theory of Elasticity, section 109; the long side is its second.
     """
     if width > height:
-        along2, along1 = torsion_stresses(height, width, u)
+        along2, along1 = compute_torsion_stresses(height, width, u)
         return along1.T, along2.T
     ratio = height / width
     n = np.arange(1, 2 * TERMS, 2)[:, None, None]
@@ -219,27 +220,27 @@ class SectionModuli:
     largest: Largest
 
 
-def circle_moduli(v: Sizes) -> SectionModuli:
+def compute_circle_moduli(v: Sizes) -> SectionModuli:
     """Return the moduli of a solid circle."""
-    return ring_moduli(v["radius"], 0.0, circle_maxima)
+    return compute_ring_moduli(v["radius"], 0.0, find_circle_maxima)
 
 
-def tube_moduli(v: Sizes) -> SectionModuli:
+def compute_tube_moduli(v: Sizes) -> SectionModuli:
     """Return the moduli of a circular ring."""
-    return ring_moduli(v["radius"], v["inner_radius"], tube_maxima)
+    return compute_ring_moduli(v["radius"], v["inner_radius"], find_tube_maxima)
 
 
-def ring_moduli(R: Number, r: Number, largest: Largest) -> SectionModuli:
+def compute_ring_moduli(R: Number, r: Number, largest: Largest) -> SectionModuli:
     """Return the moduli of any ring, from a solid circle to a thin tube."""
     I = 0.25 * math.pi * (R**4 - r**4)
     shear = 4.0 / 3.0 * (R * R + R * r + r * r) / (R * R + r * r)
     return SectionModuli(math.pi * (R * R - r * r), I, I, R, R, 2.0 * I / R, shear, True, largest)
 
 
-def rectangle_moduli(v: Sizes) -> SectionModuli:
+def compute_rectangle_moduli(v: Sizes) -> SectionModuli:
     """Return the moduli of a solid rectangle, width along e1, height along e2; W_T by Saint-Venant's series."""
     b, h = float(v["width"]), float(v["height"])
-    I1, I2, W_T = b * h**3 / 12.0, h * b**3 / 12.0, torsion_modulus(b, h)
+    I1, I2, W_T = b * h**3 / 12.0, h * b**3 / 12.0, compute_torsion_modulus(b, h)
     return SectionModuli(b * h, I1, I2, 0.5 * b, 0.5 * h, W_T, 1.5, False, make_rectangle_maxima(b, h))
 
 
@@ -248,24 +249,24 @@ ODD = range(1, 40, 2)
 ODD_FIFTH_POWERS = 1.0045237627951382
 
 
-def torsion_modulus(b: float, h: float) -> float:
+def compute_torsion_modulus(b: float, h: float) -> float:
     """Return T over the largest torsional shear stress of a rectangle.
 
     Timoshenko, Goodier, Theory of Elasticity, section 109.
     """
     a, c = min(b, h), max(b, h)
     slope = 1.0 - 8.0 / math.pi**2 * sum(1.0 / (n * n * math.cosh(min(0.5 * n * math.pi * c / a, 700.0))) for n in ODD)
-    return torsion_constant(b, h) / (a * slope)
+    return compute_torsion_constant(b, h) / (a * slope)
 
 
-def torsion_constant(b: float, h: float) -> float:
+def compute_torsion_constant(b: float, h: float) -> float:
     """Return J of a rectangle: T over modulus of rigidity and twist."""
     a, c = min(b, h), max(b, h)
     tanh = ODD_FIFTH_POWERS - sum((1.0 - math.tanh(0.5 * n * math.pi * c / a)) / n**5 for n in ODD)
     return a**3 * c / 3.0 * (1.0 - 192.0 * a / (math.pi**5 * c) * tanh)
 
 
-def general_moduli(v: Sizes) -> SectionModuli:
+def compute_general_moduli(v: Sizes) -> SectionModuli:
     """Return the moduli from given properties; the torsional stress is that of the thickest shape that fits.
 
     A convex section's is at most 2 rho T/J, rho the radius of the largest circle in it (Payne's bound of the stress
@@ -273,11 +274,12 @@ def general_moduli(v: Sizes) -> SectionModuli:
     """
     c1, c2, shear = v["c1"], v["c2"], v.get("shear_factor", UNKNOWN_SHEAR)
     reach = np.maximum(np.maximum(c1, c2), 2.0 * np.minimum(c1, c2))
-    return SectionModuli(v["area"], v["I1"], v["I2"], c1, c2, v["J"] / reach, shear, False, unknown_shape_maxima)
+    return SectionModuli(v["area"], v["I1"], v["I2"], c1, c2, v["J"] / reach, shear, False, bound_unknown_shape_maxima)
 
 
 MODULI: dict[str, Callable[[Sizes], SectionModuli]] = {
-    "circle": circle_moduli, "tube": tube_moduli, "rectangle": rectangle_moduli, "general": general_moduli,
+    "circle": compute_circle_moduli, "tube": compute_tube_moduli,
+    "rectangle": compute_rectangle_moduli, "general": compute_general_moduli,
 }  # fmt: skip
 
 

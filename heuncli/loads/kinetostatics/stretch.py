@@ -1,6 +1,6 @@
 """A series of cuts as a continuous stretch, to find where its loads are largest, between its cuts too.
 
-Between the corners of a run (joints, forces, point masses, changes of shape; on either side of each) the loads are
+Between the corners of a stretch (joints, forces, point masses, changes of shape; on either side of each) the loads are
 smooth in s, the distance along it: for prisms and rods polynomials of degree 3, for cones and balls of degree 5 or 6.
 So between two corners they follow from their values at nine nodes, x_j = −cos(πj/8) (Lobatto), whose polynomial
 
@@ -14,18 +14,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.cuts import Cuts
+from heuncli.loads.kinetostatics.cuts import Cuts, LoadAtPoint
 from heuncli.results.results import BEFORE, BEYOND, SIDE_WORDS, Array, CutPosition, Indices, Mask
-
-if TYPE_CHECKING:
-    from heuncli.loads.kinetostatics.sections import AttachedLoad
 
 DEGREE = 8
 NODES = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
@@ -100,7 +96,7 @@ class Stretch:
         """Return the height along n, from the body's origin."""
         return np.asarray(float(self.cuts.points[0] @ self.cuts.n) + s)
 
-    def place_for_loads(self, attached_loads: Sequence[AttachedLoad]) -> Cuts:
+    def place_for_loads(self, attached_loads: Sequence[LoadAtPoint]) -> Cuts:
         """Return the cuts at the nodes of all pieces, s (k,), or (n_t, k) with loads that move over the body."""
         moving = [a.point @ self.cuts.n for a in attached_loads if a.point.ndim == 2]
         if not moving:
@@ -161,7 +157,7 @@ def find_middle_of_longest(corners: Array) -> Array:
 
 
 def make_cuts_at(cuts: Cuts, s: Array, side: Array) -> Cuts:
-    """Make other cuts along a run, at distances (k,) or (n_t, k) with sides (k,)."""
+    """Make other cuts along the line of a series, at distances (k,) or (n_t, k) with sides (k,)."""
     form, n = cuts.form, cuts.n
     assert form is not None
     points = cuts.points[0] + s[..., None] * n
@@ -175,7 +171,7 @@ def make_cuts_at(cuts: Cuts, s: Array, side: Array) -> Cuts:
 
 
 def make_stretch(cuts: Cuts, points: Sequence[Array], lines: Sequence[Array] = (), *, min_halvings: int = 0) -> Stretch:
-    """Make the stretch of a run.
+    """Make the stretch of a series of cuts.
 
     points: where loads and joints act on the body
     lines: the two ends (2, 3) of each distributed load, where loads bend but do not jump, unless the line is in a cut

@@ -93,7 +93,7 @@ def find_choices(scene: PreparedScene) -> Choices:
             looser = JOINTS[j.kind].weaker_planar_kinds if mechanism.planar else JOINTS[j.kind].weaker_kinds
             replacements = (replace_joint(j, kind, directions[k]) for kind in looser)
             choices[k] = tuple(other for other in replacements if other is not None)
-        elif JOINTS[j.kind].dots and not mechanism.planar and j.stiffness is None:
+        elif JOINTS[j.kind].perpendicular_pairs and not mechanism.planar and j.stiffness is None:
             choices[k] = (replace(j, stiffness=ZERO_MOMENT_STIFFNESS),)
     return choices
 
@@ -143,7 +143,7 @@ def _iter_replacements(joints: tuple[Joint, ...], choices: Choices, redundant: i
     def count_removed(k: int, other: Joint) -> tuple[int, int]:
         kind = JOINTS[joints[k].kind]
         fewer = kind.row_count - JOINTS[other.kind].row_count
-        return (fewer, fewer) if fewer else (1, len(kind.dots))
+        return (fewer, fewer) if fewer else (1, len(kind.perpendicular_pairs))
 
     max_reduction = max((count_removed(k, other)[1] for k, others in choices.items() for other in others), default=0)
     for n in (1, 2, 3):

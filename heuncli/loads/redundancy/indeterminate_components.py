@@ -223,13 +223,13 @@ def iter_self_stress_components(
     stress: SelfStress,
 ) -> Iterator[Block]:
     """Yield for each self-stress its share in the loads of cuts, by name."""
-    from heuncli.loads.kinetostatics.sections import find_attachments, static_components
+    from heuncli.loads.kinetostatics.sections import compute_static_components, find_attachments
 
     for k in range(stress.largest.shape[1]):
         parts = zip(joints, stress.shares, strict=True)
         actions = [make_joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts]
         actions += list_coupling_actions([own.with_multipliers(stress.multipliers[:, :, k]) for own in couplings])
-        yield static_components(cuts, states, find_attachments(cuts.body, states, actions))
+        yield compute_static_components(cuts, states, find_attachments(cuts.body, states, actions))
 
 
 def list_indeterminate_section_names(is_open: Mapping[str, Mask]) -> list[str]:

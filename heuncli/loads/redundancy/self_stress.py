@@ -301,7 +301,7 @@ def find_neighbour_poses(
     random_states[:, slots] = rng.uniform(-1.0, 1.0, (DIRECTIONS, len(slots))) / layout.weights[slots]
     admissible = runner.evaluate(np.full(DIRECTIONS, t), random_states, holding=holding).states
     largest = np.abs(admissible[:, slots] * layout.weights[slots]).max(axis=1, initial=0.0)
-    is_moving = largest > tolerances.MOVES
+    is_moving = largest > tolerances.REMAINING_RATE
     if not is_moving.any():
         return None
     steps = [

@@ -1,9 +1,10 @@
-"""Mark what frictions leave indeterminate that stick as one (motion/integration/contacts/friction_groups.py).
+"""Mark what is indeterminate where several frictions stick together (motion/integration/contacts/friction_groups.py).
 
-How they share what holds their freedom is indeterminate. What that changes in joints, sections and supports are
-self-stresses (self_stress.py). Here are their own values, and the sum of these that is determinate:
+Such frictions hold one degree of freedom together, and nothing decides what each contributes. The contributions change
+joints, sections and supports by self-stresses (self_stress.py). This module marks the values of the frictions, and
+finds the sum of them that is determinate:
 
-    sum of t_i value_i,  t_i the transmission from their leader
+    sum of t_i value_i,  t_i the ratio of the rate of friction i to that of the group's leader
 """
 
 from __future__ import annotations

@@ -205,7 +205,7 @@ def minimise_strain(stress: SelfStress, maps: Sequence[Array]) -> tuple[SelfStre
     S = np.concatenate([np.einsum("tij,tjk->tik", m, s) for m, s in zip(maps, stress.shares, strict=True)], axis=1)
     size = np.where(stress.largest > 0.0, stress.largest, 1.0)
     U, sigma, V = np.linalg.svd(S / size[:, None, :], full_matrices=False)
-    is_strained = sigma > tolerances.STRAINED * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
+    is_strained = sigma > tolerances.STRAINED_SELF_STRESS * np.maximum(sigma.max(axis=1, initial=0.0), 1e-300)[:, None]
     inverse = np.where(is_strained, 1.0 / np.where(is_strained, sigma, 1.0), 0.0)
     responses = -(V.transpose(0, 2, 1) * inverse[:, None, :]) @ U.transpose(0, 2, 1) / size[:, :, None]
     responses = np.concatenate([responses[:, :, 6 * n : 6 * n + 6] @ m for n, m in enumerate(maps)], axis=2)
@@ -227,7 +227,7 @@ def select_part(stress: SelfStress, part: Array, count: Array) -> SelfStress | N
     multipliers = np.einsum("trk,tkj->trj", stress.multipliers, unit_part)
     coupling_shares = np.abs(multipliers * stress.coupling_scale[:, None]).max(axis=1, initial=0.0)
     largest = np.maximum(np.max(parts, axis=0), coupling_shares)
-    largest = np.where(largest > tolerances.STILL_OPEN, largest, 0.0)
+    largest = np.where(largest > tolerances.OPEN_AFTER_SPLIT, largest, 0.0)
     result: SelfStress = replace(stress, shares=shares, largest=largest, count=count, multipliers=multipliers)
     return result
 

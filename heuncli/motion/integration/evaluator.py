@@ -101,7 +101,7 @@ class Evaluator:
         """Return the residual that accelerations may leave in dependent rows, relative to the rows' terms; gap
         (n_t,).
         """
-        return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / self.min_length)
+        return tolerances.UNMET_ROW_FACTOR * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / self.min_length)
 
     @cached_property
     def min_length(self) -> float:

@@ -263,13 +263,13 @@ def eliminate(K: Array, changes: Array) -> Elimination:
     changes = changes[np.isfinite(changes).all(axis=(1, 2))] if f else changes
     if f and not len(changes):
         changes = np.full((1, f, f), tolerances.EIGENVALUE * f * np.abs(K).max())
-    entry_errors = tolerances.HELD * np.abs(changes).max(axis=0, initial=0.0)
+    entry_errors = tolerances.REAL_STIFFNESS_FACTOR * np.abs(changes).max(axis=0, initial=0.0)
     S, others = K.copy(), K + changes
     rows, columns = list(range(f)), list(range(f))
     right_null, left_null = np.eye(f), np.eye(f)
     pairs_taken: list[tuple[int, int]] = []
     while rows:
-        errors = tolerances.HELD * np.abs(others - S).max(axis=0, initial=0.0)
+        errors = tolerances.REAL_STIFFNESS_FACTOR * np.abs(others - S).max(axis=0, initial=0.0)
         significant = np.where(np.abs(S) > errors, np.abs(S), 0.0)
         i, j = np.unravel_index(int(np.argmax(significant)), significant.shape)
         if significant[i, j] == 0.0:
@@ -278,7 +278,7 @@ def eliminate(K: Array, changes: Array) -> Elimination:
         right_null = remove_column(right_null, int(j), S[i] / S[i, j])
         left_null = remove_column(left_null, int(i), S[:, j] / S[i, j])
         S, others = find_schur_complement(S[None], int(i), int(j))[0], find_schur_complement(others, int(i), int(j))
-    errors = tolerances.HELD * np.abs(others - S).max(axis=0, initial=0.0)
+    errors = tolerances.REAL_STIFFNESS_FACTOR * np.abs(others - S).max(axis=0, initial=0.0)
     pairs = np.array(pairs_taken, dtype=int).reshape(-1, 2)
     return Elimination(K, pairs[:, 0], pairs[:, 1], right_null, left_null, errors, entry_errors)
 

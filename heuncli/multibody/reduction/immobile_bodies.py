@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.base.linear_algebra import null_space
+from heuncli.base.linear_algebra import compute_null_space
 from heuncli.base.records import record, replace
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Joint
@@ -202,7 +202,7 @@ def find_moving_bodies(
     is_null = sigma <= tolerances.NEARLY_SINGULAR * largest
     share = np.abs(Vt[is_null] @ basis.T).max(axis=0, initial=0.0)
     owner = np.repeat(np.array(list(bodies)), [len(free) for free in bodies.values()])
-    moving = sorted({int(i) for i in owner[share > tolerances.MOVES]})
+    moving = sorted({int(i) for i in owner[share > tolerances.REMAINING_RATE]})
     if is_null.any() and float(sigma.min()) > tolerances.RANK * largest:
         names = format_body_names(layout.mechanism, [layout.spanning.links[i].body for i in moving])
         exceptions[moving[0]] = (
@@ -249,7 +249,7 @@ def motion_basis(search: ImmobilitySearch, bodies: dict[int, list[int]]) -> Arra
         if i in search.spins and search.layout.bodies["ball"][i]:
             axes = np.zeros((len(search.spins[i]), len(free)))
             axes[:, :3] = search.spins[i]
-            block = null_space(axes)
+            block = compute_null_space(axes)
         blocks.append(block)
     n = [block.shape for block in blocks]
     basis = np.zeros((sum(rows for rows, _ in n), sum(columns for _, columns in n)))

@@ -148,9 +148,9 @@ class ClosureRows:
                 self._add_row(k, kernel.ROD, program=program, length=length)
             if joint.path is not None:
                 self._add_track_rows(k, joint.path)
-            for d in () if kind.follows_path else kind.guides:
+            for d in () if kind.follows_path else kind.held_directions:
                 self._add_row(k, kernel.GUIDE, e=joint_direction(joint, d))
-            for d, e in kind.dots:
+            for d, e in kind.perpendicular_pairs:
                 f = to_direction(joint, start.R_ref, e)
                 self._add_row(k, kernel.DOT, e=joint_direction(joint, d), g=f, weight=self.tree.size)
             if "angle" in kind.coordinates:
@@ -172,7 +172,7 @@ class ClosureRows:
         """
         joint = self.tree.mechanism.joints[k]
         first = len(self.part_rows)
-        terms = JOINTS[joint.kind].turn.sum_of_dots
+        terms = JOINTS[joint.kind].turn.weighted_pairs
         self._add_row(k, kernel.SUM, weight=self.tree.size, part=first, part_count=len(terms))
         for factor, d, e in terms:
             directions = {"e": joint_direction(joint, d), "g": bent_direction(joint, self.tree.starts[k].R_ref, e)}

@@ -152,7 +152,7 @@ def _format_allowed(style: ReaderStyle, tolerance: float, scale: float) -> str:
     """Format the allowed deviation: relative to the expected number, or absolute where 0 is expected."""
     if tolerance <= 0.0:
         return "0"
-    return f"{format_power(100.0 * tolerance / scale, 2)} %" if scale else format_power(style.size * tolerance, 2)
+    return f"{format_power(100.0 * tolerance / scale, 2)} %" if scale else format_power(style.per_si * tolerance, 2)
 
 
 def make_accuracy_parts(data: ReportData) -> list[Part]:
@@ -194,15 +194,15 @@ def _make_error_table(data: ReportData) -> OutputTable:
     for (kind, unit), found in sorted(_find_errors(data).items(), key=lambda item: list(QUANTITIES).index(item[0])):
         style = choose_reader_style(unit, found.largest, data.units)
         if unit == "Pa" and not data.units.is_chosen(unit):
-            shown, size = data.units.find(unit)
+            shown, per_si = data.units.find(unit)
             style = style._replace(
-                unit=shown, size=size, decimals=max(0, style.decimals + round(math.log10(style.size / size)))
+                unit=shown, per_si=per_si, decimals=max(0, style.decimals + round(math.log10(style.per_si / per_si)))
             )
         if not found.largest:
-            shown, size = data.units.find(unit) if data.units.is_chosen(unit) else ("mm", 1e3)
-            style = style._replace(unit=shown, size=size)
+            shown, per_si = data.units.find(unit) if data.units.is_chosen(unit) else ("mm", 1e3)
+            style = style._replace(unit=shown, per_si=per_si)
         largest = style.write(found.largest) if found.largest else DASH
-        texts = [QUANTITIES[kind, unit], largest, format_power(style.size * found.error), style.unit]
+        texts = [QUANTITIES[kind, unit], largest, format_power(style.per_si * found.error), style.unit]
         texts += [_count_certain_digits(found), *([found.case] if data.has_cases else [])]
         rows.append(list(map(TextCell, texts)))
     heads = [OutputColumn("quantity", "text"), OutputColumn("greatest value"), OutputColumn("error")]
@@ -245,10 +245,10 @@ def _find_errors(data: ReportData) -> dict[tuple[str, str], _KindError]:
 
 def _make_balance_table(data: ReportData) -> OutputTable:
     """Make the table of what was compared to check the solution, each with its largest deviation of all cases."""
-    length, size = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
+    length, per_si = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
     compared = (
         ("balance_residual", *BALANCE, 1.0),
-        ("constraint_gap", GAP, length, size),
+        ("constraint_gap", GAP, length, per_si),
         ("energy_drift", *ENERGY, 1.0),
     )
     rows = []

@@ -31,15 +31,15 @@ from heuncli.study.quantities.labels import Labels
 MAX_PANELS = 6
 MAX_CURVES = 4  # cases in one panel; of more, the governing one
 MAX_ALIKE = 4  # names in a title
-ALIKE = 0.01  # of their greatest value: loads whose extremes agree to it share a panel
-MAX_SEARCH_INSTANTS = 400  # of the search's instants in a curve
+ALIKE = 0.01  # relative to their greatest value: loads whose extremes agree to it share a panel
+MAX_SEARCH_INSTANTS = 400  # instants of the search that a curve takes
 HEIGHT = 98.0  # pixels
 MARGIN = 0.12  # above a curve, for its words
 
 MAX_DIAGRAMS = 2
 POLAR_HEIGHT = 182.0  # pixels
 LABEL_STEP = 180  # degrees between the labels of marks, at half the width of a sheet
-MIN_WIDTH = 0.1  # of a curve of tips, beside its length: a narrower one says no more than a history
+MIN_WIDTH = 0.1  # width of a curve of tips relative to its length: a narrower one says no more than a history
 
 
 class SharedPanel(NamedTuple):
@@ -148,7 +148,7 @@ def _make_figure(
 ) -> Figure:
     """Make the figure of one load in some cases."""
     style = choose_family([greatest.ends], data).style
-    curves = [style.size * course.find_numbers(greatest.path) for course in courses]
+    curves = [style.per_si * course.find_numbers(greatest.path) for course in courses]
     known = np.concatenate([curve[np.isfinite(curve)] for curve in curves])
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
     x_values = np.concatenate([course.x for course in courses])
@@ -173,7 +173,7 @@ def _mark_greatest(
         time = greatest.extreme.time
         if course.run is not greatest.run or ends is None or time is None:
             continue
-        value = greatest.family.style.size * greatest.value
+        value = greatest.family.style.per_si * greatest.value
         x = float(course.x[int(np.argmin(np.abs(course.times - time)))])
         where = f"{x:.0f}°" if crank is not None else f"{format_instant(time, course.run)} s"
         if math.isfinite(value):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import reduce
-from operator import getitem
 
 import numpy as np
 
@@ -15,17 +13,18 @@ from heuncli.output.documents.document import append_unit
 from heuncli.output.snapshots.envelopes import Bound
 from heuncli.output.snapshots.golden_file import BEYOND, NumberSnapshot
 from heuncli.results.results import Array, CutPosition
+from heuncli.results.results_paths import find_values
 from heuncli.study.quantities.digits import OPEN, UNKNOWN, ReaderStyle, choose_reader_style
 from heuncli.study.quantities.table_units import Units
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LEAST, GREATEST = "least", "greatest"
-PLACE_DECIMALS = 9  # of places [m]
-DECIMALS = {"m": 3, "mm": 1}  # of places as they are shown; of other units 4
-NOISE = 1e-3  # of the largest of a family: what is below it is a dash
+PLACE_DECIMALS = 9  # decimals to which places along a series [m] are rounded
+DECIMALS = {"m": 3, "mm": 1}  # decimals of places as they are shown; in other units 4
+NOISE = 1e-3  # relative to the largest of a family: a smaller number is shown as a dash
 DASH, MINUS = "–", "−"
-INSTANT_DIGITS = 3  # of an instant, beside the run's length
-LOWEST, HIGHEST = ".lowest", ".highest"  # of a series of cuts
+INSTANT_DIGITS = 3  # digits of an instant, relative to the run's length
+LOWEST, HIGHEST = ".lowest", ".highest"  # ends of the paths of extremes along a series of cuts
 
 
 class CaseExtreme(NamedTuple):
@@ -62,8 +61,9 @@ class CaseExtremes(NamedTuple):
 
 
 def find_extremes(run: ReportedRun, path: str) -> CaseExtremes | None:
-    """Find the extremes of a number in one case, for a series of cuts those over the whole run; None if the case has no
-    such number.
+    """Find the extremes of a number in one case; None if the case has no such number.
+
+    Those along a series of cuts are over its whole length.
     """
     numbers = run.snapshot.numbers
     is_open = _is_open(run, path)
@@ -83,12 +83,11 @@ def _add_place(
     """Add the place to an extreme along a series of cuts that is constant in time; their snapshot holds none."""
     if extreme.place is not None or not isinstance(extreme.value, float):
         return extreme
-    _, name, *quantity = path.split(".")
-    section = run.results.sections[name]
-    values = reduce(getitem, quantity, section)
-    if not np.isfinite(values[0]).any():
+    found = find_values(run.results, path)
+    values, section = found.values[0], run.results.sections[found.keys[1]]
+    if not np.isfinite(values).any():
         return extreme
-    cut = int(find_index(values[0]))
+    cut = int(find_index(values))
     side = section["side"][cut] if section.get("side") else None
     return extreme._replace(place=CutPosition(float(section["s"][cut]), side, cut))
 
@@ -175,10 +174,10 @@ def choose_style_in_unit(
     style = choose_reader_style(unit, scale, data.units, error)
     if unit_scale == scale:
         return style
-    size = choose_reader_style(unit, unit_scale, data.units).size
+    per_si = choose_reader_style(unit, unit_scale, data.units).per_si
     shown_unit = choose_reader_style(unit, unit_scale, data.units).unit
-    shift = round(math.log10(style.size / size)) if style.size != size else 0
-    return ReaderStyle(shown_unit, size, max(style.decimals + shift, 0), size * error)
+    shift = round(math.log10(style.per_si / per_si)) if style.per_si != per_si else 0
+    return ReaderStyle(shown_unit, per_si, max(style.decimals + shift, 0), per_si * error)
 
 
 def format_power(value: float, digits: int = 1) -> str:
@@ -208,8 +207,8 @@ def describe_place(place: CutPosition | None, units: Units) -> str:
 
 
 def _format_distance(place: CutPosition, units: Units) -> str:
-    unit, size = units.find("m")
-    text = f"{round(place.s, PLACE_DECIMALS) * size:.{DECIMALS.get(unit, 4)}f}"
+    unit, per_si = units.find("m")
+    text = f"{round(place.s, PLACE_DECIMALS) * per_si:.{DECIMALS.get(unit, 4)}f}"
     return text.rstrip("0").rstrip(".")
 
 

@@ -82,14 +82,14 @@ def _make_body_table(data: ReportData, poses: Poses) -> OutputTable | None:
     bodies = [body for body in data.runs[0].study.setup.scene.mechanism.bodies if body.name in poses.positions]
     if not bodies:
         return None
-    unit, size = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
+    unit, per_si = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
     columns = [OutputColumn("", "text"), OutputColumn("mass [kg]"), *(OutputColumn(f"{a} [{unit}]") for a in XYZ)]
     rows = []
     for body in bodies:
         place = poses.locate_points(body.name, np.asarray(body.center, dtype=np.float64), 0)
         mass = choose_reader_style("kg", float(body.mass), data.units).write(float(body.mass))
         name = describe_object("bodies", body.name, data.labels)
-        rows.append([TextCell(name), TextCell(mass), *_make_place_cells(place, size, unit)])
+        rows.append([TextCell(name), TextCell(mass), *_make_place_cells(place, per_si, unit)])
     return OutputTable(BODIES_HEADING, columns, rows, (), "page")
 
 
@@ -98,7 +98,7 @@ def _make_joint_table(data: ReportData, poses: Poses) -> OutputTable | None:
     joints = data.runs[0].study.spec.joints
     if not joints:
         return None
-    unit, size = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
+    unit, per_si = data.units.find("m") if data.units.is_chosen("m") else ("mm", 1e3)
     columns = [OutputColumn(head, "text") for head in ("", "kind", "between")]
     columns += [OutputColumn(f"{axis} [{unit}]") for axis in XYZ]
     rows = []
@@ -107,7 +107,7 @@ def _make_joint_table(data: ReportData, poses: Poses) -> OutputTable | None:
         place = poses.locate_points(joint.b, np.asarray(joint.q, dtype=np.float64), 0) if known else np.full(3, np.nan)
         bodies = " and ".join(describe_object("bodies", body, data.labels) for body in (joint.a, joint.b))
         words = (describe_object("joints", name, data.labels), joint.kind, bodies)
-        rows.append([*map(TextCell, words), *_make_place_cells(place, size, unit)])
+        rows.append([*map(TextCell, words), *_make_place_cells(place, per_si, unit)])
     return OutputTable(JOINTS_HEADING, columns, rows, (), "page")
 
 
@@ -169,11 +169,11 @@ def _find_law(force: object) -> str:
     return ", ".join(laws)
 
 
-def _make_place_cells(place: Array, size: float, unit: str) -> list[TextCell]:
+def _make_place_cells(place: Array, per_si: float, unit: str) -> list[TextCell]:
     """Make the cells of a place; a tenth of a millimetre counts."""
     decimals = 1 if unit == "mm" else 3 if unit == "m" else 4
     texts = []
-    for value in (size * place).tolist():
+    for value in (per_si * place).tolist():
         text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
         texts.append(DASH if text == "nan" else "0" if text in ("-0", "") else text.replace("-", MINUS))
     return [TextCell(text) for text in texts]

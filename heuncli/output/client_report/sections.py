@@ -242,14 +242,14 @@ def _make_cells(
     written = stress_family.write(entry.mises.high.value)
     is_constant = extreme.place is None and stress_family.write(entry.mises.low.value) == written
     strength = entry.run.study.spec.sections[entry.name].strength
-    size = stress_family.style.size
+    per_si = stress_family.style.per_si
     return [
         TextCell(describe_object("sections", entry.name, data.labels)),
         *([TextCell(entry.run.case_label)] if data.has_cases else []),
         TextCell(format_place(extreme.place, data.units)),
         *([TextCell("" if is_constant else format_instant(extreme.time, entry.run))] if has_instants(data) else []),
         TextCell(written),
-        TextCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
+        TextCell(NO_STRENGTH if strength is None else f"{strength * per_si:.6g}"),
         TextCell(
             "" if entry.utilisation is None else choose_family(utilisations, data).write(entry.utilisation.high.value),
             is_largest and entry.utilisation is not None,
@@ -262,14 +262,14 @@ def _choose_stress_family(data: ReportData, entries: Sequence[SectionUtilisation
     family = choose_family([each.mises for each in entries], data)
     if data.units.is_chosen("Pa"):
         return family
-    unit, size = data.units.find("Pa")
-    shift = round(math.log10(family.style.size / size))
+    unit, per_si = data.units.find("Pa")
+    shift = round(math.log10(family.style.per_si / per_si))
     return family._replace(
         style=family.style._replace(
             unit=unit,
-            size=size,
+            per_si=per_si,
             decimals=max(family.style.decimals + shift, 0),
-            error=family.style.error * size / family.style.size,
+            error=family.style.error * per_si / family.style.per_si,
         )
     )
 

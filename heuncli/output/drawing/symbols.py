@@ -35,35 +35,35 @@ class SymbolShape(NamedTuple):
 
 
 def arc(radius: float, first: float, last: float, count: int = 20) -> Points:
-    """Points of a circle between two angles [degrees]."""
+    """Return points of a circle between two angles [degrees]."""
     angles = [math.radians(first + (last - first) * k / count) for k in range(count + 1)]
     return tuple((radius * math.cos(a), radius * math.sin(a)) for a in angles)
 
 
 def ring(radius: float, fill: str = "") -> SymbolPart:
-    """A circle."""
+    """Make a circle."""
     return SymbolPart(arc(radius, 0.0, 360.0)[:-1], True, fill)
 
 
 def box(x: float, y: float, fill: str = "") -> SymbolPart:
-    """A rectangle with these half sides."""
+    """Make a rectangle with these half sides."""
     return SymbolPart(((-x, -y), (x, -y), (x, y), (-x, y)), True, fill)
 
 
 def line(*points: tuple[float, float]) -> SymbolPart:
-    """A line."""
+    """Make a line."""
     return SymbolPart(points)
 
 
 def hatch(edge: float, half: float, step: float = 5.0) -> tuple[SymbolPart, ...]:
-    """The ground at larger x: its edge, and slanted lines behind it."""
+    """Make the ground at larger x: its edge, and slanted lines behind it."""
     count = round(2.0 * half / step)
     slants = (line((edge, -half + k * step), (edge + step, -half + (k + 1) * step)) for k in range(count))
     return (line((edge, -half), (edge, half)), *slants)
 
 
 def head(x: float, y: float, angle: float, size: float = 6.0) -> SymbolPart:
-    """The head of an arrow with its tip at (x, y); angle: its direction [degrees]."""
+    """Make the head of an arrow with its tip at (x, y); angle: its direction [degrees]."""
     a, b = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     back, side = (x - size * a, y - size * b), 0.42 * size
     return SymbolPart(
@@ -72,18 +72,18 @@ def head(x: float, y: float, angle: float, size: float = 6.0) -> SymbolPart:
 
 
 def shoe(inner: Points, outer: Points) -> SymbolPart:
-    """A brake shoe or the like: the area between two lines."""
+    """Make a brake shoe or the like: the area between two lines."""
     return SymbolPart((*inner, *outer), True, "ink")
 
 
 def radial(inner: float, outer: float, angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The ends of a radial stroke; angle [degrees]."""
+    """Return the ends of a radial stroke; angle [degrees]."""
     a, b = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return (inner * a, inner * b), (outer * a, outer * b)
 
 
 def bearing(*, is_fixed: bool) -> Iterator[SymbolPart]:
-    """Both halves of a rolling bearing, above and below its shaft: crossed lines if it is fixed, else one diagonal."""
+    """Yield both halves of a rolling bearing, above and below its shaft: crossed if it is fixed, else one diagonal."""
     for y in (9.5, -9.5):
         corners = ((-6.0, y - 5.5), (6.0, y - 5.5), (6.0, y + 5.5), (-6.0, y + 5.5))
         yield SymbolPart(corners, True, "paper")

@@ -45,7 +45,7 @@ def choose_number_style(unit: str, largest: float, units: Units) -> ReaderStyle:
     if "·" not in unit or unit not in PREFIXES:
         return chosen
     by_size = choose_reader_style(unit, largest, Units())
-    is_short, is_shorter = (MIN_READABLE <= style.size * largest < MAX_READABLE for style in (chosen, by_size))
+    is_short, is_shorter = (MIN_READABLE <= style.per_si * largest < MAX_READABLE for style in (chosen, by_size))
     return by_size if is_shorter and not is_short else chosen
 
 
@@ -65,7 +65,7 @@ class HorizontalAxis(NamedTuple):
 
     path: str | None
     unit: str
-    size: float
+    per_si: float
 
 
 def draw_curves(
@@ -73,8 +73,8 @@ def draw_curves(
 ) -> Iterator[Item]:
     """Draw the curves with their extremes, and with the bands of their errors where these are visible."""
     for curve in curves:
-        values, places = style.size * curve.course.values, x_axis.size * curve.x
-        error = style.size * (curve.course.error or 0.0)
+        values, places = style.per_si * curve.course.values, x_axis.per_si * curve.x
+        error = style.per_si * (curve.course.error or 0.0)
         if is_visible(error, y, height):
             yield Band(f"stated error of {curve.name}", places, values - error, values + error, curve.pen)
         if x_axis.path is None and _count_periods(curve.course.values) > MAX_PERIODS:
@@ -128,7 +128,7 @@ def _mark_extremes(curve: PanelCourse, style: ReaderStyle, x_axis: HorizontalAxi
     low, high, error = curve.course.low, curve.course.high, curve.course.error or 0.0
     if not is_varying(low.value, high.value, error):
         if high.time is not None and math.isfinite(high.value):
-            x = x_axis.size * float(curve.x[np.argmax(np.isfinite(curve.x + curve.course.values))])
+            x = x_axis.per_si * float(curve.x[np.argmax(np.isfinite(curve.x + curve.course.values))])
             text = format_constant(high.value, error, style) + ("" if len(curve.x) == 1 else " at all times")
             if math.isfinite(x):
                 yield _make_spot(x, high, text, curve, style, "")
@@ -145,7 +145,7 @@ def _mark_extremes(curve: PanelCourse, style: ReaderStyle, x_axis: HorizontalAxi
 
 def _make_spot(x: float, peak: Peak, text: str, curve: PanelCourse, style: ReaderStyle, word: str) -> Spot:
     note = f"{curve.caption or curve.name}: {word} {text}"
-    return Spot(x, style.size * peak.value, text, curve.pen, is_filled=True, note=note)
+    return Spot(x, style.per_si * peak.value, text, curve.pen, is_filled=True, note=note)
 
 
 def _locate_peak(curve: PanelCourse, peak: Peak, x_axis: HorizontalAxis) -> tuple[float, str]:
@@ -153,7 +153,7 @@ def _locate_peak(curve: PanelCourse, peak: Peak, x_axis: HorizontalAxis) -> tupl
     assert peak.time is not None
     if x_axis.path is None:
         return peak.time, f"{format_short(peak.time, 4)} s"
-    x = x_axis.size * float(find_values(curve.source.study, x_axis.path, np.array([peak.time]))[0])
+    x = x_axis.per_si * float(find_values(curve.source.study, x_axis.path, np.array([peak.time]))[0])
     return x, join_unit(format_short(x, 4), x_axis.unit)
 
 
@@ -167,7 +167,7 @@ def format_constant(value: float, error: float, style: ReaderStyle) -> str:
     `?`: unknown.
     """
     if 0.0 < abs(value) <= error:
-        return UNKNOWN if math.isinf(error) else f"within its stated error, {format_error(style.size * error)},"
+        return UNKNOWN if math.isinf(error) else f"within its stated error, {format_error(style.per_si * error)},"
     return format_number(value, error, style)
 
 
@@ -175,7 +175,7 @@ def format_number(value: float, error: float, style: ReaderStyle) -> str:
     """Format a number with its unit, no digits below its error, and the error if it reaches the last digit."""
     if value == 0.0 or abs(value) <= error:
         return UNKNOWN if math.isinf(error) else join_unit("0", style.unit)
-    shown = style.size * error
+    shown = style.per_si * error
     decimals = min(style.decimals, max(0, -math.ceil(math.log10(2.0 * shown)))) if shown > 0.0 else style.decimals
     text = style._replace(decimals=decimals, error=0.0).write(value)
     is_coarse = shown >= 0.5 * 10.0**-decimals
@@ -192,11 +192,11 @@ def draw_case_bars(curves: Sequence[PanelCourse], style: ReaderStyle) -> Iterato
         offset = (pens.index(pen) + 0.5) * width - 0.5 * GROUP_WIDTH
         x = np.array([names.index(curve.source.name) + offset for curve in own])
         values = [float(curve.course.values[0]) for curve in own]
-        yield Bars(own[0].course.path, x, style.size * np.array(values), pen, 0.9 * width)
+        yield Bars(own[0].course.path, x, style.per_si * np.array(values), pen, 0.9 * width)
         for place, value, curve in zip(x.tolist(), values, own, strict=True):
             if math.isfinite(value):
                 text = format_number(value, curve.course.error or 0.0, style).removesuffix(f" {style.unit}")
-                yield Spot(place, style.size * value, text, pen, "")
+                yield Spot(place, style.per_si * value, text, pen, "")
 
 
 def find_visible_points(values: Array, n_intervals: int = N_INTERVALS) -> NDArray[np.intp]:

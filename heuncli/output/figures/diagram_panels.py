@@ -68,12 +68,12 @@ class DisplayScales(NamedTuple):
     @property
     def s(self) -> float:
         """The number of display units in a metre."""
-        return self.length.size
+        return self.length.per_si
 
     @property
     def value(self) -> float:
         """The number of display units in one SI unit of the quantity."""
-        return self.quantity.size
+        return self.quantity.per_si
 
 
 def make_panel(

@@ -16,6 +16,7 @@ so M1 > 0 pulls on the side of e2, M2 > 0 on that of -e1. The ordinates of M1 po
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from enum import Enum
 
 import numpy as np
 
@@ -55,11 +56,20 @@ REFERENCES = {
 }
 HEIGHT = 104.0  # pixels; the axis of the sketch is in pixels, too, with the bar about 0
 UPPER, LOWER = 44.0, 60.0  # pixels above and below the bar's axis
-HALF_DEPTH = 5.0  # of the bar
+HALF_DEPTH = 5.0  # half the depth of the drawn bar
 ARROW_LENGTH = 24.0
-DIMENSION, TICK = 48.0, 4.0  # of the dimension line below the axis, and half of its ticks
+DIMENSION, TICK = 48.0, 4.0  # distance of the dimension line below the axis, and half the height of its ticks
 SYMBOLS = {"support": "foot", "clamp": "clamp", "joint": "circle", "mass": "mass", "couple": "turning"}  # else arrows
 DOWN = (0.0, -1.0)
+
+
+class Verdict(Enum):
+    """What a quantity is along a bar."""
+
+    SHOWN = "it differs from zero somewhere, or is open somewhere"
+    ZERO = "zero but for rounding"
+    WITHIN_ERROR = "zero within its stated error, while others of its unit are larger than theirs"
+    UNKNOWN = "no larger than its stated error, as all others of its unit"
 
 
 def make_diagrams(
@@ -157,7 +167,7 @@ def _choose_quantities(bars: Sequence[BarCurves], wanted: str) -> tuple[list[str
 
     wanted: only those that begin with these words; slopes are drawn only if they are wanted by name
     """
-    zero, within, shown = list[str](), list[str](), list[str]()
+    zero, zero_within_error, shown = list[str](), list[str](), list[str]()
     common = [q for q in bars[0].bar.quantities if all(q in bar.bar.quantities for bar in bars)]
     for quantity in common:
         if quantity != wanted and (
@@ -165,13 +175,17 @@ def _choose_quantities(bars: Sequence[BarCurves], wanted: str) -> tuple[list[str
         ):
             continue
         verdicts = {_classify(bar, quantity) for bar in bars}
-        matching_list = zero if verdicts == {"zero"} else within if verdicts <= {"zero", "within"} else shown
-        matching_list.append(quantity)
+        if verdicts == {Verdict.ZERO}:
+            zero.append(quantity)
+        elif verdicts <= {Verdict.ZERO, Verdict.WITHIN_ERROR}:
+            zero_within_error.append(quantity)
+        else:
+            shown.append(quantity)
     notes = [f"all zero, not drawn: {_join_symbols(zero)}"] if zero else []
-    if within:
-        error = {bars[0].bar.find_unit(q): max(bar.bar.find_error(q) for bar in bars) for q in within}
+    if zero_within_error:
+        error = {bars[0].bar.find_unit(q): max(bar.bar.find_error(q) for bar in bars) for q in zero_within_error}
         errors_text = ", ".join(f"{format_error(size)} {unit}" for unit, size in error.items())
-        notes.append(f"zero within the stated error ({errors_text}), not drawn: {_join_symbols(within)}")
+        notes.append(f"zero within the stated error ({errors_text}), not drawn: {_join_symbols(zero_within_error)}")
     partly_open = [q for q in shown if any(_is_open_at_times(bar, q) for bar in bars)]
     if partly_open:
         notes.append(f"open at some times, not included in the band: {_join_symbols(partly_open)}")
@@ -188,17 +202,17 @@ def _is_open_at_times(bar: BarCurves, quantity: str) -> bool:
     return bool(has_known) and bar.bar.is_open_somewhere(quantity)
 
 
-def _classify(curves: BarCurves, quantity: str) -> str:
-    """Classify a quantity as "zero", "within" its error, "unknown", or "some"; what is open is "some"."""
+def _classify(curves: BarCurves, quantity: str) -> Verdict:
+    """Classify a quantity by its largest magnitude, its rounding and its stated error; what is open is shown."""
     bar, magnitude = curves.bar, curves.find_magnitude(quantity)
     if curves.is_partly_open(quantity):
-        return "some"
+        return Verdict.SHOWN
     if magnitude <= bar.stated_errors.rounding_of(bar.find_unit(quantity)) or magnitude == 0.0:
-        return "zero"
+        return Verdict.ZERO
     if not curves.is_zero(quantity):
-        return "some"
+        return Verdict.SHOWN
     family = [q for q in bar.quantities if bar.find_unit(q) == bar.find_unit(quantity)]
-    return "within" if any(not curves.is_zero(q) for q in family) else "unknown"
+    return Verdict.WITHIN_ERROR if any(not curves.is_zero(q) for q in family) else Verdict.UNKNOWN
 
 
 def _make_panels(
@@ -213,12 +227,12 @@ def _make_panels(
     """Yield the sketches of the bars of a section, and the panels of its quantities on the same axis."""
     length = max(bar.bar.length for bar in bars)
     style = choose_reader_style("m", length, units)
-    x = Scaling(f"s [{style.unit}]", *choose_ends(0.0, style.size * length, margin=0.02))
+    x = Scaling(f"s [{style.unit}]", *choose_ends(0.0, style.per_si * length, margin=0.02))
     sketched = _list_distinct_bars(bars)
     for source_name, bar in sketched.items():
         title = f"{name}: {source_name}" if len(sketched) > 1 else name * has_title
-        yield make_sketch(_mark_couples(bar), x, bar.length, style.size, style.unit, title)
-    places = sorted({style.size * attachment.s for bar in sketched.values() for attachment in bar.attachments})
+        yield make_sketch(_mark_couples(bar), x, bar.length, style.per_si, style.unit, title)
+    places = sorted({style.per_si * attachment.s for bar in sketched.values() for attachment in bar.attachments})
     for k, quantity in enumerate(quantities):
         panel = make_panel(quantity, bars, units, style, is_inverted=tension_side and quantity in INVERTED)
         symbol = quantity.rpartition(".")[2]
@@ -262,23 +276,23 @@ def _mark_couples(bar: WholeBar) -> list[BarAttachment]:
 
 
 def make_sketch(
-    attachments: Sequence[BarAttachment], x: Scaling, length: float, size: float, unit: str, title: str = ""
+    attachments: Sequence[BarAttachment], x: Scaling, length: float, per_si: float, unit: str, title: str = ""
 ) -> Panel:
     """Make the sketch of a bar on the horizontal axis of its diagrams.
 
-    length: of the bar [m]; size: display units in a metre
+    length: of the bar [m]; per_si: display units in a metre
     """
-    items = tuple(_iter_items(attachments, length, size, unit))
+    items = tuple(_iter_items(attachments, length, per_si, unit))
     return Panel(x._replace(hides_label=True), Scaling("", -LOWER, UPPER), items, HEIGHT, is_bare=True, title=title)
 
 
-def _iter_items(attachments: Sequence[BarAttachment], length: float, size: float, unit: str) -> Iterator[Item]:
+def _iter_items(attachments: Sequence[BarAttachment], length: float, per_si: float, unit: str) -> Iterator[Item]:
     """Yield the bar, what acts on it, and the dimension line."""
-    end = size * length
+    end = per_si * length
     corners = np.array([[0.0, -HALF_DEPTH], [end, -HALF_DEPTH], [end, HALF_DEPTH], [0.0, HALF_DEPTH]])
     yield Polygon("bar", corners, is_filled=True)
     for attachment in attachments:
-        s = size * attachment.s
+        s = per_si * attachment.s
         symbol = SYMBOLS.get(attachment.kind)
         if symbol is None:
             yield Arrow(s, HALF_DEPTH + ARROW_LENGTH, 0.0, -ARROW_LENGTH, None)
@@ -292,8 +306,8 @@ def _iter_items(attachments: Sequence[BarAttachment], length: float, size: float
     for attachment in attachments:
         texts.setdefault(attachment.s, []).append(attachment.name.replace("_", " "))
     for s, names in texts.items():
-        yield PlaceLabel(size * s, HALF_DEPTH, ", ".join(names), ", ".join(names))
-    ticks = sorted({0.0, end, *(size * attachment.s for attachment in attachments)})
+        yield PlaceLabel(per_si * s, HALF_DEPTH, ", ".join(names), ", ".join(names))
+    ticks = sorted({0.0, end, *(per_si * attachment.s for attachment in attachments)})
     strokes = [[(0.0, -DIMENSION), (end, -DIMENSION)]]
     strokes += [[(s, -DIMENSION - TICK), (s, -DIMENSION + TICK)] for s in ticks]
     yield Strokes(np.array(strokes))

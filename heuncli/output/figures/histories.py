@@ -98,7 +98,7 @@ def make_history(
         items = [
             *words,
             *_draw_blanks(sources, courses, x, x_axis),
-            *(item for pen, curve in points_of_unit for item in draw_points(curve, pen, x_axis.size, style.size)),
+            *(item for pen, curve in points_of_unit for item in draw_points(curve, pen, x_axis.per_si, style.per_si)),
             *draw_curves(courses, x, y, style, x_axis, height),
         ]
         title, legend = _choose_names(courses)
@@ -117,7 +117,7 @@ def _make_case_figure(sources: Sequence[FigureSource], groups: dict[str, list[Pa
         paths = list(dict.fromkeys(curve.course.path for curve in courses))
         own = [curve._replace(pen=paths.index(curve.course.path)) for curve in courses]
         style = _choose_style(unit, own, None, units)
-        values = style.size * np.array([curve.course.values[0] for curve in own])
+        values = style.per_si * np.array([curve.course.values[0] for curve in own])
         low, high = _find_range(values)
         ends = choose_ends(min(low, 0.0), max(high, 0.0), zero=True, margin=BAR_MARGIN)
         captions = {curve.pen: describe_number(curve.source, curve.course.path) for curve in own}
@@ -158,7 +158,7 @@ def _choose_x_axis(
         return HorizontalAxis(None, "s", 1.0)
     largest = max((float(np.nanmax(np.abs(curve.x), initial=0.0)) for curve in curves), default=0.0)
     style = choose_reader_style(find_unit(x_path, sources[0].study.spec), largest, units)
-    return HorizontalAxis(x_path, style.unit, style.size)
+    return HorizontalAxis(x_path, style.unit, style.per_si)
 
 
 def _choose_style(
@@ -167,7 +167,7 @@ def _choose_style(
     """Choose how the numbers of a panel are written; of a path in the unit of its horizontal axis."""
     peaks = [abs(peak.value) for curve in courses for peak in (curve.course.low, curve.course.high)]
     style = choose_number_style(unit, max((peak for peak in peaks if math.isfinite(peak)), default=0.0), units)
-    return style if x_axis is None else style._replace(unit=x_axis.unit, size=x_axis.size)
+    return style if x_axis is None else style._replace(unit=x_axis.unit, per_si=x_axis.per_si)
 
 
 def _join_label(words: str, unit: str) -> str:
@@ -224,7 +224,7 @@ def _make_x_axis(
     values = [curve.x for curve in curves] + [curve.x for curve in measured_points]
     if x_axis.path is None:
         values += [source.study.results.time for source in sources]
-    low, high = _find_range(np.concatenate(values) * x_axis.size)
+    low, high = _find_range(np.concatenate(values) * x_axis.per_si)
     words = "t" if x_axis.path is None else describe_number(sources[0], x_axis.path)
     label = _join_label(words, x_axis.unit)
     if low == high:  # the horizon leaves one instant only
@@ -241,7 +241,7 @@ def _make_y_axis(
     is_path: bool = False,
 ) -> Scaling:
     """Make the vertical axis of a panel: around the curves, from zero if that is near; is_path: of a point."""
-    label, size = _join_label(words, style.unit), style.size
+    label, per_si = _join_label(words, style.unit), style.per_si
     if _are_all_open(curves):
         return Scaling(label, 0.0, 1.0, tick_texts=((0.0, ""),))
     peaks = [peak.value for curve in curves for peak in (curve.course.low, curve.course.high)]
@@ -250,12 +250,12 @@ def _make_y_axis(
     )
     error = max(curve.course.error or 0.0 for curve in curves)
     margin = error if math.isfinite(error) else 0.0
-    band = size * (low - margin), size * (high + margin)  # of errors, which may extend beyond the curves
+    band = per_si * (low - margin), per_si * (high + margin)  # of errors, which may extend beyond the curves
     if not is_varying(low, high, error):
         low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
     if is_path:
-        return Scaling(label, *choose_ends(size * low, size * high))
-    low, high = choose_ends(size * low, size * high, zero=is_zero_near(low, high), margin=LABEL_MARGIN)
+        return Scaling(label, *choose_ends(per_si * low, per_si * high))
+    low, high = choose_ends(per_si * low, per_si * high, zero=is_zero_near(low, high), margin=LABEL_MARGIN)
     return Scaling(label, min(low, band[0]), max(high, band[1]))
 
 

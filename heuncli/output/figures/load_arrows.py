@@ -46,21 +46,21 @@ KINDS = ((JOINTS_PEN, 'joint on "to" body'), (COUPLED_PEN, "coupling"), (APPLIED
 class LoadDrawing(NamedTuple):
     """The loads of a figure, its view, and the scales of their arrows.
 
-    size: number of the figure's units in a metre
+    per_si: number of the figure's units in a metre
     side: larger side of the machine in that unit
     force_scale, moment_scale: lengths of 1 N and of 1 N·m in that unit
     """
 
     loads: ActingLoads
     view: SceneView
-    size: float
+    per_si: float
     side: float
     force_scale: float
     moment_scale: float
 
     def find_place(self, load: ActingLoad) -> Array:
         """Return where a load acts, (2,) in the unit of the figure."""
-        return np.asarray(self.size * self.view.project(load.place))
+        return np.asarray(self.per_si * self.view.project(load.place))
 
     def find_scale(self, load: ActingLoad) -> float:
         """Return the scale of a load."""
@@ -75,10 +75,10 @@ class LoadDrawing(NamedTuple):
         return load.is_moment and abs(float(self.view.compute_depth(load.vector))) >= MIN_FACING * load.magnitude
 
 
-def scale_loads(loads: ActingLoads, view: SceneView, size: float, side: float) -> LoadDrawing:
+def scale_loads(loads: ActingLoads, view: SceneView, per_si: float, side: float) -> LoadDrawing:
     """Choose the scales of the arrows, so that the largest force and moment have a fixed length in the figure."""
     largest = [loads.find_largest(moments=moments) or math.inf for moments in (False, True)]
-    return LoadDrawing(loads, view, size, side, LONGEST_ARROW * side / largest[0], LONGEST_MOMENT * side / largest[1])
+    return LoadDrawing(loads, view, per_si, side, LONGEST_ARROW * side / largest[0], LONGEST_MOMENT * side / largest[1])
 
 
 def draw_loads(drawing: LoadDrawing, window: Window) -> Iterator[Arrow | Strokes | Symbol]:
@@ -154,7 +154,7 @@ def _find_tails(distributed: DistributedLoad, drawing: LoadDrawing) -> tuple[Arr
     densities = distributed.densities[0] + shares * (distributed.densities[1] - distributed.densities[0])
     scale = HIGHEST_DISTRIBUTED * drawing.side / _find_densest(drawing.loads)
     arrows = scale * drawing.view.project(densities)
-    return drawing.size * drawing.view.project(places) - arrows, arrows
+    return drawing.per_si * drawing.view.project(places) - arrows, arrows
 
 
 def _draw_distributed_load(distributed: DistributedLoad, drawing: LoadDrawing) -> Iterator[Arrow | Strokes]:
@@ -172,11 +172,11 @@ def iter_key_arrows(drawing: LoadDrawing, arrows: Sequence[Arrow], units: Units)
         if not loads.select(moments=moments):
             continue
         style = loads.choose_style(units, moments=moments)
-        value = round_down(style.size * loads.find_largest(moments=moments))
+        value = round_down(style.per_si * loads.find_largest(moments=moments))
         text = f"{format_short(value)} {style.unit}"
         for pen, words in KINDS:
             if (pen, moments) in drawn:
-                yield KeyArrow(scale * value / style.size, pen, f"{text} {words}", is_double=moments)
+                yield KeyArrow(scale * value / style.per_si, pen, f"{text} {words}", is_double=moments)
 
 
 def round_down(value: float) -> float:

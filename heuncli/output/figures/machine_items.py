@@ -78,7 +78,7 @@ def _draw_pieces(posed_machine: PosedMachine, body: BodyGeometry, k: int) -> Ite
     pen = posed_machine.pens[body.name]
     for solid in posed_machine.solids[body.name]:
         places = posed_machine.poses.locate_points(body.name, solid.surface.corners, k)
-        contour = compute_convex_hull(posed_machine.size * posed_machine.view.project(places))
+        contour = compute_convex_hull(posed_machine.per_si * posed_machine.view.project(places))
         if not solid.surface.convex:
             yield _draw_mesh(posed_machine, body, solid, k)
             continue
@@ -155,7 +155,7 @@ def _draw_mesh(posed_machine: PosedMachine, body: BodyGeometry, solid: SolidEdge
     depth = float(
         posed_machine.view.compute_depth(posed_machine.poses.locate_points(body.name, solid.surface.corners, k)).mean()
     )
-    return DrawnPiece(depth, sum(abs(compute_area(posed_machine.size * line)) for line in lines), tuple(items))
+    return DrawnPiece(depth, sum(abs(compute_area(posed_machine.per_si * line)) for line in lines), tuple(items))
 
 
 def draw_mass_marks(posed_machine: PosedMachine, k: int) -> Iterator[Symbol]:
@@ -343,7 +343,7 @@ def draw_ropes(posed_machine: PosedMachine, k: int) -> Iterator[Strokes]:
     """Draw all ropes at instant k."""
     for rope in posed_machine.machine.ropes:
         for line in iter_rope_lines(rope, posed_machine.poses, k):
-            flat = posed_machine.size * posed_machine.view.project(line)
+            flat = posed_machine.per_si * posed_machine.view.project(line)
             yield Strokes(
                 np.stack([flat[:-1], flat[1:]], axis=1),
                 LOAD_PEN,
@@ -358,11 +358,11 @@ def draw_marks(posed_machine: PosedMachine, k: int) -> Iterator[Symbol]:
         places, directions = mark.locate(posed_machine.poses)
         seen_direction = posed_machine.view.project(directions[k])
         if float(np.hypot(*seen_direction)) > MIN_SEEN * float(np.linalg.norm(directions[k])):
-            place = posed_machine.size * posed_machine.view.project(places[k])
+            place = posed_machine.per_si * posed_machine.view.project(places[k])
             yield Symbol(*to_pair(place), mark.symbol, to_pair(seen_direction), None, mark.description)
 
 
 def iter_mark_places(posed_machine: PosedMachine) -> Iterator[Array]:
     """Yield the places of marks at all instants, (n, 2) each."""
     for mark in posed_machine.machine.marks:
-        yield posed_machine.size * posed_machine.view.project(mark.locate(posed_machine.poses)[0])
+        yield posed_machine.per_si * posed_machine.view.project(mark.locate(posed_machine.poses)[0])

@@ -103,11 +103,11 @@ def _make_panel(source: BalancedScene, quantity: str, high: float, units: Units)
     """Make the panel of one quantity, a bar for each order."""
     results = source.results
     style = choose_number_style(get_unit(results, quantity), high, units)
-    size = style.size
+    per_si = style.per_si
     places = {order: float(k) for k, order in enumerate(results.shown_orders)}
     names = tuple((place, f"{order:g}") for order, place in places.items())
     x = Scaling("order", -0.5, max(len(places), 1) - 0.5, tick_texts=names)
-    y = Scaling(f"{AXIS_NAMES[quantity]} [{style.unit}]", 0.0, choose_ends(0.0, size * high, margin=0.25)[1])
+    y = Scaling(f"{AXIS_NAMES[quantity]} [{style.unit}]", 0.0, choose_ends(0.0, per_si * high, margin=0.25)[1])
     point_phrase = f", about {format_reference_point(results)}" if quantity == "moment" else ""
     title = f"{f'{source.name}: ' if source.name else ''}{QUANTITY_TITLES[quantity]}{point_phrase}"
     rows = [(QUANTITY_TITLES[quantity], results.orders[quantity], PEN)]
@@ -119,9 +119,9 @@ def _make_panel(source: BalancedScene, quantity: str, high: float, units: Units)
     for k, (name, orders, pen) in enumerate(rows):
         offset = (k + 0.5) * width - 0.5 * GROUP_WIDTH
         drawn = [row for row in orders if row.order in places and row.peak > 0.0]
-        sizes = {places[row.order] + offset: size * row.peak for row in drawn}
+        sizes = {places[row.order] + offset: per_si * row.peak for row in drawn}
         items.append(Bars(name, np.array(list(sizes)), np.array(list(sizes.values())), pen, 0.9 * width))
-        items += _label_bars(sizes, size * high, pen)
+        items += _label_bars(sizes, per_si * high, pen)
     return Panel(x, y, tuple(items), title=title)
 
 

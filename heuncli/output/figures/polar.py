@@ -77,23 +77,23 @@ def _make_panel(
     """Make the panel of the curves of one unit in one plane, with equal scales about the origin."""
     known_largest = [largest_vector for curve in group if (largest_vector := largest[curve.pen]) is not None]
     style = choose_number_style(group[0].unit, max((vector.magnitude for vector in known_largest), default=0.0), units)
-    size = style.size
-    unknown = size * max(
+    per_si = style.per_si
+    unknown = per_si * max(
         (largest_vector.error for largest_vector in known_largest if largest_vector.magnitude <= largest_vector.error),
         default=0.0,
     )
     x_limits, y_limits = _choose_limits(
-        [size * curve.x for curve in group], [size * curve.y for curve in group], unknown
+        [per_si * curve.x for curve in group], [per_si * curve.y for curve in group], unknown
     )
     names = group[0].plane.names
     x, y = Scaling(names[0], *x_limits), Scaling(names[1], *y_limits)
-    tips = [size * np.column_stack([curve.x, curve.y]) for curve in group]
-    arrows = [size * np.linspace((0.0, 0.0), (vector.x, vector.y), N_ARROW_POINTS) for vector in known_largest]
+    tips = [per_si * np.column_stack([curve.x, curve.y]) for curve in group]
+    arrows = [per_si * np.linspace((0.0, 0.0), (vector.x, vector.y), N_ARROW_POINTS) for vector in known_largest]
     items: list[Item] = [*make_polar_grid((x, y), [*tips, *arrows], names, style.unit)]
     items.append(Spot(0.0, 0.0, "", None, "square", is_filled=True))
     for curve in group:
         items += _draw_curve(curve, largest[curve.pen], style, (x, y))
-    items += _draw_marks(group, size, MARK_SPACE * (x.high - x.low), LABEL_SPACE * (x.high - x.low))
+    items += _draw_marks(group, per_si, MARK_SPACE * (x.high - x.low), LABEL_SPACE * (x.high - x.low))
     captions = [curve.caption for curve in group]
     title = f"{captions[0]}: {describe_frame(group[0], axes)}" if len(group) == 1 else describe_frame(group[0], axes)
     legend = () if len(group) == 1 else tuple((curve.caption, curve.pen) for curve in group)
@@ -124,17 +124,17 @@ def _draw_curve(
     curve: TipCurve, largest: LargestVector | None, style: ReaderStyle, sides: tuple[Scaling, Scaling]
 ) -> Iterator[Item]:
     """Draw a curve with its direction and its largest vector."""
-    x, y = style.size * curve.x, style.size * curve.y
+    x, y = style.per_si * curve.x, style.per_si * curve.y
     yield Trace(curve.name, *_break_at_jumps(curve.turning.times, x, y, sides[0].high - sides[0].low), curve.pen)
     pixel_size = max((sides[0].high - sides[0].low) / MAX_WIDTH, (sides[1].high - sides[1].low) / HEIGHT)
     yield from draw_direction_arrows(x, y, curve.pen, ARROW_LENGTH * pixel_size)
     if largest is not None and largest.magnitude > 0.0 and not largest.is_constant:
-        yield Arrow(0.0, 0.0, style.size * largest.x, style.size * largest.y, curve.pen, is_thin=True)
+        yield Arrow(0.0, 0.0, style.per_si * largest.x, style.per_si * largest.y, curve.pen, is_thin=True)
         text = f"{format_magnitude(largest, style)} at {describe_angle(curve, largest)}"
-        yield Spot(style.size * largest.x, style.size * largest.y, text, curve.pen, "circle", is_filled=True)
+        yield Spot(style.per_si * largest.x, style.per_si * largest.y, text, curve.pen, "circle", is_filled=True)
 
 
-def _draw_marks(group: Sequence[TipCurve], size: float, mark_space: float, label_space: float) -> Iterator[Spot]:
+def _draw_marks(group: Sequence[TipCurve], per_si: float, mark_space: float, label_space: float) -> Iterator[Spot]:
     """Draw the marks along curves, with a label each quarter turn, and those of firing.
 
     mark_space, label_space: smallest distances of marks, and of marks with labels, in the unit of the figure; those at
@@ -143,7 +143,7 @@ def _draw_marks(group: Sequence[TipCurve], size: float, mark_space: float, label
     for curve in group:
         marks = [(time, text, "circle", curve.pen) for time, text in _find_marks(curve.turning)]
         marks += [(time, text, "diamond", FIRING_PEN) for time, text in find_firings(curve)]
-        vectors = size * find_vectors(curve.study, curve.path, np.array([mark[0] for mark in marks]))
+        vectors = per_si * find_vectors(curve.study, curve.path, np.array([mark[0] for mark in marks]))
         places = zip(*(components.tolist() for components in curve.plane.project(vectors)), strict=True)
         spots = [
             Spot(x, y, text, pen, shape, is_filled=shape == "diamond")
@@ -309,7 +309,7 @@ def make_notes(curve: TipCurve, largest: LargestVector | None, units: Units) -> 
     normal_components = project_vectors(curve.vectors, curve.plane.normal)
     largest_normal = float(np.nanmax(np.abs(normal_components), initial=0.0))
     if largest_normal > max(tolerances.TOLD_ACROSS * largest.magnitude, largest.error):
-        yield f"{curve.caption}: normal to the plane up to {style.size * largest_normal:.4g} {style.unit}, not drawn"
+        yield f"{curve.caption}: normal to the plane up to {style.per_si * largest_normal:.4g} {style.unit}, not drawn"
     if np.isnan(curve.x + curve.y).any():
         yield f"{curve.caption}: partly open or unknown, not drawn there"
     elif np.isnan(normal_components).any():

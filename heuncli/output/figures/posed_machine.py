@@ -55,7 +55,7 @@ class PosedMachine:
     """A machine at its poses of some instants, as seen in a view.
 
     centers: centres of mass, body axes
-    size: number of display units in a metre
+    per_si: number of display units in a metre
     """
 
     spec: Spec
@@ -63,11 +63,11 @@ class PosedMachine:
     centers: Mapping[str, Array]
     poses: Poses
     view: SceneView
-    size: float
+    per_si: float
 
     def project(self, body: str, points: Array, k: int) -> Array:
         """Project points (..., 3) of a body at instant k to the view, (..., 2) in the display unit."""
-        return self.size * self.view.project(self.poses.locate_points(body, points, k))
+        return self.per_si * self.view.project(self.poses.locate_points(body, points, k))
 
     def project_direction(self, body: str, axis: Array, k: int) -> Array:
         """Project a direction in a body's axes to the view, (2,) with its visible length."""

@@ -88,7 +88,7 @@ def make_mark_labels(posed_machine: PosedMachine, k: int) -> Iterator[PlaceLabel
     """Yield the labels of stops and latches."""
     for mark in posed_machine.machine.marks if posed_machine.has_names else ():
         if mark.name:
-            x, y = to_pair(posed_machine.size * posed_machine.view.project(mark.locate(posed_machine.poses)[0][k]))
+            x, y = to_pair(posed_machine.per_si * posed_machine.view.project(mark.locate(posed_machine.poses)[0][k]))
             yield PlaceLabel(x, y, mark.name, mark.name)
 
 

@@ -144,9 +144,9 @@ def make_machine_figure(
             *machine_items.iter_mark_places(posed_machine),
         ],
     )
-    view, size, side = posed_machine.view, posed_machine.size, machine_window.side
-    loads = loads.drop_slight_moments(side / size)
-    drawing = scale_loads(loads, view, size, side)
+    view, per_si, side = posed_machine.view, posed_machine.per_si, machine_window.side
+    loads = loads.drop_slight_moments(side / per_si)
+    drawing = scale_loads(loads, view, per_si, side)
     load_items = list(draw_loads(drawing, machine_window))
     arrows = [item for item in load_items if isinstance(item, Arrow)]
     window = machine_window.extend_to_arrows(arrows)
@@ -215,10 +215,10 @@ def _make_key(
     gravity = view.project(acceleration / size) if size > 0.0 else np.zeros(2)
     is_visible = float(np.hypot(*gravity)) > MIN_VISIBLE_GRAVITY
     length = round_down(2.0 * SCALE_SHARE * float(window.high[0] - window.low[0]))
-    unit, per_metre = choose_prefix("m", length / posed_machine.size)
+    unit, per_metre = choose_prefix("m", length / posed_machine.per_si)
     if units.is_chosen("m"):
         unit, per_metre = units.find("m")
-    words = f"{format_short(length / posed_machine.size * per_metre)} {unit}"
+    words = f"{format_short(length / posed_machine.per_si * per_metre)} {unit}"
     return SpaceKey(tuple(axes), to_pair(gravity) if is_visible else None, (length, words), tuple(arrows), numbers)
 
 
@@ -286,7 +286,7 @@ def make_reported_paths(source: FigureSource) -> list[PointPath]:
 
 def project_path(posed_machine: PosedMachine, path: PointPath) -> Array:
     """Project a path to the view, (n, 2) in the unit of the figure."""
-    return np.asarray(posed_machine.size * posed_machine.view.project(path.positions))
+    return np.asarray(posed_machine.per_si * posed_machine.view.project(path.positions))
 
 
 def draw_paths(posed_machine: PosedMachine, paths: Sequence[PointPath]) -> Iterator[Trace]:

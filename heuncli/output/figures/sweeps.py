@@ -122,14 +122,14 @@ def _draw_curves(picked_table: SweepSelection, units: Units) -> FigureParts:
     panels = []
     for measure in picked_table.table.measures:
         style = _choose_style(measure, units)
-        shown_unit, size = style.unit, style.size
+        shown_unit, per_si = style.unit, style.per_si
         items: list[Item] = []
-        y = make_measure_axis(shown_unit, size * measure.values, size * measure.errors)
+        y = make_measure_axis(shown_unit, per_si * measure.values, per_si * measure.errors)
         for number, (name, rows) in enumerate(groups):
             order = rows[np.argsort(x_variable.values[rows], kind="stable")]
-            x_values, values = x_variable.values[order], size * measure.values[order]
+            x_values, values = x_variable.values[order], per_si * measure.values[order]
             if not x_variable.texts:  # there is nothing between names
-                items += _draw_curve(name or measure.text, x_values, values, size * measure.errors[order], y, number)
+                items += _draw_curve(name or measure.text, x_values, values, per_si * measure.errors[order], y, number)
             items += _draw_points(x_variable, measure, style, order, number, mark_extremes=len(groups) == 1)
         height = CURVE_HEIGHT if len(picked_table.table.measures) == 1 else PANEL_HEIGHT
         panels.append(Panel(x.scaling, y, tuple(items), height, title=describe_measure(measure.text)))
@@ -195,7 +195,7 @@ def _draw_points(
     """Draw the points of a curve if they are few; mark_extremes: label the largest and the smallest with their
     places.
     """
-    x, values = x_variable.values[order], style.size * measure.values[order]
+    x, values = x_variable.values[order], style.per_si * measure.values[order]
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return
@@ -219,8 +219,8 @@ def _draw_bars(picked_table: SweepSelection, units: Units) -> FigureParts:
     panels = []
     for measure in picked_table.table.measures:
         style = _choose_style(measure, units)
-        shown_unit, size = style.unit, style.size
-        values, errors = size * measure.values, size * measure.errors
+        shown_unit, per_si = style.unit, style.per_si
+        values, errors = per_si * measure.values, per_si * measure.errors
         y = make_measure_axis(shown_unit, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
         items: list[Item] = [Bars(measure.text, x_variable.values, values)]
         has_band = np.isfinite(values) & np.array([is_visible(error, y) for error in errors.tolist()])
@@ -232,7 +232,7 @@ def _draw_bars(picked_table: SweepSelection, units: Units) -> FigureParts:
             )
             items.append(Strokes(np.stack([low, high], axis=1), width=1.4))
         items += [
-            Spot(a, b, format_number(b / size, error / size, style), 0, "")
+            Spot(a, b, format_number(b / per_si, error / per_si, style), 0, "")
             for a, b, error in zip(x_variable.values.tolist(), values.tolist(), errors.tolist(), strict=True)
             if np.isfinite(b) and len(values) <= MAX_NAMES
         ]
@@ -254,13 +254,13 @@ def _draw_fields(picked_table: SweepSelection, units: Units) -> FigureParts:
     notes = [axis.note for axis in (x, y) if axis.note]
     for measure in picked_table.table.measures:
         style = _choose_style(measure, units)
-        shown_unit, size = style.unit, style.size
+        shown_unit, per_si = style.unit, style.per_si
         values = np.full((len(y_variable.levels), len(x_variable.levels)), np.nan)
         cell_indices = (
             np.searchsorted(y_variable.levels, y_variable.values),
             np.searchsorted(x_variable.levels, x_variable.values),
         )
-        values[cell_indices] = size * measure.values
+        values[cell_indices] = per_si * measure.values
         cells = Cells(
             measure.text, find_cell_edges(x_variable, x.scaling), find_cell_edges(y_variable, y.scaling), values
         )
@@ -310,8 +310,8 @@ def _draw_scatter(picked_table: SweepSelection, units: Units) -> FigureParts:
     panels = []
     for measure, variable in product(picked_table.table.measures, chosen):
         style = _choose_style(measure, units)
-        shown_unit, size = style.unit, style.size
-        values = size * measure.values
+        shown_unit, per_si = style.unit, style.per_si
+        values = per_si * measure.values
         y, x = make_measure_axis(shown_unit, values, np.zeros_like(values)), make_axis(variable)
         drawn_points = zip(variable.values[::stride].tolist(), values[::stride].tolist(), strict=True)
         spots = tuple(Spot(a, b, "", 0) for a, b in drawn_points if np.isfinite(b))

@@ -323,18 +323,18 @@ def make_share_cells(
     for family, scale in find_family_scales(lines).items():
         members = [i for i, line in enumerate(lines) if find_family(line) == family]
         row = lines[members[0]].row
-        size = stated_errors.units.find(row.unit)[1]
+        per_si = stated_errors.units.find(row.unit)[1]
         kind = f"{row.error_kind} {BY_CAUSE}"
         number_style, error = (
             stated_errors.choose_style(kind, row.unit, scale),
-            size * stated_errors.error_of(kind, row.unit),
+            per_si * stated_errors.error_of(kind, row.unit),
         )
-        flat = iter(write_numbers([size * x for i in members for x in numbers[i] if x is not None], number_style))
+        flat = iter(write_numbers([per_si * x for i in members for x in numbers[i] if x is not None], number_style))
         for i in members:
             cells[i] = [
                 None
                 if x is None
-                else make_cell(NumberCell(size * x, error, None, next(flat)), x, lines[i], stated_errors)
+                else make_cell(NumberCell(per_si * x, error, None, next(flat)), x, lines[i], stated_errors)
                 for x in numbers[i]
             ]
     return cells

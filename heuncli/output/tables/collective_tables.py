@@ -114,8 +114,8 @@ def make_tables(collective: Collective, units: Units, *, has_impacts: bool) -> l
 
 def make_ranges_table(collective: Collective, units: Units, *, has_impacts: bool) -> OutputTable:
     """Make the table of cycles by class of range, with their shares of the damage."""
-    unit, size = units.find(collective.history.unit)
-    limits = format_limits(collective, collective.matrix.ranges * size, size)
+    unit, per_si = units.find(collective.history.unit)
+    limits = format_limits(collective, collective.matrix.ranges * per_si, per_si)
     larger_counts = collective.counts[::-1].cumsum()[::-1]
     columns = [
         OutputColumn("range above", unit=unit),
@@ -156,10 +156,10 @@ def format_times(collective: Collective) -> str:
 
 def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> Iterator[str]:
     """Yield the notes below the table of ranges."""
-    unit, size = units.find(collective.history.unit)
+    unit, per_si = units.find(collective.history.unit)
     low, high = format_values(
-        np.array([collective.history.values.min(), collective.history.values.max()]) * size,
-        collective.history.error * size,
+        np.array([collective.history.values.min(), collective.history.values.max()]) * per_si,
+        collective.history.error * per_si,
     )
     yield (
         f"{format_cycles(collective.total_cycles)} from {collective.points} reversals between {low} "
@@ -168,7 +168,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
     if not collective.total_cycles:
         yield NO_CYCLES
     if collective.below_error.cycles:
-        small = format_error(collective.below_error.range * size)
+        small = format_error(collective.below_error.range * per_si)
         yield (
             f"not counted: {format_cycles(collective.below_error.cycles)} of at most "
             f"{append_unit(small, unit)}, below the numerical error"
@@ -181,7 +181,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
 
 def make_equivalents_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of damage-equivalent ranges and their errors."""
-    unit, size = units.find(collective.history.unit)
+    unit, per_si = units.find(collective.history.unit)
     columns = (
         OutputColumn("slope m"), OutputColumn("cycles"), OutputColumn("range", unit=unit),
         OutputColumn("error", unit=unit),
@@ -190,8 +190,8 @@ def make_equivalents_table(collective: Collective, units: Units) -> OutputTable:
         (
             float(equivalent.slope),
             make_count_cell(equivalent.cycles),
-            NumberCell(equivalent.range * size, equivalent.error * size),
-            NumberCell(equivalent.error * size, write=format_error),
+            NumberCell(equivalent.range * per_si, equivalent.error * per_si),
+            NumberCell(equivalent.error * per_si, write=format_error),
         )
         for equivalent in collective.equivalents
     ]
@@ -203,10 +203,10 @@ def make_equivalents_table(collective: Collective, units: Units) -> OutputTable:
 
 def make_crossings_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of how often each level is crossed."""
-    unit, size = units.find(collective.history.unit)
+    unit, per_si = units.find(collective.history.unit)
     crossings = collective.crossings
     rows = zip(
-        format_limits(collective, crossings.levels * size, size),
+        format_limits(collective, crossings.levels * per_si, per_si),
         *(
             map(make_count_cell, counts)
             for counts in (crossings.count_by_reference(REFERENCE), crossings.upward, crossings.downward)
@@ -227,9 +227,10 @@ def make_crossings_table(collective: Collective, units: Units) -> OutputTable:
 
 def make_matrix_table(collective: Collective, units: Units) -> OutputTable:
     """Make the table of cycles by range and mean, without empty classes."""
-    unit, size = units.find(collective.history.unit)
+    unit, per_si = units.find(collective.history.unit)
     limits, means = (
-        format_limits(collective, limits * size, size) for limits in (collective.matrix.ranges, collective.matrix.means)
+        format_limits(collective, limits * per_si, per_si)
+        for limits in (collective.matrix.ranges, collective.matrix.means)
     )
     shown = np.flatnonzero(collective.matrix.counts.any(axis=0)).tolist()
     columns = (
@@ -247,11 +248,11 @@ def make_matrix_table(collective: Collective, units: Units) -> OutputTable:
     return OutputTable(heading, columns, rows)
 
 
-def format_limits(collective: Collective, values: Array, size: float) -> list[str]:
+def format_limits(collective: Collective, values: Array, per_si: float) -> list[str]:
     """Format class limits or levels to a thousandth of their distance, without decimals where those suffice."""
     distance = float(np.abs(np.diff(values)).min(initial=np.inf))
     return format_values(
-        values, max(collective.history.error * size, min(1e-3 * distance, 1.0) if np.isfinite(distance) else 0.0)
+        values, max(collective.history.error * per_si, min(1e-3 * distance, 1.0) if np.isfinite(distance) else 0.0)
     )
 
 

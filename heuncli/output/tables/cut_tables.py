@@ -74,10 +74,10 @@ def _make_envelope(
     """Make the table of the lowest and highest value at each cut; quantities that are zero throughout are left out."""
     columns, cells, left_out = list[OutputColumn](), list[Sequence[Cell]](), False
     for i, channel in enumerate(series.channels):
-        unit, size = stated_errors.units.find(channel.unit)
+        unit, per_si = stated_errors.units.find(channel.unit)
         words: Sequence[str] = BOUNDS.get(channel.quantity, BOTH_BOUNDS)
-        error = size * stated_errors.find_error(channel)
-        both = [make_number_cells((size * bounds[word][i]).tolist(), styles[channel.unit], error) for word in words]
+        error = per_si * stated_errors.find_error(channel)
+        both = [make_number_cells((per_si * bounds[word][i]).tolist(), styles[channel.unit], error) for word in words]
         texts = [[cell.text for cell in column] for column in both]
         if {text for column in texts for text in column} == {"0"}:
             left_out = True
@@ -98,8 +98,8 @@ def _make_cuts_table(
     notes: Sequence[str],
 ) -> OutputTable:
     """Make a table with a row for each cut that begins with its position and side; cells: by columns."""
-    unit, size = series.length
-    positions = make_number_cells((size * series.s).tolist(), choose_style(size * largest_magnitude(series.s), 0.0))
+    unit, per_si = series.length
+    positions = make_number_cells((per_si * series.s).tolist(), choose_style(per_si * largest_magnitude(series.s), 0.0))
     sides = any(side is not None for side in series.side)
     rows = tuple(
         (positions[cut], *([series.side[cut] or ""] if sides else []), *(column[j] for column in cells))
@@ -117,25 +117,28 @@ def make_extremes_table(
     """Make the table of the lowest and highest value of each quantity over length and time, with place and instant."""
     extremes = select_extremes(series, extremes)
     styles = _choose_styles(series, stated_errors, extremes)
-    span = float(np.ptp(times))
+    span, has_times = float(np.ptp(times)), len(times) > 1
     rows: list[tuple[Cell, ...]] = []
     channels = series.channels[: len(extremes.low)]
     for i, channel in enumerate(channels):
-        unit, size = stated_errors.units.find(channel.unit)
-        ends = [size * float(extremes.low[i]), size * float(extremes.high[i])]
-        low, high = make_number_cells(ends, styles[channel.unit], size * stated_errors.find_error(channel))
+        unit, per_si = stated_errors.units.find(channel.unit)
+        ends = [per_si * float(extremes.low[i]), per_si * float(extremes.high[i])]
+        low, high = make_number_cells(ends, styles[channel.unit], per_si * stated_errors.find_error(channel))
         if low.text == high.text == "0":
             continue
         label, unit = channel.label, unit if unit != "1" else ""
         if low.text == high.text:
-            rows.append((label, unit, low, "", "", high, "", ""))
+            rows.append((label, unit, low, "", "", high, "", "") if has_times else (label, unit, low, "", high, ""))
+            continue
+        where = [format_place(place, series) for place in extremes.places[i]]
+        if not has_times:
+            rows.append((label, unit, low, where[0], high, where[1]))
             continue
         clock = write_times([float(extremes.low_at[i]), float(extremes.high_at[i])], span)
         low_at, high_at = (
-            "" if _is_constant(size * channel.values[:, series.find_nearest_cut(place)], styles[channel.unit]) else t
+            "" if _is_constant(per_si * channel.values[:, series.find_nearest_cut(place)], styles[channel.unit]) else t
             for place, t in zip(extremes.places[i], clock, strict=True)
         )
-        where = [format_place(place, series) for place in extremes.places[i]]
         rows.append((label, unit, low, where[0], low_at, high, where[1], high_at))
     ends_columns = [
         column
@@ -143,12 +146,10 @@ def make_extremes_table(
         for column in (
             OutputColumn(word),
             OutputColumn("at s", unit=series.length[0]),
-            OutputColumn("t", "instant", "s"),
+            *([OutputColumn("t", "instant", "s")] if has_times else []),
         )
     ]
     columns = (OutputColumn("", "text"), OutputColumn("", "text"), *ends_columns)
-    if len(times) == 1:
-        columns, rows = columns[:4] + columns[5:7], [(*row[:4], *row[5:7]) for row in rows]
     if not rows:
         return OutputTable(series.heading, notes=("all values 0",))
     is_open = any(format_cell(cell) == OPEN for row in rows for cell in row)
@@ -197,10 +198,10 @@ def _make_diagram(
     """Make the diagram at an instant, by its index, a row for each cut; is_beyond: whether it is beyond the horizon."""
     cells, columns = list[Sequence[Cell]](), list[OutputColumn]()
     for i, channel in enumerate(series.channels):
-        row, (unit, size) = channel.values[instant, shown_cuts], stated_errors.units.find(channel.unit)
+        row, (unit, per_si) = channel.values[instant, shown_cuts], stated_errors.units.find(channel.unit)
         columns.append(OutputColumn(channel.label, unit=unit, vector="loads" if i < len(series.loads) else ""))
         numbers = make_number_cells(
-            (size * row).tolist(), styles[channel.unit], size * stated_errors.find_error(channel)
+            (per_si * row).tolist(), styles[channel.unit], per_si * stated_errors.find_error(channel)
         )
         if is_beyond:
             values = zip(row.tolist(), numbers, strict=True)
@@ -240,8 +241,10 @@ def _is_constant(values: Array, number_style: Style) -> bool:
 def format_place(place: CutPosition, series: CutSeries) -> str:
     """Format a place: its distance, and between the ends the side of the load that acts there."""
     side = [place.side] if place.side and 0.0 < place.s < series.s[-1] else []
-    size = series.length[1]
-    return " ".join([*write_numbers([size * place.s], choose_style(size * largest_magnitude(series.s), 0.0)), *side])
+    per_si = series.length[1]
+    return " ".join(
+        [*write_numbers([per_si * place.s], choose_style(per_si * largest_magnitude(series.s), 0.0)), *side]
+    )
 
 
 def _format_hidden_cuts(series: CutSeries, shown_cuts: Indices) -> str:

@@ -166,11 +166,11 @@ def make_impact_list(report: ImpactReport, sizes: Array, shown_numbers: Indices,
     )
     impulse, moment = (
         make_number_cells(
-            (size * values).tolist(),
+            (per_si * values).tolist(),
             stated_errors.choose_style("reactions", unit, largest_magnitude(values)),
-            size * stated_errors.error_of("reactions", unit),
+            per_si * stated_errors.error_of("reactions", unit),
         )
-        for values, unit, (_, size) in zip(sizes.T, si_units, impulse_units, strict=True)
+        for values, unit, (_, per_si) in zip(sizes.T, si_units, impulse_units, strict=True)
     )
     clock = write_times(times.tolist(), float(np.ptp(report.results.time)) or float(np.ptp(times)))
     horizon = report.results.horizon

@@ -222,8 +222,8 @@ def _make_short_table(
         styles = choose_styles(group.rows, farthest[None, :], stated_errors)
         display_units = [stated_errors.units.find(row.unit) for row in group.rows]
         texts = [
-            number_style.write(size * value)
-            for number_style, value, (_, size) in zip(styles, farthest, display_units, strict=True)
+            number_style.write(per_si * value)
+            for number_style, value, (_, per_si) in zip(styles, farthest, display_units, strict=True)
         ]
         instants = np.where(lower, extremes.low_at, extremes.high_at).tolist()
         clock = write_times(instants, span)

@@ -126,9 +126,9 @@ def _format_sum(
     terms = {path: np.atleast_1d(np.asarray(factor, dtype=np.float64)) for path, factor in block["terms"].items()}
     if len(terms) > MAX_TERMS or not all(_is_force(path) for path in terms):
         return None
-    unit, size = stated_errors.units.find(si_unit)
+    unit, per_si = stated_errors.units.find(si_unit)
     values = np.asarray(block["value"], dtype=np.float64)
-    numbers = [size * value for value in (values[0], values[-1], np.nanmin(values), np.nanmax(values))]
+    numbers = [per_si * value for value in (values[0], values[-1], np.nanmin(values), np.nanmax(values))]
     texts = write_numbers(numbers, stated_errors.choose_style("reactions", si_unit, largest_magnitude(values)))
     if last_instant is not None:
         texts[1] = format_unclaimed(last_instant["value"][-1], si_unit, stated_errors, texts[1])

@@ -47,7 +47,7 @@ TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 NO_EXTREMES: Mapping[str, Extremes] = MappingProxyType({})
 AXIS: EntryKeys = ("foundation", "axis")
-RUN_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"
+SERIES_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"
 AXIS_NOTE = "the central axis has no extremes: show it at given times with --at or --all"
 SECTIONS = frozenset({"sections"})
 
@@ -132,6 +132,7 @@ class Page(NamedTuple):
         return tables
 
     def _collect_shares(self, results: Results) -> Mapping[str, Any]:
+        """Collect the loads by cause of all channels, by path."""
         from heuncli.output.tables import cause_tables
 
         return cause_tables.collect_shares(iter_channels(results, self.labels), results)
@@ -214,10 +215,12 @@ class Page(NamedTuple):
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
     def _make_last_tables(self, show_all: bool = False) -> list[OutputTable]:
+        """Make the tables at the end of the page: determinate sums, events, impulses."""
         sums = make_sums_table(self.results, self.stated_errors, self.last_instant)
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
 
     def _make_event_tables(self, show_all: bool) -> list[OutputTable]:
+        """Make the table of the instants at which conditions are met, if there are any."""
         if not self.results.events:
             return []
         from heuncli.output.tables.event_tables import make_events_table  # if there are conditions
@@ -225,6 +228,7 @@ class Page(NamedTuple):
         return [make_events_table(self.results, all_instants=show_all)]
 
     def _make_impulse_tables(self, show_all: bool) -> list[OutputTable]:
+        """Make the tables of impulses and impacts, if there are any."""
         if not self.results.impulses:
             return []
         from heuncli.output.tables.event_tables import ImpactReport, make_impulse_tables  # if there are impacts
@@ -255,13 +259,13 @@ def make_page(
 def select_instants(results: Results, which: slice) -> Results:
     """Return the results at some of their instants."""
 
-    def those(keys: tuple[str, ...], value: Any) -> Any:
+    def select(keys: tuple[str, ...], value: Any) -> Any:
         if isinstance(value, dict):
-            return {key: those((*keys, key), member) for key, member in value.items()}
+            return {key: select((*keys, key), member) for key, member in value.items()}
         row = find_quantity(keys)
         return value[which] if row is not None and row.is_timed else value
 
-    blocks = {block: those((block,), getattr(results, block)) for block in REPORT_OF}
+    blocks = {block: select((block,), getattr(results, block)) for block in REPORT_OF}
     sums = [_select_sum_instants(block, which) for block in results.certain_sums]
     return replace(results, time=results.time[which], certain_sums=sums, **blocks)
 
@@ -335,7 +339,9 @@ def make_tables_of_page(study: Study, searched: SearchedPage, query: TablesQuery
         if not extremes.is_searched:
             tables.insert(0, OutputTable("", notes=(NOT_SEARCHED,)))
         if page.has_cut_series and page.doubtful.instants:
-            tables.append(OutputTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + RUN_EXTREMES_SUFFIX,)))
+            tables.append(
+                OutputTable("", notes=(page.doubtful.note.removeprefix(f"{MARK} ") + SERIES_EXTREMES_SUFFIX,))
+            )
         if AXIS in query.selection.entries:
             tables.append(OutputTable("", notes=(AXIS_NOTE,)))
     tables = add_pins_note(tables, study)

@@ -164,7 +164,7 @@ def _choose_style(row: SummaryRow, summary: Summary) -> ReaderStyle:
     units = summary.labels.units
     largest = max(abs(other.value) for other in summary.rows if other.unit == row.unit)
     style = choose_reader_style(row.unit, largest, units, row.error)
-    digits = MIN_DIGITS - 1 - math.floor(math.log10(style.size * abs(row.value)))
+    digits = MIN_DIGITS - 1 - math.floor(math.log10(style.per_si * abs(row.value)))
     return style._replace(decimals=max(style.decimals, digits))
 
 
@@ -215,9 +215,9 @@ def _find_angle_unit(labels: Labels) -> tuple[str, float]:
 def _format_angle(row: SummaryRow, labels: Labels) -> str:
     if row.angle is None or row.is_constant:
         return ""
-    unit, size = _find_angle_unit(labels)
+    unit, per_si = _find_angle_unit(labels)
     decimals = 1 if unit == "deg" else 3
-    angle = round(size * row.angle, decimals) + 0.0  # no -0.0
+    angle = round(per_si * row.angle, decimals) + 0.0  # no -0.0
     return f"{angle:.{decimals}f}".replace("-", "−")
 
 

@@ -109,9 +109,9 @@ def make_cells(group: RowGroup, numbers: Array, stated_errors: StatedErrors) -> 
     """
     cells: list[list[NumberCell]] = [[] for _ in group.rows]
     styles = choose_styles(group.rows, numbers, stated_errors)
-    sizes = [stated_errors.units.find(row.unit)[1] for row in group.rows]
-    shown = numbers * np.array(sizes)
-    errors = [size * stated_errors.find_error(row) for size, row in zip(sizes, group.rows, strict=True)]
+    factors = [stated_errors.units.find(row.unit)[1] for row in group.rows]
+    shown = numbers * np.array(factors)
+    errors = [per_si * stated_errors.find_error(row) for per_si, row in zip(factors, group.rows, strict=True)]
     families = [_find_family(row) for row in group.rows]
     for family in dict.fromkeys(families):
         members = [i for i, other in enumerate(families) if other == family]

@@ -52,8 +52,8 @@ class TablePlan(NamedTuple):
 
 
 def _format_moment_point(results: Results, labels: Labels) -> str:
-    unit, size = labels.units.find("m")
-    point = size * np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
+    unit, per_si = labels.units.find("m")
+    point = per_si * np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
     place = f"({', '.join(f'{component:.6g}' for component in point)}) {unit}"
     return f"{labels.moment_point} = {place}" if labels.moment_point else f"{POINT_PHRASES[bool(point.any())]} {place}"
 
@@ -74,8 +74,8 @@ def _make_bearing_note(name: str, labels: Labels) -> str:
     info = labels.joints.get(joint)
     if info is None or not info.bearings:
         return ""
-    unit, size = labels.units.find("m")
-    return f"at {size * info.bearings[int(number)]:.6g} {unit} along the axis"
+    unit, per_si = labels.units.find("m")
+    return f"at {per_si * info.bearings[int(number)]:.6g} {unit} along the axis"
 
 
 def _make_sensor_note(name: str, labels: Labels) -> str:
@@ -96,12 +96,14 @@ def _make_stop_note(name: str, labels: Labels) -> str:
     info = labels.stops.get(name)
     if info is None:
         return ""
-    unit, size = labels.units.find("rad" if info.coordinate.endswith(".angle") else "m")
+    unit, per_si = labels.units.find("rad" if info.coordinate.endswith(".angle") else "m")
     if info.latch:
-        place = f" at {size * info.catch:.6g} {unit}" if isinstance(info.catch, float) else f" at the stop {info.catch}"
+        place = (
+            f" at {per_si * info.catch:.6g} {unit}" if isinstance(info.catch, float) else f" at the stop {info.catch}"
+        )
         return f"latch, {info.coordinate}{place if info.catch is not None else ''}"
     limits = (("≥", info.low), ("≤", info.high))
-    limit_texts = [f"{word} {size * limit:.6g}" for word, limit in limits if limit is not None]
+    limit_texts = [f"{word} {per_si * limit:.6g}" for word, limit in limits if limit is not None]
     return f"{info.coordinate} {' and '.join(limit_texts)} {unit}"
 
 

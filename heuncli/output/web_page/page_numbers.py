@@ -174,8 +174,8 @@ def choose_shown_style(
     style: the one of the tables, which says what is rounding, and whether any digit is known
     """
     reader = choose_reader_style(channel.unit, scale, labels.units, stated_errors.find_error(channel))
-    rounding = style.rounding * reader.size / labels.units.find(channel.unit)[1]
-    return _to_shown(reader.unit, reader.size, scale, reader.error, (rounding, style.is_known))
+    rounding = style.rounding * reader.per_si / labels.units.find(channel.unit)[1]
+    return _to_shown(reader.unit, reader.per_si, scale, reader.error, (rounding, style.is_known))
 
 
 def choose_family_style(
@@ -183,8 +183,8 @@ def choose_family_style(
 ) -> dict[str, Any]:
     """Choose unit, size and style of numbers of a kind and unit whose largest magnitude is `scale`, SI."""
     reader = choose_reader_style(unit, scale, labels.units, stated_errors.error_of(kind, unit))
-    rounding = reader.size * stated_errors.rounding_of(unit)
-    return _to_shown(reader.unit, reader.size, scale, reader.error, (rounding, reader.error < reader.size * scale))
+    rounding = reader.per_si * stated_errors.rounding_of(unit)
+    return _to_shown(reader.unit, reader.per_si, scale, reader.error, (rounding, reader.error < reader.per_si * scale))
 
 
 def choose_rotational_speed(scale: float, error: float) -> dict[str, Any]:

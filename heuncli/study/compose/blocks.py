@@ -200,7 +200,7 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
     if not recovery.setup.cuts:
         return block
     # only scenes with sections load it
-    from heuncli.loads.kinetostatics.sections import find_attachments, section_block
+    from heuncli.loads.kinetostatics.sections import find_attachments, make_section_block
 
     actions = [
         *list_whole_joint_actions(recovery.joints),
@@ -212,7 +212,7 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
         cuts = requested_cuts.place_for_loads(attached)
         is_open = find_open_section(recovery, cuts)
         gravity, planar = scene.mechanism.gravity, scene.mechanism.planar
-        block[cuts.name] = section_block(cuts, states, gravity, attached, is_open, planar)
+        block[cuts.name] = make_section_block(cuts, states, gravity, attached, is_open, planar)
         if is_open:
             from heuncli.loads.redundancy.indeterminate_components import list_indeterminate_section_names
 
@@ -223,9 +223,9 @@ def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
             find_open = partial(find_open_section, recovery)
             block[cuts.name] |= make_deflection_block(cuts, states, gravity, attached, find_open, planar)
         if by_cause:
-            from heuncli.loads.kinetostatics.shares import section_shares_block
+            from heuncli.loads.kinetostatics.shares import make_section_shares_block
 
-            block[cuts.name]["shares"] = section_shares_block(cuts, scene.layout, states, recovery.shares, is_open)
+            block[cuts.name]["shares"] = make_section_shares_block(cuts, scene.layout, states, recovery.shares, is_open)
     return block
 
 

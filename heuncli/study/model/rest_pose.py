@@ -26,7 +26,7 @@ from heuncli.loads.equilibrium.verification import (
     VerifiedPose,
     find_neighbour_poses,
     find_verified_pose,
-    perturbed_states,
+    perturb_states,
     require_at_rest,
 )
 from heuncli.loads.kinetostatics.bodies import make_body_states
@@ -129,7 +129,7 @@ def start_at_rest(
     require_at_rest(rest_runner, found.coordinates, make_bearing_pose(rest_runner, found.coordinates, 0.0, layout.y0))
     rest = Rest(
         steps=search_result.steps, evaluations=search_result.evaluations, seconds=time.perf_counter() - start_time,
-        nearby_states=(*states, *perturbed_states(runner, found, search_result.displacement)),
+        nearby_states=(*states, *perturb_states(runner, found, search_result.displacement)),
         sentences=tuple(describe_rest(scene.mechanism, found_stability, without_slope)), warnings=tuple(warnings),
     )  # fmt: skip
     return replace(scene, layout=layout), rest_runner, rest

@@ -54,7 +54,8 @@ class Setup:
     """All that is known of a scene before anything moves.
 
     spec: the part that is solved
-    cuts: of the requested sections; a search replaces series of cuts by their whole lengths
+    cuts: of the requested sections; a search puts a Stretch in the place of each series of cuts, for code that needs no
+    more of them than PlaceableCuts (loads/kinetostatics/cuts.py)
     method: None if nothing is integrated
     reduction: the smaller scene that is integrated in its place, and why; None if nothing is integrated, or the whole
     scene
@@ -281,6 +282,7 @@ def build_with_cuts(spec: Spec, stages: Stages = NO_CACHE) -> tuple[Mechanism, t
     return mechanism, cuts
 
 
+# Problems of packages that know no paths of a spec set no entry_path: then the first entry that the text names.
 ENTRY_PATH = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|couplings|rolling|sections|analysis)\.\w+")
 # problems with impulses give the bare name of an entry
 IMPULSE_BLOCKS = ("impulses", "stops", "latches", "joints", "drives", "couplings", "rolling")

@@ -102,8 +102,8 @@ class StatedErrors(NamedTuple):
         """Choose the style, in the display unit, of a family of this kind and unit whose largest magnitude is `scale`;
         SI.
         """
-        size = self.units.find(unit)[1]
-        return choose_style(size * scale, size * self.error_of(kind, unit), size * self.rounding_of(unit))
+        per_si = self.units.find(unit)[1]
+        return choose_style(per_si * scale, per_si * self.error_of(kind, unit), per_si * self.rounding_of(unit))
 
 
 def find_stated_errors(results: Results, labels: Labels, magnitudes: Magnitudes) -> StatedErrors:
@@ -299,19 +299,19 @@ FULL_UNIT = 1.0  # the smallest size at which a unit is used
 class ReaderStyle(NamedTuple):
     """How the numbers of one family are written for a reader.
 
-    unit: display unit; size: how many of it make one SI unit
+    unit: display unit; per_si: how many of it make one SI unit
     decimals: of fixed numbers
     error: of the numbers, in the display unit
     """
 
     unit: str
-    size: float
+    per_si: float
     decimals: int
     error: float = 0.0
 
     def write(self, value: float) -> str:
         """Format an SI number in the display unit, with U+2212 as minus; 0 below the last decimal."""
-        shown = self.size * value
+        shown = self.per_si * value
         if math.isnan(shown):
             return OPEN
         if abs(shown) < 0.5 * 10.0**-self.decimals:
@@ -334,12 +334,12 @@ def choose_reader_style(unit: str, scale: float, units: Units, error: float = 0.
     unit: SI unit; scale: the largest magnitude, SI; error: of the numbers, SI
     units: a unit that the user chose stays; another is chosen by size
     """
-    shown_unit, size = units.find(unit)
+    shown_unit, per_si = units.find(unit)
     if unit in PREFIXES and not units.is_chosen(unit):
-        shown_unit, size = choose_prefix(unit, scale)
-    shown = size * scale
+        shown_unit, per_si = choose_prefix(unit, scale)
+    shown = per_si * scale
     digits = READER_DIGITS - 1 - math.floor(math.log10(shown)) if math.isfinite(shown) and shown > 0.0 else 0
-    return ReaderStyle(shown_unit, size, max(digits, 0), size * error)
+    return ReaderStyle(shown_unit, per_si, max(digits, 0), per_si * error)
 
 
 def choose_prefix(unit: str, scale: float) -> tuple[str, float]:

@@ -12,7 +12,6 @@ from types import MappingProxyType
 
 from heuncli.base.errors import Finding, Problem, UsageError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.study.quantities import table_units
 
 DisplayUnit = tuple[str, float]  # a unit, and how many of it make one SI unit
 STRESS: Mapping[str, DisplayUnit] = MappingProxyType({"Pa": ("MPa", 1e-6)})
@@ -47,14 +46,14 @@ def parse_units(words: str) -> Units:
     """Parse the display units of `--units kN,mm,deg`. Raises Finding."""
     chosen_units: dict[str, DisplayUnit] = {}
     for word in (part.strip() for part in words.split(",")):
-        unit, size = find_si_unit(word)
+        unit, per_si = find_si_unit(word)
         if unit in chosen_units:
             raise Finding(
                 "bad-option",
                 f"{chosen_units[unit][0]} and {word} are units of the same quantity: {describe_unit(unit)}",
                 "give only one",
             )
-        chosen_units[unit] = SPELLINGS.get(word, spell_unit(word)), size
+        chosen_units[unit] = SPELLINGS.get(word, spell_unit(word)), per_si
     return Units(
         {**STRESS, **{unit: shown for unit in DERIVED if (shown := derive_unit(unit, chosen_units))}, **chosen_units}
     )
@@ -65,12 +64,12 @@ def derive_unit(unit: str, chosen_units: Mapping[str, DisplayUnit]) -> DisplayUn
     form, parts = DERIVED[unit]
     if not chosen_units.keys() & set(parts):
         return None
-    names, size = [], 1.0
+    names, per_si = [], 1.0
     for part in parts:
         name, factor = chosen_units.get(part, (part, 1.0))
         names.append(name)
-        size *= factor
-    return form.format(*names), size
+        per_si *= factor
+    return form.format(*names), per_si
 
 
 def find_si_unit(word: str) -> tuple[str, float]:
@@ -109,6 +108,6 @@ def read_display_units(option: str, words: str | None) -> Units:
     if words is None:
         return Units()
     try:
-        return table_units.parse_units(words)
+        return parse_units(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"{option} {words}: {finding.message}", hint=finding.hint)) from None

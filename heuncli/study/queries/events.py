@@ -260,9 +260,9 @@ def watch_number(
     )
     channel = make_path_channel(numbers)
     if channel.has_cuts:
-        from heuncli.study.search.cuts import replace_runs
+        from heuncli.study.search.cuts import replace_series_by_stretches
 
-        setup = replace_runs(setup, channel.is_nonlinear)
+        setup = replace_series_by_stretches(setup, channel.is_nonlinear)
     return WatchedNumber(study, setup, condition, channel.is_magnitude, channel.has_cuts), numbers.keys
 
 

@@ -275,9 +275,9 @@ class Study:
         """Return the setup with its series of cuts as whole lengths; bent: for numbers that are no polynomial of the
         loads.
         """
-        from heuncli.study.search.cuts import replace_runs  # only series of cuts are worth it
+        from heuncli.study.search.cuts import replace_series_by_stretches  # only series of cuts are worth it
 
-        return replace_runs(self.setup, bent)
+        return replace_series_by_stretches(self.setup, bent)
 
     def is_searched(self, columns: int) -> bool:
         """Return whether the extremes of that many columns of a whole report are searched between the requested

@@ -1,6 +1,6 @@
 """Search along cuts: extremes over the length of a series of cuts, and instants at which a joint passes a cut.
 
-For a search, the runs of a scene are replaced by stretches between their corners (loads/kinetostatics/stretch.py). The
+For a search, the series of cuts of a scene are replaced by stretches with corners (loads/kinetostatics/stretch.py). The
 highest and the lowest of each quantity along a stretch are then two numbers over the instants, smooth but for kinks
 where their place leaps, which are never extremes.
 """
@@ -17,7 +17,7 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
-from heuncli.loads.kinetostatics.cuts import Cuts, list_attachments, list_distributed_loads
+from heuncli.loads.kinetostatics.cuts import Cuts, PlaceableCuts, list_attachments, list_distributed_loads
 from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, StretchPeaks, find_peaks, make_cuts_at, make_stretch
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array, Block, CutPosition, Extremes
 from heuncli.results.results_schema import RESULTANTS
@@ -28,27 +28,27 @@ from heuncli.study.search.extremes import sort_distinct
 HALVINGS = 2  # times that pieces are halved for kinks where loads change their sign: stresses, reduction lines
 
 
-def replace_runs(setup: Setup, bent: bool) -> Setup:
-    """Return the setup with its series of cuts as whole stretches; bent: for quantities that are no polynomial of
+def replace_series_by_stretches(setup: Setup, bent: bool) -> Setup:
+    """Return the setup with its series of cuts replaced by stretches; bent: for quantities that are no polynomial of
     loads.
     """
     mechanism, halved = setup.scene.mechanism, HALVINGS if bent else 0
 
-    def whole(cuts: Cuts) -> Cuts | Stretch:
-        """Return the cuts as a whole length, if they are a series through shapes."""
+    def make_whole(cuts: Cuts) -> PlaceableCuts:
+        """Return a series of cuts through shapes as a stretch, all others as they are."""
         if cuts.s is None or cuts.form is None:
             return cuts
         points = [attachment.place for attachment in list_attachments(mechanism, cuts.body)]
         lines = [line.place for line in list_distributed_loads(mechanism, cuts.body)]
         return make_stretch(cuts, points, lines, min_halvings=halved)
 
-    return replace(setup, cuts=tuple(map(whole, setup.cuts)))
+    return replace(setup, cuts=tuple(map(make_whole, setup.cuts)))
 
 
 def find_stretch(setup: Setup, name: str) -> Stretch:
     """Return the stretch of the series of cuts with that name."""
-    cuts_and_stretches: tuple[Cuts | Stretch, ...] = setup.cuts
-    return next(cuts for cuts in cuts_and_stretches if isinstance(cuts, Stretch) and cuts.name == name)
+    placeable_cuts: tuple[PlaceableCuts, ...] = setup.cuts
+    return next(cuts for cuts in placeable_cuts if isinstance(cuts, Stretch) and cuts.name == name)
 
 
 def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setup:
@@ -58,9 +58,9 @@ def cut_at(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setu
 
 def cut_at_places(setup: Setup, name: str, places: Sequence[CutPosition]) -> Setup:
     """Return the setup with only one series of cuts, cut at these places, on the sides that they name."""
-    run = next(cuts for cuts in setup.cuts if cuts.name == name)
+    series = next(cuts for cuts in setup.cuts if cuts.name == name)
     side = np.array([SIDE_SIGNS[place.side] for place in places])
-    return replace(setup, cuts=(make_cuts_at(run, np.array([place.s for place in places]), side),))
+    return replace(setup, cuts=(make_cuts_at(series, np.array([place.s for place in places]), side),))
 
 
 def find_sides(s: Array, ends: tuple[float, float]) -> Array:

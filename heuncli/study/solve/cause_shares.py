@@ -141,10 +141,10 @@ def find_sensor_shares(setup: Setup, sensor: PlacedSensor, states: BodyStates, s
         load = next(load for load in shares.joints if load.joint.name == sensor.joint)
         return Reaction(load.point, load.force, load.moment)
     from heuncli.loads.kinetostatics.sections import make_cut_places  # few sensors read a cut
-    from heuncli.loads.kinetostatics.shares import section_shares_block
+    from heuncli.loads.kinetostatics.shares import make_section_shares_block
 
     cuts = next(cuts for cuts in setup.cuts if cuts.name == sensor.section).for_impulse
-    block = section_shares_block(cuts, setup.scene.layout, states, shares, {})
+    block = make_section_shares_block(cuts, setup.scene.layout, states, shares, {})
     places = make_cut_places(cuts, states)
     origin = places.to_world_axes(places.moment_points, is_position=True)[:, 0]
     force, moment = (np.array([block[cause][name] for cause in shares.causes]) for name in WRENCH)
@@ -177,10 +177,10 @@ def list_section_shares(setup: Setup, states: BodyStates, shares: Shares) -> Kin
     found: KindValues = []
     if not setup.cuts:
         return found
-    from heuncli.loads.kinetostatics.shares import section_shares_block  # where there are sections
+    from heuncli.loads.kinetostatics.shares import make_section_shares_block  # where there are sections
 
     for cuts in setup.cuts:
-        block = section_shares_block(cuts, setup.scene.layout, states, shares, {})
+        block = make_section_shares_block(cuts, setup.scene.layout, states, shares, {})
         for name in ("force", "moment"):
             values = [own[key] for own in block.values() for key in (name, f"direct_{name}") if key in own]
             found.append(("sections", name, np.stack(values, axis=1)))

@@ -371,7 +371,7 @@ class LoadErrors(ErrorEstimates):
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the cuts' loads in body axes, and the difference of the bodies' own orientation between the runs."""
         from heuncli.loads.kinetostatics.sections import (  # as in recover
-            acceleration_matrix,
+            find_acceleration_matrix,
             find_attachments,
             find_piece_loads,
         )
@@ -379,7 +379,7 @@ class LoadErrors(ErrorEstimates):
         gravity = self.setup.scene.mechanism.gravity
         for cuts in self.setup.cuts:
             attached = find_attachments(cuts.body, states, actions)
-            force, moment = find_piece_loads(cuts, acceleration_matrix(cuts.body, states, gravity), attached)
+            force, moment = find_piece_loads(cuts, find_acceleration_matrix(cuts.body, states, gravity), attached)
             R = states.R[:, cuts.body]
             count = len(R) // len(self.is_requested)
             first_run = R[0::count]

@@ -79,7 +79,7 @@ def solve_with_rates(
         y[places] = values
     solution = unloaded.evaluate(start_solution.times, y[None, :], holding=start_solution.holding)
     rate_changes = np.abs((solution.states[0] - y)[rates] * unloaded.layout.weights[rates])
-    return solution, bool(rate_changes.max() <= tolerances.MOVES)
+    return solution, bool(rate_changes.max() <= tolerances.REMAINING_RATE)
 
 
 def remove_weight_and_loads(layout: Layout) -> Layout:
@@ -116,7 +116,7 @@ def is_pushed(layout: Layout, solution: Evaluation, motion: Evaluation) -> bool:
         power += float(moving.omega[0, i] @ R @ body.inertia @ R.T @ states.alpha[0, i])
     force = float(mass.sum() * np.abs(layout.mechanism.gravity).max() + np.abs(solution.loads["force"]).sum())
     moment = float(np.abs(solution.loads["moment"]).sum()) + force * layout.size
-    return power > tolerances.PUSHED * (force * speed + moment * turn)
+    return power > tolerances.LOAD_ALONG_FREE_MOTION * (force * speed + moment * turn)
 
 
 def make_problem(layout: Layout, t: float, island: Island) -> Problem:

@@ -104,7 +104,7 @@ PART = Part(
         "FARTHER": "which of two poses that both close; tests/laws/test_nearest.py holds how far it may be",
         "CLOSED": "ends a search: the verdict is OPEN_GAP's",
         "NO_SLOPE": "ends a search, which then starts again from elsewhere: the verdict is OPEN_GAP's",
-        "DRIVE_FOLLOWED": "the instant of an error, to some digits: whether there is one, `lost` and UNMET decide",
+        "DRIVE_FOLLOWED": "the instant of an error, to some digits: `lost` and UNMET_ROW_FACTOR decide if there is one",
         "POLISHED": "ends a search: the poses are closed on either side",
         "SUM_OF_SQUARES_LIMIT": "what accepts a step of the search, among closed poses",
         "SAME_SUM": "what accepts a step of the search, among closed poses",

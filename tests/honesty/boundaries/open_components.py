@@ -87,7 +87,7 @@ PART = Part(
     ("open",),
     rows=(
         Row("OPEN_SHARE", inclined, "a number", "open"),
-        Row("STRAINED", stiff, "open", "shared"),
+        Row("STRAINED_SELF_STRESS", stiff, "open", "shared"),
         Row("DEPENDENT_SHARES", proportional, "a sum", "none"),
         Row("DEPENDENT_SHARES", told_by_turning, "a sum", "none"),
         Row("DEPENDENT_SHARES", nearly_vanishing, "a sum", "none"),
@@ -101,7 +101,7 @@ PART = Part(
         "HELD_BY_OTHERS": "whether a joint gives way in a direction that others hold askew",
         "SUM_POSES": "which sums of one pose are accidents",
         "NO_SELF_STRESS": "whether a null vector is a self-stress",
-        "STILL_OPEN": "what a split leaves open",
+        "OPEN_AFTER_SPLIT": "what a split leaves open",
         "ONE_DIRECTION": "whether advice proposes a line",
     },
 )

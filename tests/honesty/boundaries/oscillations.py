@@ -36,7 +36,7 @@ def growth(mode: Mode) -> float:
 def beside_its_rounding(x: float) -> str:
     """Two carts on a spring, of which one is held by x times what rounding makes of that: as rest and modes tell it."""
     found = indifference_of(carts(0.0)).elimination
-    unit = float(found.null_errors.max() / found.K[0, 0]) * 3.0 / tolerances.HELD
+    unit = float(found.null_errors.max() / found.K[0, 0]) * 3.0 / tolerances.REAL_STIFFNESS_FACTOR
     text = carts(x * unit)
     free = any(mode.kind == "free" for mode in compute_spec_modes(load("scene.yaml", text)).modes)
     told = any("indifferent" in sentence for sentence in solved(text).model["rest"])
@@ -115,7 +115,7 @@ def beside_a_bend(x: float) -> str:
 PART = Part(
     ("small oscillations",),
     rows=(
-        Row("HELD", beside_its_rounding, "indifferent", "held"),
+        Row("REAL_STIFFNESS_FACTOR", beside_its_rounding, "indifferent", "held"),
         Row("EIGENVALUE", turning_force, "oscillation", "flutter"),
         Row("FREELY_PUSHED", pushed_freely, "rests", "falls"),
         Row("OFF_BALANCE", hanging, "fine", "refused: not-at-rest"),

@@ -70,7 +70,7 @@ PART = Part(
     ("rank", "kernel: rank"),
     rows=(
         Row("KERNEL.independent", flat_by, "warned: singular position", "warned: nearly singular position"),
-        Row("PUSHED", across, "warned: singular position", "refused: singular-pose"),
+        Row("LOAD_ALONG_FREE_MOTION", across, "warned: singular position", "refused: singular-pose"),
         Row("NEARLY_SINGULAR", lambda x: parallelogram(x / math.sqrt(2)), "warned: nearly singular position", "fine"),
         Row("SINGULAR_MET", beside_flat, "warned: singular position", "fine", (1 / 3, 3.0)),
         Row("UNKNOWN_NEAR_SINGULAR", moved_by, "told", "not known"),
@@ -84,7 +84,7 @@ PART = Part(
     },
     wanted={
         "NEIGHBOUR": "which rank is the generic one, where a machine can hardly leave its singular start",
-        "MOVES": "whether a displaced pose counts",
+        "REMAINING_RATE": "whether a displaced pose counts",
         "UNSEEN_GAP": "how far states beside a singular pose are moved; UNKNOWN_NEAR_SINGULAR decides what is told",
         "NEAR_PIVOT": "whether a state is recovered again, moved by its rounding; UNKNOWN_NEAR_SINGULAR decides",
         "SUSPECT_PIVOT": "whether a singular pose is looked for in a step",
@@ -93,7 +93,7 @@ PART = Part(
         "RANK_OF_GAP": "which rows a gap feigns: what is near to a singular pose closes its gaps by a move",
         "SINGULAR_FALL": "whether a pose is passed through that is everywhere as near to a singular one",
         "NEARLY_DEPENDENT": "whether a dependence is told as not quite one",
-        "UNMET": "whether accelerations that leave rows unmet are refused",
+        "UNMET_ROW_FACTOR": "whether accelerations that leave rows unmet are refused",
         "KERNEL.passing": "which rows are left out on the way through a singular pose",
         "KERNEL.passing_of_start": "the same in a scene that begins beside one",
         "KERNEL.locked": "whether a step that collapsed is a lock",

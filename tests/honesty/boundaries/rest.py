@@ -92,7 +92,7 @@ PART = Part(
         Row("NOT_HELD", jumping, "rests", "refused"),
     ),
     exempt={
-        "INDIFFERENT": "along what a step of the search goes to its end; whether anything holds it is decided by HELD",
+        "INDIFFERENT": "along what a step of the search goes to its end; REAL_STIFFNESS_FACTOR decides the verdict",
         "NEARLY_DEFECTIVE": "how a step is taken: tests/closed_forms/test_rest.py has matrices, scenes on both sides",
         "REST_FIRST": "the first step of a search: its end is told to its digits",
         "REST_FARTHEST": "what accepts a step of the search",

@@ -14,7 +14,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
-from heuncli.base.linear_algebra import count_rank, null_space
+from heuncli.base.linear_algebra import compute_null_space, count_rank
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
@@ -90,7 +90,7 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
         find_rest_conditions(layout, i, axes, poses) @ list_freedom_directions(layout, i, poses).T
         for i, axes in lacking.items()
     )
-    if not any(null_space(resisted).size for resisted in own_resistances):
+    if not any(compute_null_space(resisted).size for resisted in own_resistances):
         return scene
     motions = find_massless_motions(scene, lacking, poses)
     if not motions.count:
@@ -112,7 +112,7 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
 
 def require_turning(scene: PreparedScene, motions: MasslessMotions) -> None:
     """Raise SolveError [no-inertia] if bodies shift and none turns, for artificial inertia only resists turns."""
-    shifts = null_space(motions.omega.reshape(-1, motions.count))
+    shifts = compute_null_space(motions.omega.reshape(-1, motions.count))
     if not shifts.size:
         return
     reach = np.abs(motions.combine(shifts).v).max(axis=(1, 2))
@@ -262,7 +262,7 @@ def find_rest_conditions(layout: Layout, i: int, axes: Array | None, poses: Tree
     if axes is not None and layout.mechanism.bodies[layout.spanning.links[i].body].mass == 0.0:
         return np.zeros((0, 6))
     R, c = poses.R[i], layout.mechanism.bodies[layout.spanning.links[i].body].center - layout.reference[i]
-    across = np.eye(3) if axes is None else null_space(axes).T
+    across = np.eye(3) if axes is None else compute_null_space(axes).T
     conditions = np.zeros((3 + len(across), 6))
     conditions[:3, :3], conditions[:3, 3:], conditions[3:, :3] = (
         cross_matrix(R @ c / layout.size),
@@ -322,7 +322,7 @@ def find_loose_motions(layout: Layout, motions: MasslessMotions, poses: TreePose
                 n = number[body]
                 v = motions.v[n] + np.cross(motions.omega[n], (Q - poses.r[body]) / layout.size, axis=0)
                 resisted[k] += sign * (measure * f @ v + m @ motions.omega[n])
-    free = null_space(resisted, tolerances.NEARLY_SINGULAR)
+    free = compute_null_space(resisted, tolerances.NEARLY_SINGULAR)
     return motions.combine(free if free.shape[1] else np.linalg.svd(resisted)[2][-1:].T)
 
 
