@@ -94,7 +94,12 @@ def find_held_contacts(evaluator: Evaluator, t: float, state: Array) -> Array:
 
 
 class Contacts:
-    """The contacts of one run: which are closed, and the notes on them. Changes with every event."""
+    """The contacts of one run: which are closed, and the notes on them. Changes with every event.
+
+    contact_states: of all contacts; then for each latch and friction where it holds, or the sign of its slip; then for
+    each friction the contact of its group's leader, counted from 1, and its transmission (Layout.open_contacts). It is
+    what `holding` is elsewhere.
+    """
 
     def __init__(self, evaluator: Evaluator, end_time: float) -> None:
         self.evaluator, self.end_time = evaluator, end_time

@@ -54,10 +54,12 @@ class FrictionGroup(NamedTuple):
 class PlaceResponse(NamedTuple):
     """What unit friction in one place does to another, while none sticks.
 
-    response (k, k): accelerations of all places by unit friction in each
-    noise (k,): rounding of the accelerations, from all loads and weights
-    slack (k,): rounding of the friction that holds a place
-    rounding (k,): of a place's own response, from that of free bodies; one that is not larger cannot move
+    response (k, k): accelerations of all places by unit friction in each, [1/kg] or [1/(kg m^2)]
+    noise (k,): rounding of the accelerations [m/s^2 or rad/s^2], from all loads and weights: guards the test whether
+    what slips accelerates in its direction
+    slack (k,): rounding of the friction that holds a place [N or N m]: guards the test whether it is within its limit
+    rounding (k,): of a place's own response, in its unit, from that of free bodies: guards the tests whether it can
+    move, and whether two can only move together
     """
 
     response: Array
@@ -82,7 +84,7 @@ class PlaceResponse(NamedTuple):
 
 
 class FrictionPlaces:
-    """The places of a scene where friction may stick, and what is given of them.
+    """The places of a scene where friction may stick: a place is one coordinate of one friction, and has a contact.
 
     presses (k,): whether the joint's own load tells its size; has_one_size: static friction is kinetic everywhere
     is_given: no friction depends on a load; is_convex: so that one choice of states agrees at most

@@ -3,10 +3,10 @@
 A choice gives each group at rest a state: it sticks, or slips in one direction. The kernel solves the motion of a
 choice with all its couplings. A choice is possible if its results agree with it.
 
-    - A friction that has just reached its limit slips, in the direction in which it was pushed.
-    - One that slipped before, too slow yet to show it, slips on unless it would turn back.
-    - Of several possible choices that one is taken in which every place sticks that sticks in any of them.
-    - Errors are: no possible choice, two that differ otherwise, a sticking friction whose value others could take over.
+    1. A friction that has just reached its limit slips, in the direction in which it was pushed.
+    2. One that slipped before, too slow yet to show it, slips on unless it would turn back.
+    3. Of several possible choices that one is taken in which every place sticks that sticks in any of them.
+    4. Errors: no possible choice, two that differ otherwise, a sticking friction whose value others could take over.
 """
 
 from __future__ import annotations
@@ -147,8 +147,11 @@ class StateSearch:
             if jams:
                 raise self.jamming_error(*jams[0])
             raise self.undecided_error("no choice of them agrees with the motion that it leads to")
+        # rule 3
         most = max(found, key=lambda other: other.count(STICKS))
         for other in found:
+            # Rule 4. Another choice contradicts this one if something sticks in it that slips here, or, where it has a
+            # different slip, if static friction is kinetic (the motion then is unique) or nothing sticks here.
             differs = any(x == STICKS and y != STICKS for x, y in zip(other, most, strict=True)) or (
                 other != most and (self.places.has_one_size or STICKS not in most)
             )
@@ -192,10 +195,10 @@ class StateSearch:
                 allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve)) + self.slack[k]
                 if not (is_met and reserve >= -allowed):
                     next_states[n] = -1 if value > 0.0 else 1
-            elif n == self.broken:
+            elif n == self.broken:  # rule 1
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = -choice[n]
-            elif choice[n] == self.earlier_slips.get(n):
+            elif choice[n] == self.earlier_slips.get(n):  # rule 2
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = STICKS
             elif not choice[n] * acceleration > noise[k]:
