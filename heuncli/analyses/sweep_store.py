@@ -76,7 +76,11 @@ class Store:
             # an absolute path: SQLite has meanings of its own for ":memory:" and "file:..."
             where = str(Path(name).absolute()) if name is not None else ""
             self.connection = sqlite3.connect(where, timeout=LOCK_TIMEOUT, isolation_level=None)
-            initialize_store(self.connection, self.name, is_persistent=name is not None)
+            try:
+                initialize_store(self.connection, self.name, is_persistent=name is not None)
+            except BaseException:
+                self.connection.close()
+                raise
 
     def __enter__(self) -> Store:
         return self

@@ -75,10 +75,17 @@ def initialize_store(connection: sqlite3.Connection, name: str, is_persistent: b
             for table in TABLES:
                 connection.execute(table)
             connection.execute("INSERT INTO heun VALUES (?)", (VERSION,))
-    finally:
         connection.execute("COMMIT")
+    except BaseException:
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+        raise
     require_store(connection, name)
-    version = connection.execute("SELECT version FROM heun").fetchone()[0]
+    row = connection.execute("SELECT version FROM heun").fetchone()
+    if row is None:
+        message = f"{name}: this store is damaged: it names no version of heun"
+        raise UsageError(Problem(NOT_A_STORE, message, hint=OTHER_FILE_HINT))
+    version = row[0]
     if version != VERSION:
         message = f"{name}: written by heun {version}, this is heun {VERSION}: its numbers may differ"
         hint = f"give another file; heun sweep --show {name} prints its contents"

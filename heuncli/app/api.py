@@ -153,7 +153,7 @@ def solve_cases(
     options = _make_options(tolerance, method, step, least_norm, reduce, axes)
     options = replace(options, time_limit=_check_time_limit(time_limit))
     selection = _parse_only(only)
-    with _suggest_options(parameters, solve):
+    with _suggest_options(parameters, solve_cases):
         _, cases = read(name, make_settings(set or {}, parameters), ALL_CASES, source)
     if not cases:
         hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"

@@ -104,7 +104,7 @@ def run_program(command: list[str], folder: str, limit: float) -> tuple[bytes, s
     import subprocess
     import sys
 
-    has_group = sys.platform != "win32"
+    has_group, is_finished = sys.platform != "win32", False
     try:
         process = subprocess.Popen(
             command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -114,11 +114,13 @@ def run_program(command: list[str], folder: str, limit: float) -> tuple[bytes, s
         return b"", str(reason)
     try:
         output, message = process.communicate(timeout=limit)
+        is_finished = True
     except subprocess.TimeoutExpired:
         return b"", f"it took longer than {limit:.3g} s"
     finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL) if has_group else process.kill()
+        if not is_finished:  # even if the program ended: what it began may still hold its output
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL) if has_group else process.kill()
             process.communicate()
     if not process.returncode:
         return output, ""

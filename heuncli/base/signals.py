@@ -123,7 +123,10 @@ def exit_after_cleanup(code: int, line: bytes) -> None:
     """End the process at once: run the cleanups and write a line to standard error."""
     try:
         for undo in reversed(_cleanups):
-            undo()
+            try:  # noqa: SIM105 - contextlib may not be loaded yet
+                undo()
+            except Exception:
+                pass  # the other cleanups and the line have their turn
         if line and sys.stderr is not None:  # else its number may have become that of another file
             os.write(2, line)
     finally:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import lru_cache
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 from heuncli.base import tolerances
@@ -190,6 +190,8 @@ def parse_unit(text: str) -> tuple[float, Dimension]:
     reader = _UnitReader(text)
     try:
         size, dimension = reader.read_product()
+        if not 0.0 < size < inf:
+            raise ArithmeticError
     except ArithmeticError:  # powers of powers: larger or smaller than any double
         hint = "write the power as a small whole number, as in m^2"
         raise Finding("unknown-unit", f"'{text}' is not a unit: its size is out of number range", hint) from None

@@ -42,6 +42,11 @@ REFUSED = {
     ("conrod.yaml", "sections.shank", "--at", "now"): ("bad-option", "--at now", "expected a number, first, last"),
     ("conrod.yaml", "sections.shank", "--units", "kg"): ("bad-option", "kg", ""),
     ("held.yaml", "sections.along", "--at", "1"): ("bad-option", "--at 1", "there is one instant"),
+    ("conrod.yaml", "sections.shank", "sections.shnk"): (
+        "unknown-path",
+        "series of cuts: up, shank",
+        "sections.shank?",
+    ),
     ("held.yaml", "conrod.yaml", "sections.along"): ("unknown-path", "sections.along", "in conrod.yaml"),
     ("held.yaml", "struck.yaml", "sections.along"): ("bad-option", "impulses (type: impulse)", "separately"),
     ("cases.yaml", "sections.along", "--case", "none"): ("unknown-case", "none", "light"),

@@ -180,6 +180,11 @@ MESHES = [
     ("*NODE\n1, x, 0, 0\n", "are not numbers"),
     ("*INCLUDE, INPUT=/etc/passwd\n", "INCLUDE is not followed"),
     ("", "no elements"),
+    ("*ELEMENT, TYPE=C3D4\n1, 1, 2, 3,\n", "an element with 4 nodes lists 3"),
+    ("*ELEMENT, TYPE=C3D4\n1, 1, 2, 3,\n*NODE\n", "an element with 4 nodes lists 3"),
+    ("*NODE\n,,,\n", "mesh.inp:2: a node without a number"),
+    ("*NODE, INPUT=nodes.inp\n", "NODE with INPUT is not followed"),
+    ("*ELEMENT, TYPE=C3D4, input = e.inp\n", "ELEMENT with INPUT is not followed"),
 ]
 
 

@@ -85,6 +85,8 @@ def read_mesh(text: str, name: str) -> SolidMesh:
     corners: list[tuple[int, ...]] = []
     for keyword, kind, number, words in _iter_records(text, name):
         where = f"{name}:{number}"
+        if not words:
+            raise Finding("bad-mesh", f"{where}: a node without a number", "give its number, then its coordinates")
         try:
             if keyword == "*NODE":
                 x = [float(word) for word in words[1:4]]
@@ -110,10 +112,15 @@ def _iter_records(text: str, name: str) -> Iterator[tuple[str, SolidKind | None,
         if line.startswith("**") or not line.strip():
             continue
         if line.startswith("*"):
+            if collected:  # its last line ends with a comma
+                yield keyword, kind, first_line, collected
             words = [word.strip().upper() for word in line.split(",")]
             keyword, kind, collected = words[0], None, []
             if keyword == "*INCLUDE":
                 raise Finding("bad-mesh", f"{name}:{number}: *INCLUDE is not followed", "give the included file")
+            if keyword in ("*NODE", "*ELEMENT") and any(word.partition("=")[0].strip() == "INPUT" for word in words):
+                message = f"{name}:{number}: {keyword} with INPUT is not followed"
+                raise Finding("bad-mesh", message, "give the mesh in one file")
             if keyword == "*ELEMENT":
                 kind = _parse_kind(words, f"{name}:{number}")
             continue
@@ -124,6 +131,8 @@ def _iter_records(text: str, name: str) -> Iterator[tuple[str, SolidKind | None,
         if keyword == "*NODE" or not line.rstrip().endswith(","):
             yield keyword, kind, first_line, collected
             collected = []
+    if collected:
+        yield keyword, kind, first_line, collected
 
 
 def _parse_kind(words: Sequence[str], where: str) -> SolidKind:

@@ -221,11 +221,16 @@ def _serve(pipe: Connection, work: Callable[[Item], Answer], parent_ends: Sequen
         signal.signal(getattr(signal, name), signal.SIG_DFL)
     signals.clear_cleanups()
     timeout.silence()
-    try:
-        while True:
-            pipe.send(work(pipe.recv()))
-    except (EOFError, BrokenPipeError, ConnectionResetError):
-        os._exit(0)
+    while True:
+        try:
+            item = pipe.recv()
+        except (EOFError, ConnectionResetError):
+            os._exit(0)
+        answer = work(item)  # its own errors of these classes end the process with another code
+        try:
+            pipe.send(answer)
+        except (BrokenPipeError, ConnectionResetError):
+            os._exit(0)
 
 
 class _Pool(Generic[Item, Answer]):

@@ -90,11 +90,12 @@ def _write_new(text: str, file: str) -> None:
     except OSError as reason:
         raise OutputError(files.write_problem(file, reason)) from None
     try:
-        files.write_all(number, text.encode())
+        try:
+            files.write_all(number, text.encode())
+        finally:
+            os.close(number)  # an open file cannot be removed on Windows
     except BaseException as reason:
         Path(file).unlink()
         if isinstance(reason, OSError):
             raise OutputError(files.write_problem(file, reason)) from None
         raise
-    finally:
-        os.close(number)

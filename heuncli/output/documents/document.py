@@ -263,7 +263,8 @@ def join_names(names: Sequence[str]) -> str:
 
 def write_decimal_comma(document: OutputDocument) -> OutputDocument:
     """Return the document with decimal commas."""
-    return document._replace(parts=[_convert_part(part) for part in document.parts])
+    facts = [(label, use_decimal_comma(text)) for label, text in document.facts]
+    return document._replace(facts=facts, parts=[_convert_part(part) for part in document.parts])
 
 
 def use_decimal_comma(text: str) -> str:

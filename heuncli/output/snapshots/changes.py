@@ -226,17 +226,16 @@ def _compare_sums(
         yield _make_absence_change(path, old)
         return
     factor_bound = old.error + new.error if tolerance.share is None else tolerance.share
-    for term, factor in old.factors.items():
-        other = new.factors.get(term)
-        are_numbers = not isinstance(factor, str) and not isinstance(other, str) and other is not None
-        if factor != other and not (are_numbers and abs(factor - other) <= factor_bound):  # type: ignore[operator]
-            yield Change(path, f"factor of {term}", "", factor, other, factor_bound)
+    for term in {**old.factors, **new.factors}:
+        change = _compare(path, f"factor of {term}", "", (old.factors.get(term), new.factors.get(term)), factor_bound)
+        yield from (change,) if change is not None else ()
     scaled = tolerance.scales.get(("joints", old.value.unit), 0.0)
     bound = old.value.error + new.value.error if tolerance.share is None else tolerance.share * scaled
     values, new_values = old.value.values, new.value.values
     compared = [
-        _compare(path, str(word), old.value.unit, (values[word], new_values[word]), bound)
-        for word in values.keys() & new_values.keys()
+        _compare(path, str(word), old.value.unit, (values.get(word), new_values.get(word)), bound)
+        for word in _choose_words(old.value, new.value)
+        if isinstance(word, str) or (word in values and word in new_values)  # runs may differ in even instants
     ]
     changes = [change for change in compared if change is not None]
     if changes:

@@ -14,6 +14,7 @@ from heuncli.output.documents.as_data import dump_json
 from heuncli.results.path_words import find_position_word, find_quantity, split_path
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
+from heuncli.results.results_schema import IMPULSES
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import collect_scene_names
 from heuncli.scene.file_format.rules.outcome import find_path_error
@@ -33,7 +34,7 @@ from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.study.queries.study import Study, make_friction_warning
 
 T = TypeVar("T")
-PATH = re.compile(r"[\w.]+(?:[@:][\w.:+-]*)*\Z")
+PATH = re.compile(r"[\w.]+(?:[@:][\w.+-]*)*\Z")
 SYNONYMS = {
     "last": "final", "end": "final", "start": "first", "initial": "first", "maximum": "max", "largest": "max",
     "highest": "max", "minimum": "min", "least": "min", "lowest": "min", "maxabs": "max abs", "peak": "max abs",
@@ -99,7 +100,8 @@ def find_absent_quantity(path: str, spec: Spec) -> tuple[str, str] | None:
     """Return what is wrong with a path to a quantity that this kind of joint, or this section, does not have, and a
     hint; None if nothing is.
     """
-    block, name, word = [*split_path(path), "", ""][:3]
+    words = split_path(path)
+    block, name, word = [*(words[2:] if words[0] == IMPULSES else words), "", "", ""][:3]
     if block == "sections" and word == "stress" and name in spec.sections and not spec.sections[name].properties:
         return f"'{path}': the section has no properties", "stresses need `properties`: heun explain stresses"
     section = spec.sections.get(name) if block == "sections" and word in ("deflection", "buckling") else None

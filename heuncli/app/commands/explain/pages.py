@@ -234,7 +234,7 @@ def _describe_quantity(path: str, keys: Sequence[str], row: Quantity) -> Iterato
     yield "meaning", meaning
     if row.units:
         twofold = " (translation or rotation)" if len(row.units) > 1 else ""
-        yield "unit", " or ".join(row.units).replace("1", "none") + twofold
+        yield "unit", " or ".join("none" if unit == "1" else unit for unit in row.units) + twofold
     if row.is_words:
         yield "form", "text"
         return
@@ -262,7 +262,7 @@ def _describe_members(node: Node) -> Iterator[str]:
     """Yield the keys of a block with their units and meanings."""
     for key, member in node.items():
         if isinstance(member, Quantity):
-            unit = " or ".join(member.units).replace("1", "") or "-"
+            unit = " or ".join(unit for unit in member.units if unit != "1") or "-"
             yield f"{key:<22}{unit:<12}{_describe_meaning(member)[:80]}"
         else:
             yield f"{key if key not in NAMES else key + ', a name':<22}..."

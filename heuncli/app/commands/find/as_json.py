@@ -85,12 +85,11 @@ def _iter_extremes(findings: IntervalFindings) -> Iterator[tuple[str, Sample]]:
 
 def _make_crossing_block(results: FindResults, crossing: Crossing) -> dict[str, Any]:
     """Return a crossing as the JSON has it."""
-    direction = DIRECTIONS[crossing.direction] if crossing.direction else None
     line = f"{results.interval.name}={results.interval.format_value(crossing.sample.x)}"
     return {
         **_make_place_block(results, crossing.sample),
         "error": crossing.error,
-        "way": direction,
+        "way": DIRECTIONS[crossing.direction],
         "flat": crossing.flat,
         "set": line,
     }

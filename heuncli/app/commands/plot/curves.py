@@ -97,12 +97,12 @@ def _require_cut_series(names: Sequence[str], spec: Spec) -> None:
             message = f"plot: sections.{name} is a single cut, not a series of cuts along a bar"
             hint = f"give the section from, to and count; or its loads over time: sections.{name}.M1"
             raise UsageError(Problem("bad-option", message, hint=hint))
-        known = [f"deflection{tail}" for tail in ("", *(f".{component}" for component in DEFLECTIONS))]
-        if quantity and (section.beam_theory is None or spec.analysis.type == "impulse" or quantity not in known):
+        quantities = [f"deflection{tail}" for tail in ("", *(f".{component}" for component in DEFLECTIONS))]
+        if quantity and (section.beam_theory is None or spec.analysis.type == "impulse" or quantity not in quantities):
             message = f"plot: sections.{name} has no {quantity}"
             hint = "give the section `deflection: true`: heun explain stresses"
             if section.beam_theory is not None:
-                hint = f"it has {', '.join(known)}; none of an impulse"
+                hint = f"it has {', '.join(quantities)}; none of an impulse"
             raise UsageError(Problem("bad-option", message, hint=hint))
 
 
@@ -120,12 +120,14 @@ def _list_paths(names: Sequence[str], spec: Spec) -> list[str]:
 
 
 def _parse_common_instants(sources: Sequence[FigureSource], words: str | None) -> list[float] | None:
-    """Return the instants of --at, which all runs must reach before their horizons. Raises UsageError."""
+    """Return the instants of --at in any of the runs, which all runs must reach before their horizons. Raises
+    UsageError.
+    """
     if words is None:
         return None
-    times: list[float] = []
-    for source in sources:
-        times = parse_instants(source, words).tolist()
+    times = sorted({time for source in sources for time in parse_instants(source, words).tolist()})
+    for source in sources if len(sources) > 1 else ():
+        parse_instants(source, ",".join(map(repr, times)))
     return times
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -12,7 +14,7 @@ from heuncli.app.cli.output import emit
 from heuncli.app.cli.solving import require_cases
 from heuncli.app.cli.target import TABLES, note_si_format
 from heuncli.app.commands.run.scene import RunTask, finish, note_measure_units, render_parts, solve_and_render
-from heuncli.output.documents.as_data import dump_json
+from heuncli.output.documents.as_data import dump_json, format_line
 from heuncli.output.documents.document import Cell, OutputColumn, OutputDocument, OutputTable
 from heuncli.output.snapshots.envelopes import Bound, NumberEnvelope, make_envelope
 from heuncli.output.snapshots.golden_file import RunSnapshot
@@ -80,9 +82,9 @@ def _render_text(task: RunTask, texts: Mapping[str, str], runs: Mapping[str, Run
 def _iter_csv(texts: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of all cases, each after the name of its case; the heads once."""
     for number, (name, text) in enumerate(texts.items()):
-        head, *lines = text.splitlines(keepends=True)
-        yield from [f"case,{head}"] if not number else []
-        yield from (f"{name},{line}" for line in lines)
+        head, *rows = csv.reader(io.StringIO(text, newline=""))
+        yield from [format_line(["case", *head])] if not number else []
+        yield from (format_line([name, *row]) for row in rows)
 
 
 def _iter_blocks(runs: Mapping[str, RunSnapshot]) -> Iterator[tuple[str, dict[str, Any]]]:

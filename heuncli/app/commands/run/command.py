@@ -197,7 +197,7 @@ def _clear_screen() -> None:
 
 
 def read_state(spec: str) -> State:
-    """Return the status of the spec and of the tables and curves that it names; it differs after a save."""
+    """Return the status of the spec and of the files that it names; it differs after a save."""
     from pathlib import Path  # 3 ms that a single run does not need
 
     return tuple(_read_stamp(Path(name)) for name in (spec, *_iter_files(spec)))
@@ -212,6 +212,9 @@ def _read_stamp(path: Path) -> tuple[str, int, int, int] | None:
     return str(path), status.st_mtime_ns, status.st_size, status.st_ino
 
 
+FILE_KEYS = frozenset({"file", "curve", "logo"})  # of tables and meshes, of expected curves, of reports
+
+
 def _iter_files(spec: str) -> Iterator[str]:
     """Yield the files that a spec names; none while it cannot be read."""
     from pathlib import Path
@@ -220,7 +223,16 @@ def _iter_files(spec: str) -> Iterator[str]:
         data = as_mapping(read_source(spec, None).data)
     except (HeunError, Finding):
         return
-    expected: Any = data.get("expect")
-    names = [as_mapping(table).get("file") for table in as_mapping(data.get("tables")).values()]
-    names += [as_mapping(item).get("curve") for item in (expected if isinstance(expected, list) else [])]
-    yield from (str(Path(spec).parent / name) for name in names if isinstance(name, str))
+    yield from (str(Path(spec).parent / name) for name in _iter_file_names(data))
+
+
+def _iter_file_names(data: Any) -> Iterator[str]:
+    """Yield the texts under a key of a file anywhere in a spec; the keys that a load case sets are dotted."""
+    if isinstance(data, list):
+        for item in data:
+            yield from _iter_file_names(item)
+    for key, value in as_mapping(data).items():
+        if isinstance(value, str) and str(key).rpartition(".")[2] in FILE_KEYS:
+            yield value
+        else:
+            yield from _iter_file_names(value)

@@ -115,6 +115,8 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
     def iter_missing() -> Iterator[int]:
         """Yield the variants without a stored result, and link the others to theirs."""
         for variant in plan.iter_numbers(sweep.shard):
+            if stopping.number:  # a batch in this process cannot wait for the descriptor
+                return
             values = plan.find_values(variant)
             variant_values = PendingVariant(sweep.keys.make_key(values), values)
             if store.has_result(variant_values.key):
@@ -228,7 +230,7 @@ def _raise_common_error(sweep: SweepTask, rows: StoredRows) -> None:
 
 EXCLUDED_OPTIONS = (
     "words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance", "zip",
-    "samples", "seed", "indices",
+    "samples", "seed", "indices", "dask", "no_reduce", "least_norm",
 )  # fmt: skip
 
 
@@ -261,7 +263,7 @@ def _require_alone(request: SweepRequest) -> None:
     """Raise UsageError for options that would solve something."""
     fields = {field.name: field for field in list_fields(SweepRequest)}
     for name in EXCLUDED_OPTIONS:
-        if fields[name].read_value(request):
+        if fields[name].read_value(request) != fields[name].default:
             word = " ".join(request.words) if name == "words" else f"--{name.removesuffix('_each').replace('_', '-')}"
             hint = "leave it out; --show solves nothing. Or name the store with --store"
             raise UsageError(Problem("bad-option", f"--show and {word} cannot be combined", hint=hint))
