@@ -133,7 +133,7 @@ def solve_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], r
     previous_size: cython.double = 0.0
     best: cython.double = 1.0
     ratio: cython.double
-    begin_stages(scene, method, run)
+    begin_stages(method, run)
     for k in range(MAX_NEWTON_ITERATIONS):
         evaluate_stages(scene, method, run)
         size = correct_stages(method, run)
@@ -167,7 +167,7 @@ def is_noise(
     return size <= scene.limits.newton_part * run.control.tolerance or size <= scene.limits.newton_rounding
 
 
-def begin_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+def begin_stages(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """Start W and Z with the solution of the linear equations at the start, and find the sizes that corrections are
     compared with.
     """
@@ -187,8 +187,6 @@ def begin_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], r
     solve_blocks(formula, run)
     add_correction(formula, run)
     newton.rate = newton.reach = 0.0
-    if run.control.is_balanced:
-        newton.rate = scene.limits.slow_rate * run.control.imposed_rate
     update_reference_sizes(run, run.y)
     for k in range(formula.stages):
         update_reference_sizes(run, newton.Z[k])

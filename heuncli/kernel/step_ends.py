@@ -109,7 +109,7 @@ def accept_step(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
     i: cython.Py_ssize_t
     code: cython.int = REACHED
     run.control.retries = 0
-    if method.implicit or not (run.following or run.determined or method.fixed):
+    if not (run.following or run.determined or method.fixed):
         update_imposed_rate(scene, run)
     sample_step(scene, method, run)
     if run.track.has_courses:

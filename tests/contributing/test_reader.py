@@ -29,7 +29,7 @@ from heuncli.scene.file_format.models import ZERO
 NONE = (ZERO, ZERO, ZERO)
 
 
-def described(_content: bytes, file: str, root: XmlElement, _asked: ImportOptions, sha256: str) -> DescribedMachine:
+def read_model(_content: bytes, file: str, root: XmlElement, _asked: ImportOptions, sha256: str) -> DescribedMachine:
     """The machine that a file of bobs describes."""
     wanted = [bob.attributes["name"] for bob in root.children]
     names = assign_names("bob", wanted)

@@ -8,7 +8,6 @@ import pytest
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from tests.shared.scenes import solved
 
 DISH = """
 heun: 1
@@ -103,11 +102,3 @@ def test_what_rests_between_drives_and_loads_takes_few_steps(name: str) -> None:
     run = setup.runner.run(MotionTask(np.linspace(0.0, last, 5), 1e-10))
     assert run.steps <= most
     assert np.abs(run.states[:, 0]).max() < 1e-6
-
-
-@pytest.mark.parametrize("method", ["Gauss4", "Gauss6", "Radau5", "Radau9"])
-@pytest.mark.parametrize("text", [dish(), ROTOR, star("1e6")])
-def test_implicit_stages_are_solved_to_the_rounding_of_what_is_in_balance(text: str, method: str) -> None:
-    step = ", step: 0.02" if method.startswith("Gauss") else ""
-    found = solved(text.replace("duration: ", f"method: {method}{step}, duration: "))
-    assert found.work["steps"] < 120
