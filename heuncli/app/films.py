@@ -14,7 +14,7 @@ from pathlib import Path, PurePath
 from heuncli.app.cli import timeout
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.process import BROWSERS, find_program, list_browser_options, run_program
+from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.output.web_page.moving_page import Film
 
 MAX_SECONDS = 300.0  # of a program, unless --time-limit leaves less

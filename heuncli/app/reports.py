@@ -15,7 +15,8 @@ from heuncli.app.cli.options import REPORT_FORMATS
 from heuncli.base.errors import Finding, HeunError, OutputError, Problem, UsageError
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.process import BROWSERS, find_program, list_browser_options, result_memory, run_program
+from heuncli.base.process import result_memory
+from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
 from heuncli.output.client_report.report_data import (

@@ -7,6 +7,7 @@ import io
 import os
 import sqlite3
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from heuncli.app.commands.run import cases
 from heuncli.app.commands.run.command import read_state
 from heuncli.app.commands.sweep import running
 from heuncli.app.commands.sweep.request import SweepRequest
-from heuncli.base import process, signals
+from heuncli.base import programs, signals
 from heuncli.base.errors import Finding, SpecError, UsageError
 from heuncli.base.text_safety import escape
 from heuncli.base.units import parse_unit
@@ -94,10 +95,29 @@ def test_a_store_without_its_version_is_damaged(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
 def test_a_child_that_holds_the_output_ends_too(tmp_path: Path) -> None:
-    _, reason = process.run_program(["sh", "-c", "sleep 60 & echo $! > child"], str(tmp_path), 0.3)
+    _, reason = programs.run_program(["sh", "-c", "sleep 60 & echo $! > child"], str(tmp_path), 0.3)
     assert "longer than 0.3 s" in reason
-    state = Path(f"/proc/{(tmp_path / 'child').read_text().strip()}/stat")
-    assert not state.exists() or state.read_text().split()[2] == "Z"
+    assert has_ended(tmp_path / "child")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
+def test_a_child_ends_with_a_program_that_succeeds(tmp_path: Path) -> None:
+    line = "sleep 60 > /dev/null 2>&1 & echo $! > child; echo done"
+    assert programs.run_program(["sh", "-c", line], str(tmp_path), 10.0) == (b"done\n", "")
+    assert has_ended(tmp_path / "child")
+
+
+def has_ended(file: Path) -> bool:
+    """Whether the process whose number stands in a file has ended, or does so within a second."""
+    state = Path(f"/proc/{file.read_text().strip()}/stat")
+    for _ in range(100):
+        try:
+            if state.read_text().split()[2] == "Z":
+                return True
+        except (FileNotFoundError, ProcessLookupError):
+            return True
+        time.sleep(0.01)
+    return False
 
 
 def test_one_cleanup_does_not_stop_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
