@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
@@ -17,7 +18,16 @@ from heuncli.scene.importers.sdf.frames import (
     invert_pose,
 )
 from heuncli.scene.importers.sdf.values import read_child_flag, read_child_number, read_child_word, read_values
-from heuncli.scene.importers.urdf.document import NO_LIMIT, X_AXIS, Mimic, UrdfJoint, UrdfLink
+from heuncli.scene.importers.urdf.document import (
+    NO_LIMIT,
+    X_AXIS,
+    LinkPose,
+    LoopJoint,
+    Mimic,
+    UrdfJoint,
+    UrdfLink,
+    make_massless_link,
+)
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
@@ -203,14 +213,16 @@ def _read_mimic(axis: XmlElement, scope: str, path: str, fields: UrdfFields) -> 
 
 def make_joints(
     joints: list[SdfJoint], links: dict[str, UrdfLink], frames: FrameTree, model: XmlElement
-) -> dict[str, UrdfJoint]:
-    """Make the joints of URDF in the order of the file, and add the links without mass that they need to `links`: the
-    world, and the frames, which are fixed to what they are attached to, and so become points.
+) -> tuple[dict[str, UrdfJoint], tuple[LoopJoint, ...]]:
+    """Make the joints of URDF in the order of the file, and those that close loops of the others. The links without
+    mass that they need are added to `links`: the world, and the frames, which are fixed to what they are attached to,
+    and so become points.
     """
-    fields, urdf_joints = frames.fields, dict[str, UrdfJoint]()
+    fields, urdf_joints, loop_joints = frames.fields, dict[str, UrdfJoint](), list[LoopJoint]()
     frame_names = {name for name, frame in frames.frames.items() if frame.element.tag == "frame"}
     link_names = {*links, WORLD}
     by_name = {joint.name: joint for joint in joints}
+    names_of_loop_joints = _find_loop_joints(joints, link_names, frames)
     for name, frame in frames.frames.items():
         if name in by_name:
             joint = by_name[name]
@@ -232,7 +244,10 @@ def make_joints(
             else:
                 if parent == WORLD and WORLD not in links:
                     links[WORLD] = make_massless_link(WORLD, model)
-                _make_joint(joint, parent, child, links, urdf_joints, frames)
+                if name in names_of_loop_joints:
+                    loop_joints.append(_make_loop_joint(joint, parent, child, frames))
+                else:
+                    _make_joint(joint, parent, child, links, urdf_joints, frames)
         elif name in frame_names and (link := frames.find_link(name, link_names)) not in (None, WORLD):
             attached_to = frame.attached_to if frame.attached_to in frame_names else link
             assert attached_to is not None
@@ -240,12 +255,35 @@ def make_joints(
             pose = frames.compute_pose(name, attached_to)
             mount = frames.choose_name(f"{name}_mount")
             urdf_joints[mount] = UrdfJoint(mount, frame.element, "fixed", attached_to, name, pose, X_AXIS)
-    return urdf_joints
+    return urdf_joints, tuple(loop_joints)
 
 
-def make_massless_link(name: str, element: XmlElement) -> UrdfLink:
-    """Make a link without mass and shapes that stands at the place of an element of the file."""
-    return UrdfLink(name, XmlElement("link", {}, [], element.line, element.column), None)
+def _find_loop_joints(joints: Iterable[SdfJoint], links: set[str], frames: FrameTree) -> set[str]:
+    """Find the joints that close loops: those that a walk from the roots outward does not take, as it reached their
+    child by another joint before. Roots are the links that no joint carries, and the first of a loop without one.
+    """
+    outward: dict[str, list[SdfJoint]] = {}
+    carried: set[str] = set()
+    for joint in joints:
+        parent = frames.find_link(joint.parent, links)
+        child = frames.find_link(joint.child, links)
+        if parent is not None and child is not None:
+            outward.setdefault(parent, []).append(joint)
+            carried.add(child)
+    names = [name for name in frames.frames if name in links]
+    reached, found = set[str](), set[str]()
+    for start in (*(name for name in names if name not in carried), *names):
+        queue = [] if start in reached else [start]
+        reached.update(queue)
+        for name in queue:  # the list grows during the loop
+            for joint in outward.get(name, ()):
+                child = frames.find_link(joint.child, links)
+                if child in reached:
+                    found.add(joint.name)
+                elif child is not None:
+                    reached.add(child)
+                    queue.append(child)
+    return found
 
 
 def _find_end(
@@ -257,6 +295,27 @@ def _find_end(
         hint = suggest(name, frames.frames, "frames")
         frames.fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is not there", hint)
     return name if tag == "parent" and name in frame_names and link not in (None, WORLD) else link
+
+
+def _turn_axis(joint: SdfJoint, frames: FrameTree) -> Vec:
+    """Return the axis of a joint in the joint's own frame."""
+    turn = frames.compute_pose(joint.axis.frame, joint.name)
+    if turn.rpy == ZERO:
+        return joint.axis.direction
+    return rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), joint.axis.direction)
+
+
+def _make_urdf_joint(joint: SdfJoint, parent: str, child: str, pose: LinkPose, axis: Vec) -> UrdfJoint:
+    part = joint.axis
+    return UrdfJoint(
+        joint.name, joint.element, joint.kind, parent, child, pose, axis, part.limits, part.effort,
+        part.mimic, part.damping, part.friction, part.stiffness, part.reference,
+    )  # fmt: skip
+
+
+def _make_loop_joint(joint: SdfJoint, parent: str, child: str, frames: FrameTree) -> LoopJoint:
+    in_parent, in_child = (frames.compute_pose(joint.name, link) for link in (parent, child))
+    return LoopJoint(_make_urdf_joint(joint, parent, child, in_parent, _turn_axis(joint, frames)), in_child)
 
 
 def _make_joint(
@@ -271,18 +330,11 @@ def _make_joint(
     in_child = frames.compute_pose(joint.name, child)
     is_at_child = in_child == NO_POSE or joint.kind == "fixed"
     in_parent = frames.compute_pose(child if is_at_child else joint.name, parent)
-    axis = joint.axis.direction
-    turn = frames.compute_pose(joint.axis.frame, joint.name)
-    if turn.rpy != ZERO:
-        axis = rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis)
     own_child = child
     if not is_at_child:
         own_child = frames.choose_name(f"{joint.name}_frame")
         links[own_child] = make_massless_link(own_child, joint.element)
         name = frames.choose_name(f"{joint.name}_mount")
         urdf_joints[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
-    part = joint.axis
-    urdf_joints[joint.name] = UrdfJoint(
-        joint.name, joint.element, joint.kind, parent, own_child, in_parent, axis, part.limits, part.effort,
-        part.mimic, part.damping, part.friction, part.stiffness, part.reference,
-    )  # fmt: skip
+    axis = _turn_axis(joint, frames)
+    urdf_joints[joint.name] = _make_urdf_joint(joint, parent, own_child, in_parent, axis)

@@ -41,7 +41,7 @@ from heuncli.scene.importers.urdf.carriers import (
     place_links,
 )
 from heuncli.scene.importers.urdf.coordinates import RobotCoordinates
-from heuncli.scene.importers.urdf.document import Robot, UrdfLink, read_robot
+from heuncli.scene.importers.urdf.document import WORLD_LINK, Robot, UrdfLink, read_robot
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.urdf.masses import (
     LinkMass,
@@ -84,7 +84,13 @@ def build_machine(
     bodies = dict(zip(carriers, assign_names("link", carriers), strict=True))
     points = RobotPoints()
     spec_joints = [
-        *iter_spec_joints(validated_robot.tree, validated_robot.placed_links, validated_robot.is_grounded, points)
+        *iter_spec_joints(
+            validated_robot.tree,
+            validated_robot.placed_links,
+            validated_robot.is_grounded,
+            points,
+            validated_robot.robot.loop_joints,
+        )
     ]
     points.assign_names(bodies)
     names = assign_names("joint", [one.original for one in spec_joints])
@@ -219,7 +225,6 @@ def _joint_kind(validated_robot: ValidatedRobot, link: str) -> str:
 
 # Reader
 
-WORLD_LINK = "world"  # a root link of this name is the ground
 MASSLESS_HINT = (
     "give it an <inertial>; --density fills boxes, cylinders, spheres, meshes; --repair massless gives it 1 mg"
 )
