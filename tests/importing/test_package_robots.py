@@ -27,8 +27,8 @@ pytestmark = pytest.mark.heavy
 REPAIRS = frozenset(READERS[0].repairs)
 # of URDF: those that are read, those that are with all repairs, all
 COUNTS = {
-    "airo-models": (7, 15, 16), "compas-fab": (3, 6, 6), "drake": (13, 14, 14), "example-robot-data": (38, 67, 69),
-    "genesis-world": (13, 25, 34), "icub-models": (13, 16, 16), "mani-skill": (29, 48, 60),
+    "airo-models": (7, 15, 16), "compas-fab": (3, 6, 6), "drake": (13, 14, 14), "example-robot-data": (39, 67, 69),
+    "genesis-world": (13, 25, 34), "icub-models": (13, 16, 16), "mani-skill": (32, 48, 60),
     "pybullet": (1057, 1074, 1095), "robosuite": (4, 4, 5), "rtb-data": (3, 8, 9),
 }  # fmt: skip
 MODELS = {"robosuite": 21, "robosuite-models": 18}  # of MuJoCo that hold themselves by drives alone
