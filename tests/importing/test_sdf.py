@@ -230,6 +230,29 @@ def test_a_loop_is_closed_by_its_last_joint_and_moves_as_the_spec_by_hand(order:
         near(results[1].joints[name]["force"][:, (0, 2)], force, float(np.abs(force).max()), 1e-7)
 
 
+@pytest.mark.parametrize("kind", ["universal", "revolute2"])
+def test_a_joint_of_two_axes_turns_about_both(kind: str) -> None:
+    """One axis after the other: as two joints with a link of no mass between, where that link is written."""
+    limits = "<limit><lower>-1</lower><upper>1</upper></limit>"
+    axes = f"<axis><xyz>0 0 1</xyz></axis><axis{{}}><xyz>0 1 0</xyz>{limits}</axis{{}}>"
+    links = f'<link name="base">{MASS}</link><link name="leg"><pose>1 0 0 0 0 0</pose>{MASS}</link>'
+    ends = "<pose>-0.2 0 0 0 0.3 0</pose><parent>{}</parent><child>{}</child>"
+    own = f"<joint name='a' type='{kind}'>{ends.format('base', 'leg')}{axes.format(2, 2)}</joint>"
+    first, second = axes.split("<axis{}>")
+    by_hand = (
+        '<link name="a_cross"><pose relative_to="leg">-0.2 0 0 0 0.3 0</pose>'
+        "<inertial><mass>0</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></inertial></link>"
+        f"<joint name='a' type='revolute'><parent>base</parent><child>a_cross</child>{first}</joint>"
+        f"<joint name='a_2' type='revolute'>{ends.format('a_cross', 'leg')}<axis>{second.format('')}</joint>"
+    )
+    head = f'<sdf version="1.9"><model name="m">{links}'
+    specs = [yaml.safe_load(imported(f"{head}{text}</model></sdf>")) for text in (own, by_hand)]
+    assert specs[0]["joints"] == specs[1]["joints"] and specs[0]["drives"] == specs[1]["drives"]
+    assert [joint["type"] for joint in specs[0]["joints"].values()] == ["weld", "pin", "pin"]
+    near(specs[0]["joints"]["a"]["axis"], [np.sin(0.3), 0, np.cos(0.3)], 1.0, 1e-14)
+    assert specs[0]["bodies"]["a_cross"]["mass"] == 0 and specs[0]["bodies"]["leg"] == specs[1]["bodies"]["leg"]
+
+
 def test_a_loop_without_a_root_hangs_on_its_first_link() -> None:
     text = four_bar_sdf(tuple("abcd"), np.random.default_rng(1)).replace("<parent>world", "<parent>rocker", 1)
     text = text.replace("<parent>world</parent><child>rocker", "<parent>rocker</parent><child>crank")
@@ -290,7 +313,8 @@ REFUSED = {
     "old pose": (model('<frame name="f"><pose frame="leg">0 0 0 0 0 0</pose></frame>'), "import-attribute", "gz sdf"),
     "not six": (model('<frame name="f"><pose>0 0 0</pose></frame>'), "import-number", "numbers"),
     "screw": (model(kind="screw"), "import-joint", "screw"),
-    "universal": (model(kind="universal"), "import-joint", "two joints"),
+    "gearbox": (model(kind="gearbox"), "import-joint", "ratio"),
+    "universal with one axis": (model(kind="universal"), "import-missing", "axis2"),
     "no axis": (model().replace("<axis><xyz>0 1 0</xyz></axis>", ""), "import-missing", "axis"),
     "unknown part": (model("<jiont/>"), "import-part", "joint"),
     "another file": (model("<include><uri>model://x</uri></include>"), "import-part", "gz sdf"),

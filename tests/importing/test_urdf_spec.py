@@ -149,10 +149,10 @@ def test_repairs_change_as_little_as_they_can_and_say_so():
         return f'<inertial><mass value="2"/><inertia {words}/></inertial>'
 
     parts = [
-        link("a", inertial(1, 1, 3)), link("b", inertial(-1, 1, 1)), link("c", inertial(0, 0, 0)), link("d", ""), link("f", ""),
+        link("a", inertial(1, 1, 3)), link("b", inertial(-1, 1, 1)), link("c", inertial(0, 0, 0)), link("d", ""),
         link("e", inertial(2, 2, 3, 1)), joint("j", "a", "b", "revolute"), joint("k", "b", "c", "revolute"),
         joint("l", "c", "d", "revolute"), joint("m", "d", "e", "revolute"),
-        joint("n", "e", "f", "revolute"),
+        link("f", ""), joint("n", "e", "f", "revolute"),
     ]  # fmt: skip
     text = imported(robot(*parts), repair=frozenset({"triangle", "negative", "zero", "massless"}))
     bodies = spec_of(text).bodies

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Vec
 from heuncli.scene.importers.attitudes import rotate_vector, rotation_from_roll_pitch_yaw
@@ -31,15 +32,13 @@ from heuncli.scene.importers.urdf.document import (
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
-KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball")
+KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2")
+KINDS_OF_TWO_AXES = ("universal", "revolute2")  # the first axis is fixed in the parent, the second in the child
 KIND_HINTS = {
-    "universal": "write two joints of type revolute with a link without mass between",
-    "revolute2": "write two joints of type revolute with a link between",
     "screw": "write a joint of type prismatic, import, and add a coupling of type screw to the spec",
     "gearbox": "write a joint of type revolute, import, and add a coupling of type ratio to the spec",
 }
 JOINT_NOISE = ("sensor", "physics", "plugin")
-JOINT_PARTS = ("pose", "parent", "child", "axis")
 AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
 LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
 DYNAMICS_PARTS = ("damping", "friction", "spring_stiffness", "spring_reference")
@@ -66,8 +65,14 @@ class JointAxis(NamedTuple):
     reference: float
 
 
+NO_AXIS = JointAxis((0.0, 0.0, 1.0), "", None, None, None, 0.0, 0.0, 0.0, 0.0)  # of a joint that is fixed or a ball
+
+
 class SdfJoint(NamedTuple):
-    """A joint as the file has it. Its ends are scoped names of frames."""
+    """A joint as the file has it. Its ends are scoped names of frames.
+
+    second_axis: of a joint of two axes, which turn one after the other
+    """
 
     name: str
     element: XmlElement
@@ -75,6 +80,7 @@ class SdfJoint(NamedTuple):
     parent: str
     child: str
     axis: JointAxis
+    second_axis: JointAxis | None = None
 
     @property
     def path(self) -> str:
@@ -103,23 +109,37 @@ def read_joint(
     for part in element.children:
         if part.tag in JOINT_NOISE or ":" in part.tag:
             ignored_tags[f"{part.tag} in joints"] += 1
-    fields.report_unknown_parts(element, path, *JOINT_PARTS, *JOINT_NOISE)
+    fields.report_unknown_parts(element, path, "pose", "parent", "child", "axis", *_list_axis_tags(kind), *JOINT_NOISE)
     ends = [read_child_word(element, tag, path, fields) for tag in ("parent", "child")]
     parent, child = (None if end is None else WORLD if end == WORLD else f"{scope}{end}" for end in ends)
-    axis = fields.find_child(element, "axis", path) if kind not in ("fixed", "ball") else None
-    if axis is None and kind not in (None, "fixed", "ball"):
-        fields.report("import-missing", element, path, "<axis> is missing", "add <axis><xyz>0 0 1</xyz></axis>")
-        kind = None
     problem_count = len(fields.problems)
     own = f"{scope}{name}"
-    parts = _read_axis(
-        axis or XmlElement("axis", {}, [], element.line, element.column), scope, own, has_model_axes, path, fields
-    )
+    axes: list[JointAxis] = []
+    for tag in _list_axis_tags(kind):
+        axis = fields.find_child(element, tag, path)
+        if axis is None:
+            hint = f"add <{tag}><xyz>0 0 1</xyz></{tag}>"
+            fields.report("import-missing", element, path, f"<{tag}> is missing", hint)
+        else:
+            axes.append(_read_axis(axis, scope, own, has_model_axes, path, fields))
     if name is None or kind is None or parent is None or child is None or len(fields.problems) > problem_count:
         return None
-    if kind == "revolute" and parts.limits is None:
-        kind = "continuous"
-    return SdfJoint(own, element, kind, parent, child, parts)
+    if not axes:
+        return SdfJoint(own, element, kind, parent, child, NO_AXIS._replace(frame=own))
+    if kind not in ("prismatic", "continuous"):
+        kind = _find_kind_of_turning(axes[0])
+    return SdfJoint(own, element, kind, parent, child, *axes)
+
+
+def _list_axis_tags(kind: str | None) -> tuple[str, ...]:
+    """List the tags of the axes that a kind of joint has."""
+    if kind in (None, "fixed", "ball"):
+        return ()
+    return ("axis", "axis2") if kind in KINDS_OF_TWO_AXES else ("axis",)
+
+
+def _find_kind_of_turning(axis: JointAxis) -> str:
+    return "continuous" if axis.limits is None else "revolute"
 
 
 def _read_axis(
@@ -297,25 +317,28 @@ def _find_end(
     return name if tag == "parent" and name in frame_names and link not in (None, WORLD) else link
 
 
-def _turn_axis(joint: SdfJoint, frames: FrameTree) -> Vec:
-    """Return the axis of a joint in the joint's own frame."""
-    turn = frames.compute_pose(joint.axis.frame, joint.name)
+def _turn_axis(axis: JointAxis, joint: str, frames: FrameTree) -> Vec:
+    """Return an axis of a joint in the joint's own frame."""
+    turn = frames.compute_pose(axis.frame, joint)
     if turn.rpy == ZERO:
-        return joint.axis.direction
-    return rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), joint.axis.direction)
+        return axis.direction
+    return rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis.direction)
 
 
-def _make_urdf_joint(joint: SdfJoint, parent: str, child: str, pose: LinkPose, axis: Vec) -> UrdfJoint:
+def _make_urdf_joint(joint: SdfJoint, parent: str, child: str, pose: LinkPose, frames: FrameTree) -> UrdfJoint:
     part = joint.axis
     return UrdfJoint(
-        joint.name, joint.element, joint.kind, parent, child, pose, axis, part.limits, part.effort,
-        part.mimic, part.damping, part.friction, part.stiffness, part.reference,
+        joint.name, joint.element, joint.kind, parent, child, pose, _turn_axis(part, joint.name, frames), part.limits,
+        part.effort, part.mimic, part.damping, part.friction, part.stiffness, part.reference,
     )  # fmt: skip
 
 
 def _make_loop_joint(joint: SdfJoint, parent: str, child: str, frames: FrameTree) -> LoopJoint:
+    if joint.second_axis is not None:
+        message, hint = "a joint of two axes closes a loop", "exchange it with another joint of the loop in the file"
+        frames.fields.report("import-joint", joint.element, joint.path, message, hint)
     in_parent, in_child = (frames.compute_pose(joint.name, link) for link in (parent, child))
-    return LoopJoint(_make_urdf_joint(joint, parent, child, in_parent, _turn_axis(joint, frames)), in_child)
+    return LoopJoint(_make_urdf_joint(joint, parent, child, in_parent, frames), in_child)
 
 
 def _make_joint(
@@ -326,7 +349,9 @@ def _make_joint(
     urdf_joints: dict[str, UrdfJoint],
     frames: FrameTree,
 ) -> None:
-    """Make one joint, and a second that fixes the child to it where its pose differs from that of the child."""
+    """Make one joint: with a link without mass between its two axes, if it has two, and with a second joint that fixes
+    the child to it where its pose differs from that of the child.
+    """
     in_child = frames.compute_pose(joint.name, child)
     is_at_child = in_child == NO_POSE or joint.kind == "fixed"
     in_parent = frames.compute_pose(child if is_at_child else joint.name, parent)
@@ -336,5 +361,12 @@ def _make_joint(
         links[own_child] = make_massless_link(own_child, joint.element)
         name = frames.choose_name(f"{joint.name}_mount")
         urdf_joints[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
-    axis = _turn_axis(joint, frames)
-    urdf_joints[joint.name] = _make_urdf_joint(joint, parent, own_child, in_parent, axis)
+    if joint.second_axis is None:
+        urdf_joints[joint.name] = _make_urdf_joint(joint, parent, own_child, in_parent, frames)
+        return
+    cross = frames.choose_name(f"{joint.name}_cross")
+    links[cross] = make_massless_link(cross, joint.element)
+    urdf_joints[joint.name] = _make_urdf_joint(joint, parent, cross, in_parent, frames)
+    second = joint._replace(axis=joint.second_axis, kind=_find_kind_of_turning(joint.second_axis))
+    name = frames.choose_name(f"{joint.name}_2")
+    urdf_joints[name] = replace(_make_urdf_joint(second, cross, own_child, NO_POSE, frames), name=name)
