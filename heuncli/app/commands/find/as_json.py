@@ -89,7 +89,7 @@ def _make_crossing_block(results: FindResults, crossing: Crossing) -> dict[str, 
     return {
         **_make_place_block(results, crossing.sample),
         "error": crossing.error,
-        "way": DIRECTIONS[crossing.direction],
+        "way": DIRECTIONS[crossing.direction] if crossing.direction else None,  # at an end it may not pass the value
         "flat": crossing.flat,
         "set": line,
     }
