@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
 from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError
-from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
+from heuncli.analyses.variants.course_extremes import GREATEST, LEAST, find_extreme, refine_extreme
 from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.analyses.variants.parameters import AxisError, split_at_commas, split_name
 from heuncli.analyses.variants.samples import Sample, make_sample
@@ -139,11 +139,12 @@ def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -
         for x in (0.0, -INNER_FRACTION * t, INNER_FRACTION * t):
             course.sample_at(x)
         missing = max(
-            max(refine_extreme(course, sign, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0) for sign in (-1, 1)
+            max(refine_extreme(course, sign, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0)
+            for sign in (LEAST, GREATEST)
         )
     except SampleLimitError:
         pass
-    low, high = find_extreme(course, -1), find_extreme(course, 1)
+    low, high = find_extreme(course, LEAST), find_extreme(course, GREATEST)
     assert low is not None and high is not None  # the value itself is solved
     return low, high, missing, len(course.samples)
 
