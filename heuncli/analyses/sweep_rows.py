@@ -14,8 +14,8 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
-from heuncli.analyses.variants.evaluation import Values
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureLabel, VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
@@ -173,7 +173,7 @@ class JumpFinder:
 
     def __init__(self, plan: Plan, measure_count: int) -> None:
         """measure_count: number of measures of each variant"""
-        self._axis = plan.axes[-1] if _has_course(plan) else None
+        self._axis = plan.course_axis
         self._course = -1
         self._windows: list[deque[SweptSample]] = [deque(maxlen=WINDOW) for _ in range(measure_count)]
         self.jumps: list[SweptJump] = []
@@ -216,11 +216,6 @@ class JumpFinder:
             place = len(samples) - 1 - from_end
             if place >= 1 and is_swept_jump(samples, place):
                 self.jumps.append(SweptJump(k, samples[place], samples[place + 1]))
-
-
-def _has_course(plan: Plan) -> bool:
-    """Return whether the last axis varies alone, over numbers."""
-    return plan.draws is None and bool(plan.axes) and (not plan.together or len(plan.axes) == 1)
 
 
 def is_swept_jump(samples: Sequence[SweptSample], place: int) -> bool:

@@ -11,9 +11,9 @@ import pytest
 from heuncli.analyses.tune.results import TuneGoal, TuneResults, TuneTask
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import Trials
-from heuncli.analyses.variants.evaluation import Values
-from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, Comparison, MeasureValue, VariantResult
-from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.analyses.variants.conditions import Comparison
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, MeasureValue, VariantResult
+from heuncli.analyses.variants.parameters import DesignVariable, Values
 from heuncli.results.results import Array
 
 Function = Callable[[Array], float]

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.analyses.variants.measures import Comparison
+from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.analyses.variants.samples import Sample
 from heuncli.base.named_tuples import NamedTuple

@@ -27,9 +27,9 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.search import check_scan, iter_possible_meetings, search
 from heuncli.analyses.find.touches import find_touches, step_towards_value
+from heuncli.analyses.variants.conditions import SIDES, Relation
 from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError
 from heuncli.analyses.variants.course_extremes import GREATEST, LEAST, find_extreme, refine_extreme
-from heuncli.analyses.variants.measures import SIDES, Relation
 from heuncli.analyses.variants.samples import AT_VALUE, LEFT, RIGHT, Sample
 
 CROSSING_HALVINGS = 8  # halvings towards a crossing with an uncertain slope: to a 250th of the neighbour's distance

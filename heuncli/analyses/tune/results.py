@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from heuncli.analyses.variants.measures import Comparison, Reason, VariantResult
+from heuncli.analyses.variants.conditions import Comparison
+from heuncli.analyses.variants.measures import Reason, VariantResult
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record

@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from heuncli.analyses.tune.results import Trial, TuneTask, make_values
-from heuncli.analyses.variants.evaluation import Values
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.results.results import Array
 from heuncli.scene.file_format.quantity import NumberWithUnit
 

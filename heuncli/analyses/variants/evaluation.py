@@ -12,14 +12,13 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from heuncli.analyses.variants.measures import MeasureValue, VariantResult, make_failed_result
-from heuncli.analyses.variants.parameters import CASE, DesignVariable, format_value
+from heuncli.analyses.variants.parameters import CASE, DesignVariable, Values, format_value
 from heuncli.analyses.variants.solver import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFile, PreloadedFiles
-from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.study.model.options import Options
 from heuncli.study.queries.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value
 from heuncli.study.queries.measure_uncertainty import measure_uncertainty
@@ -29,7 +28,6 @@ EXTREME_REDUCERS = ("max", "min", "abs")
 SAMPLE_PLACES = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which its values are checked
 EVENT_BLOCKS = (IMPULSES, EVENTS)  # their number differs from run to run
 SPELLING_CODES = ("set-in-si",)  # warnings about how values are written: shown once for an axis, not for variants
-Values = Mapping[str, ParameterValue]  # of a variant: what is set in it, by name
 
 
 class Recipe(NamedTuple):

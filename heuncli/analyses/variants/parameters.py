@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, get_args
 
 import numpy as np
@@ -29,7 +29,8 @@ from heuncli.scene.file_format.source import parse_plain_scalar
 
 Law = Literal["normal", "uniform", "lhs", "sobol"]
 CASE = "case"  # the name by which an axis varies the load case
-RESOLUTION_DIGITS = 9  # of a design variable, relative to the width of its interval
+RESOLUTION_DIGITS = 9  # digits of a design variable, relative to the width of its interval
+Values = Mapping[str, ParameterValue]  # what is set in a variant, by name
 
 
 class ParameterAxis(NamedTuple):
