@@ -104,17 +104,17 @@ def sample_and_learn(course: MeasureCourse, x: float) -> Sample:
 def predict_course(course: MeasureCourse, i: int, places: Array | None = None) -> CoursePrediction:
     """Predict the course between the i-th sample and the next; places: only there, otherwise at PLACES."""
     left, right = course.samples[i], course.samples[i + 1]
-    near = find_surroundings(course, i)
+    surroundings = find_surroundings(course, i)
     x = left.x + PLACES * (right.x - left.x) if places is None else places
-    if near.is_two_sided and places is None:
-        x = np.sort(np.append(x, find_intersection(*near.samples)))
-    noise = NOISE * max(sample.error for sample in near.samples)
-    if len(near.samples) == 2:
+    if surroundings.is_two_sided and places is None:
+        x = np.sort(np.append(x, find_intersection(*surroundings.samples)))
+    noise = NOISE * max(sample.error for sample in surroundings.samples)
+    if len(surroundings.samples) == 2:
         uncertainty = np.full(len(x), max(course.gap_range, left.distance, right.distance))
-        return CoursePrediction(x, interpolate(near.samples, x), uncertainty, noise, uncertainty)
-    model = choose_model(course, near, x)
+        return CoursePrediction(x, interpolate(surroundings.samples, x), uncertainty, noise, uncertainty)
+    model = choose_model(course, surroundings, x)
     spread = model.spread
-    known = [sample.gap_or_zero for sample in near.samples]
+    known = [sample.gap_or_zero for sample in surroundings.samples]
     steps = (max(known) - min(known)) * (x - left.x) * (right.x - x) / course.spacing**2
     uncertainty, total = (
         course.distrust * np.maximum(each, MIN_UNCERTAINTY * steps)
@@ -132,44 +132,48 @@ def find_surroundings(course: MeasureCourse, i: int) -> Surroundings:
     return Surroundings(samples, parts, bool(left and right))
 
 
-def choose_model(course: MeasureCourse, near: Surroundings, x: Array) -> CourseModel:
+def choose_model(course: MeasureCourse, surroundings: Surroundings, x: Array) -> CourseModel:
     """Interpolate the surroundings in the way in which their parts agree best."""
-    models = [interpolate_gaps(near, x)]
-    if spans_magnitudes(course, near):
-        models.append(interpolate_logarithms(course, near, x))
+    models = [interpolate_gaps(surroundings, x)]
+    if spans_magnitudes(course, surroundings):
+        models.append(interpolate_logarithms(course, surroundings, x))
         if course.value != 0.0:  # towards 0 the measure falls instead
-            models.extend(interpolate_inverses(course, near, x, power) for power in POLE_POWERS)
+            models.extend(interpolate_inverses(course, surroundings, x, power) for power in POLE_POWERS)
     return min(models, key=lambda model: model.disagreement)
 
 
-def interpolate_gaps(near: Surroundings, x: Array) -> CourseModel:
+def interpolate_gaps(surroundings: Surroundings, x: Array) -> CourseModel:
     """Interpolate g by polynomials."""
-    gaps, *partial_gaps = (interpolate(part, x) for part in (near.samples, *near.parts))
-    return CourseModel(gaps, partial_gaps, make_corners(near, x, gaps))
+    gaps, *partial_gaps = (interpolate(part, x) for part in (surroundings.samples, *surroundings.parts))
+    return CourseModel(gaps, partial_gaps, make_corners(surroundings, x, gaps))
 
 
-def make_corners(near: Surroundings, x: Array, gaps: Array) -> list[Array]:
+def make_corners(surroundings: Surroundings, x: Array, gaps: Array) -> list[Array]:
     """Interpolate g by the lines through the two samples on either side; nothing without two there."""
-    return [interpolate_corner(near.samples[:2], near.samples[2:], x, gaps)] if near.is_two_sided else []
+    return (
+        [interpolate_corner(surroundings.samples[:2], surroundings.samples[2:], x, gaps)]
+        if surroundings.is_two_sided
+        else []
+    )
 
 
-def spans_magnitudes(course: MeasureCourse, near: Surroundings) -> bool:
+def spans_magnitudes(course: MeasureCourse, surroundings: Surroundings) -> bool:
     """Return whether the measure runs through several magnitudes, as towards a pole, so that its logarithm may be
     interpolated.
 
     Not where it may touch a value at or beyond 0, which no logarithm reaches: towards a zero the logarithm falls
     ever faster, towards a pole it rises ever faster.
     """
-    m = [course.get_measure(sample) for sample in near.samples]
+    m = [course.get_measure(sample) for sample in surroundings.samples]
     if min(m) <= 0.0 <= max(m) or max(map(abs, m)) < LOG_RATIO * min(map(abs, m)):
         return False
     steps = [abs(b) - abs(a) for a, b in pairwise(m)]
-    if course.value == 0.0 and not rises_convexly(near.samples):
+    if course.value == 0.0 and not rises_convexly(surroundings.samples):
         return False
-    return m[0] * course.value > 0.0 or (near.is_two_sided and (min(steps) > 0.0 or max(steps) < 0.0))
+    return m[0] * course.value > 0.0 or (surroundings.is_two_sided and (min(steps) > 0.0 or max(steps) < 0.0))
 
 
-def interpolate_logarithms(course: MeasureCourse, near: Surroundings, x: Array) -> CourseModel:
+def interpolate_logarithms(course: MeasureCourse, surroundings: Surroundings, x: Array) -> CourseModel:
     """Interpolate the logarithm of the measure by polynomials."""
 
     def interpolate_logarithm(samples: list[Sample]) -> Array:
@@ -179,15 +183,16 @@ def interpolate_logarithms(course: MeasureCourse, near: Surroundings, x: Array) 
         found: Array = sign * np.exp(np.minimum(interpolate(logs, x), LARGEST_LOG)) - course.value
         return found
 
-    gaps, *partial_gaps = (interpolate_logarithm(part) for part in (near.samples, *near.parts))
-    return CourseModel(gaps, partial_gaps, make_corners(near, x, gaps))
+    gaps, *partial_gaps = (interpolate_logarithm(part) for part in (surroundings.samples, *surroundings.parts))
+    return CourseModel(gaps, partial_gaps, make_corners(surroundings, x, gaps))
 
 
-def interpolate_inverses(course: MeasureCourse, near: Surroundings, x: Array, power: float) -> CourseModel:
+def interpolate_inverses(course: MeasureCourse, surroundings: Surroundings, x: Array, power: float) -> CourseModel:
     """Interpolate |measure|^(-1/power) by polynomials, as near a pole of that order."""
-    sign = math.copysign(1.0, course.get_measure(near.samples[0]))
+    sign = math.copysign(1.0, course.get_measure(surroundings.samples[0]))
     inverses = {
-        sample.x: sample._replace(gap=abs(course.get_measure(sample)) ** (-1.0 / power)) for sample in near.samples
+        sample.x: sample._replace(gap=abs(course.get_measure(sample)) ** (-1.0 / power))
+        for sample in surroundings.samples
     }
     least = TINY_INVERSE * min(inverse.gap_or_zero for inverse in inverses.values())
 
@@ -196,9 +201,9 @@ def interpolate_inverses(course: MeasureCourse, near: Surroundings, x: Array, po
         found: Array = sign * np.maximum(inverse, least) ** -power - course.value
         return found
 
-    samples, *parts = ([inverses[sample.x] for sample in part] for part in (near.samples, *near.parts))
+    samples, *parts = ([inverses[sample.x] for sample in part] for part in (surroundings.samples, *surroundings.parts))
     whole = interpolate(samples, x)
-    corners = make_corners(Surroundings(samples, parts, near.is_two_sided), x, whole)
+    corners = make_corners(Surroundings(samples, parts, surroundings.is_two_sided), x, whole)
     return CourseModel(
         to_gaps(whole), [to_gaps(interpolate(part, x)) for part in parts], [to_gaps(corner) for corner in corners]
     )
