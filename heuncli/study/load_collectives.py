@@ -219,7 +219,7 @@ def compute_equivalent_range(
 
 CODE = "no-collective"
 MIN_INTERVALS = 256  # intervals of a run that are sampled, whatever its steps
-MAX_INSTANTS = 400_000  # of a grid: a hundred thousand steps
+MAX_INSTANTS = 400_000  # instants of a grid: a hundred thousand steps
 
 
 def make_histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str]) -> list[LoadHistory]:

@@ -28,7 +28,7 @@ SUFFICIENT_REDUCTION = 0.5  # share of a bracket: if the two sides of a pole lea
 ENCLOSED_SHARES = 2.5
 MIN_BRACKET = 10.0  # width of a bracket that can prove a jump by comparison, in narrowest brackets
 FIRST_SHARE, MIN_SHARE = 0.05, 1e-6  # share s of the bracket: at first, and the smallest
-HALVINGS = 60  # of an interval in which a polynomial has its root: down to the last bit
+HALVINGS = 60  # halvings to the root of a polynomial: down to the last bit
 
 
 class PlaceRule(IntEnum):
@@ -288,6 +288,6 @@ def predict_edge(course: MeasureCourse, solved_sample: Sample, width: float) -> 
     bend = ((x[2] - x[1]) / (m[2] - m[1]) - chord) / (m[2] - m[0])
     if bend == 0.0 or not math.isfinite(bend):
         return None
-    slope = chord - bend * (m[1] - m[0])  # of x over u, at the solved sample
+    slope = chord - bend * (m[1] - m[0])  # dx/du at the solved sample
     distance = -0.25 * slope * slope / bend
     return solved_sample.x + distance if 0.0 < distance / width < 1.0 else None

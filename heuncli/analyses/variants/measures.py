@@ -20,7 +20,7 @@ from heuncli.study.quantities.digits import OPEN, UNKNOWN
 MissingWord = Literal["", "open", "unknown", "beyond", "absent"]
 TIME_LIMIT_CODE = "time-limit"  # the code of a variant that was not solved for lack of time
 WORKER_DIED = "worker-died"  # the code of a variant that ends the processes that solve it
-ROUNDING = 8.0 * EPS  # relative error of a measure at least: its sums are rounded, whatever error the run states
+ROUNDING = 8.0 * EPS  # smallest relative error of a measure: its sums are rounded, whatever error the run states
 NUMBERS = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 NUMBER_LISTS = re.compile(r"#(?:(?:, | to )#)+(?: \.\.\.)?")
 
@@ -133,7 +133,8 @@ def make_failed_result(error: HeunError) -> VariantResult:
     return VariantResult(code=problem.code, reason=problem.message)
 
 
-KnownResults = dict[tuple[tuple[str, ParameterValue], ...], VariantResult]  # by the values of the variants
+# results of variants by their values, sorted by name
+KnownResults = dict[tuple[tuple[str, ParameterValue], ...], VariantResult]
 
 
 class CachedEvaluator:

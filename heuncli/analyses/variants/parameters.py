@@ -134,7 +134,7 @@ def _parse_plain_number(text: str, value: float) -> float:
     return scalar if type(scalar) is int else value
 
 
-MAX_VALUES = 10_000_000  # of one axis, which are stored as numbers
+MAX_VALUES = 10_000_000  # values of one axis: it holds them all in memory
 
 EVEN_AXIS = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
 RANDOM_AXIS = re.compile(rf"\s*({'|'.join(get_args(Law))})\s*\((.*)\)([^(),]*)\Z", re.DOTALL)

@@ -36,12 +36,12 @@ import numpy.typing as npt
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
-CONFIDENCE = 0.95  # of intervals
-TAIL = 0.5 * (1.0 - CONFIDENCE)
+CONFIDENCE = 0.95  # probability that an interval contains the true value
+TAIL = 0.5 * (1.0 - CONFIDENCE)  # probability that it lies below the interval; and above
 NORMAL = 1.959963984540054  # z: deviations of a normal law within which 95 % of it lie
 PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)
-MIN_COUNT = 2  # of numbers that have a deviation
-MIN_BOUNDED = 5  # of numbers whose deviation has an interval
+MIN_COUNT = 2  # fewest numbers that have a deviation
+MIN_BOUNDED = 5  # fewest numbers whose deviation has an interval
 
 
 class BoundedEstimate(NamedTuple):
@@ -117,13 +117,13 @@ def _find_least_count(probability: float, n: int, share: float) -> int:
     return high
 
 
-Places = npt.NDArray[np.signedinteger[Any]]
-MIN_INDEX_COUNT = 8  # of samples for indices
-MIN_INDEX_BOUNDED = 64  # of samples whose indices have intervals
+Places = npt.NDArray[np.signedinteger[Any]]  # the unit, or repetition, that each sample belongs to
+MIN_INDEX_COUNT = 8  # fewest samples that give indices
+MIN_INDEX_BOUNDED = 64  # fewest samples whose indices have intervals
 EXTRA_CONFIDENCE = 0.03  # added to the share p at that many samples; it falls with the root of their number
-MAX_UNITS = 512
-RESAMPLES = 999
-ROUNDING = 1e-12  # of the variance: deviations below are rounding
+MAX_UNITS = 512  # units that are resampled; more samples are put together in batches
+RESAMPLES = 999  # drawings of the units
+ROUNDING = 1e-12  # standard error of an index below which it is rounding
 
 
 class SobolIndices(NamedTuple):
@@ -190,7 +190,7 @@ def _estimate_ratio(m: Array, v: Array, units: Places, weights: Array | None) ->
 
 
 def _confidence(n: int) -> float:
-    """The share of drawings that lie within an interval, for n samples."""
+    """Return the share of drawings that lie within an interval, for n samples."""
     return CONFIDENCE + EXTRA_CONFIDENCE * math.sqrt(MIN_INDEX_BOUNDED / n)
 
 

@@ -22,7 +22,7 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.study.model.model_note import is_smooth
 from heuncli.study.model.setup import Setup
 
-TRIAL_SHARE = 0.1  # of the run, for the trial
+TRIAL_SHARE = 0.1  # share of the run that the trial integrates
 MAX_TRIAL_SECONDS = 0.5  # seconds for the trial
 MAX_STEPS = 2_000
 

@@ -111,7 +111,7 @@ THINGS = {
 }  # fmt: skip
 THING_IN_SENTENCE = re.compile(rf"\b({'|'.join(THINGS)}) (\w+)\b")
 PATH_IN_SENTENCE = re.compile(rf"\b({'|'.join(dict.fromkeys(THINGS.values()))})\.(\w+(?:\.\w+)*)")
-MAX_NAME_WORDS = 3  # of a name with dots: drives.motor, crank.pin
+MAX_NAME_WORDS = 3  # words of a name with dots at most, such as drives.motor, crank.pin
 SIDE_PHRASES = {"before": ", before the load", "beyond": ", beyond the load"}
 UNITLESS = frozenset({"", "1"})
 
@@ -351,7 +351,7 @@ def _find_label_path(path: str, spec: Spec, option: str) -> str:
         return found
     parts = parse_path(path)
     if parts is not None and (not parts.names or any(path.startswith(f"{known}.") for known in paths.values())):
-        return path  # of one quantity
+        return path  # it names one quantity of an entry
     same_names = [known for known in paths if known.endswith(f".{path}")]
     hint = f"did you mean {', or '.join(same_names)}?" if same_names else suggest(path, paths, "paths")
     raise UsageError(Problem("unknown-path", f"{option} {path}: nothing in the spec has this name", hint=hint))

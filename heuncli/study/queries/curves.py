@@ -28,7 +28,8 @@ from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 
 MIN_CURVE_INSTANTS = 400  # instants of a curve: nearly two a pixel
 MAX_SEARCH_INSTANTS = 4000  # largest number of the search's instants that a curve uses
-MAX_ADDED = 0.03  # of the largest value, added by a parabola: the error is then 1.4e-3, a fifth of a pixel
+# share of the largest value that a parabola adds between instants at most: its error is then 1.4e-3, a fifth of a pixel
+MAX_ADDED = 0.03
 
 
 def choose_curve_instants(study: Study, max_search_instants: int = MAX_SEARCH_INSTANTS) -> Array:

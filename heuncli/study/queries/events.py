@@ -40,7 +40,7 @@ from heuncli.study.solve.history import History, resample
 
 Solve = Callable[[Spec], Study]  # solves a spec that differs only in its instants or conditions
 
-MAX_DIGITS = 6  # of an instant in sentences
+MAX_DIGITS = 6  # digits of an instant in sentences
 MAY_BE_MISSING = "event {}: times may be missing, because {} is open or not known at some of the samples"
 SEARCH_CUT_SHORT = "event {}: times may be missing, because the search was stopped early"
 

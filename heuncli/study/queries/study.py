@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NO_REPORTS: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose solutions are in memory at a time
-MAX_RECOVERIES = 64  # cached ones, together of no more instants than a chunk
-RECENT_PARTS = 8  # of such a chunk: the share that stays cached for the next question
+MAX_RECOVERIES = 64  # recoveries that are cached, together of no more instants than a chunk
+RECENT_PARTS = 8  # so many parts make a chunk; one part stays cached for the next question
 TOO_FEW = "extremes are searched from {} samples: too few to find every peak and jump of this motion"
 CUT_SHORT = "the search for extremes was stopped early: higher values may exist"
 

@@ -117,7 +117,8 @@ class StudyColumns:
         """The verdicts on what is indeterminate between the instants of the grid; None if it has to be found at each
         instant, or is not needed.
         """
-        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):  # of a tree
+        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):
+            # the scene is a tree, or needs no verdicts
             return None
         from heuncli.study.compose.unknown_numbers import (  # where there are closed chains
             VerdictsBetween,
@@ -235,7 +236,7 @@ class StudyColumns:
         return value, find_stretch(setup, name).make_place(s, end)
 
 
-WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: the first samples for extremes
+WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # shares of each step of the integrator: where extremes are sampled first
 MAX_TURN = np.pi / 8.0  # rad: largest turn of a body between two of these instants, 1/8 period of the second order
 MAX_INSTANTS = 100_000
 

@@ -27,8 +27,9 @@ from heuncli.study.search.extremes import (
 )
 from heuncli.study.search.intervals import Intervals
 
-NumberSampler = Callable[[Array], Array]  # of sorted instants (n,) the number there, (n,); nan where there is none
-MAX_STEPS = 120  # towards a root; bisection alone takes 53, with an interpolation that fails each time twice that
+# takes sorted instants (n,), returns the number there, (n,); nan where there is none
+NumberSampler = Callable[[Array], Array]
+MAX_STEPS = 120  # steps to a root: bisection takes 53, and twice that if every interpolation between fails
 
 
 class Crossings(NamedTuple):

@@ -25,7 +25,7 @@ from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import sort_distinct
 
-HALVINGS = 2  # times that pieces are halved for kinks where loads change their sign: stresses, reduction lines
+HALVINGS = 2  # halvings of pieces whose loads change their sign: stresses and reduction lines have kinks there
 
 
 def replace_series_by_stretches(setup: Setup, bent: bool) -> Setup:

@@ -28,8 +28,8 @@ from heuncli.study.search.turnings import NO_INSTANTS, SampledTurns, find_doubtf
 from heuncli.study.solve.history import History, resample
 
 MIN_INTERVALS = 256  # intervals of a run whose bounds are checked, however few instants the grid has
-NEGLIGIBLE = 1e-9  # of the largest: smaller changes of a load or a law are in no digit shown
-BOUND_MARGIN = 0.02  # of the range of an expression: its bounds may exceed the neighbouring samples by this much
+NEGLIGIBLE = 1e-9  # share of the largest value: smaller changes of a load or a law are in no digit shown
+BOUND_MARGIN = 0.02  # share of the range of an expression by which its bounds may exceed the neighbouring samples
 ORDERS = 3  # value, first and second derivative
 
 
