@@ -141,7 +141,7 @@ def find_missing_words(reason: str, measures: Sequence[str]) -> dict[str, str]:
 
 NOISE = 4.0  # ratio of a difference of two values to their errors up to which it is no jump
 WINDOW = 6  # samples that are in memory, of which the interval in the middle is judged
-AHEAD, AHEAD_AT_END = 3, 2  # samples after the beginning of the judged interval; fewer where the course ends
+LATER_SAMPLES, LAST_SAMPLES = 3, 2  # samples after the beginning of a judged interval; fewer where the course ends
 
 
 def is_jump(change: float, smooth_change: float, errors: float) -> bool:
@@ -202,19 +202,19 @@ class JumpFinder:
             value = math.nan if measured is None or measured.value is None else measured.value
             error = 0.0 if measured is None or measured.error is None else measured.error
             window.append(SweptSample(row.number, x, value, error))
-        self._judge(AHEAD)
+        self._judge(LATER_SAMPLES)
 
     def _end_course(self) -> None:
         """Judge what lacks the second neighbour behind it, and forget the course."""
-        self._judge(AHEAD_AT_END)
+        self._judge(LAST_SAMPLES)
         for window in self._windows:
             window.clear()
 
-    def _judge(self, ahead: int) -> None:
+    def _judge(self, later_count: int) -> None:
         """Judge the interval that begins so many samples before the last one, by two intervals before it."""
         for k, window in enumerate(self._windows):
-            samples = list(window)[-(ahead + 3) :]
-            place = len(samples) - 1 - ahead
+            samples = list(window)[-(later_count + 3) :]
+            place = len(samples) - 1 - later_count
             if place >= 1 and is_swept_jump(samples, place):
                 self.jumps.append(SweptJump(k, samples[place], samples[place + 1]))
 

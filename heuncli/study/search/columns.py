@@ -70,6 +70,19 @@ class Sampleable(Protocol):
         """
 
 
+class RunSample(NamedTuple):
+    """A number along a series of cuts at one instant.
+
+    run: name of the series
+    nodes, values: positions along it [m], and the number there, (9 m,) each
+    """
+
+    run: str
+    instant: float
+    nodes: Array
+    values: Array
+
+
 class StudyColumns:
     """The columns of a study that are searched; collects the instants at which rounding decides some of them.
 
@@ -195,24 +208,19 @@ class StudyColumns:
             for side, bounds in ((-1.0, low), (1.0, high)):
                 i = int(np.searchsorted(instants, peak_times[int(side > 0.0), k]))
                 s = np.broadcast_to(results.sections[name]["s"], values.shape)[i]
-                own = name, float(instants[i]), s, values[i]
-                bounds[first + k], place = self._find_place(first + k, side, own, float(bounds[first + k]))
+                run_sample = RunSample(name, float(instants[i]), s, values[i])
+                bounds[first + k], place = self._find_place(first + k, side, run_sample, float(bounds[first + k]))
                 side_places.append(place)
             places.append((side_places[0], side_places[1]))
         return peaks._replace(low=low, high=high, places=tuple(places))
 
-    def _find_place(
-        self, k: int, side: float, run_sample: tuple[str, float, Array, Array], value: float
-    ) -> tuple[float, CutPosition]:
-        """Return the value of an extreme of a series of cuts, and its place.
-
-        run_sample: name of the run, instant, nodes along the run, and the values at these
-        """
+    def _find_place(self, k: int, side: float, run_sample: RunSample, value: float) -> tuple[float, CutPosition]:
+        """Return the value of an extreme of the k-th channel, along a series of cuts, and its place."""
         assert self.setup is not None
         from heuncli.study.search.cuts import cut_at, find_sides, find_stretch, locate_summit
 
         setup, (name, instant, nodes, values) = self.setup, run_sample
-        s, end, ends = locate_summit(nodes, values, side)
+        s, end, ends = locate_summit(nodes, values, side)  # position, side of a load there, ends of the smooth piece
         if self.bent and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:

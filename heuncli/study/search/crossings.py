@@ -88,10 +88,18 @@ def find_crossings(sample: NumberSampler, times: Array, h: Array, error: float) 
     return Crossings(begins, crossing_times, above[k + 1], time_errors, jumps[k], gaps, complete)
 
 
-def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> tuple[Array, Array, bool]:
-    """Add instants where h passes zero and returns between two of the grid; return also whether all was searched."""
+class SampledNumber(NamedTuple):
+    """The instants at which a number was sampled, (n,) ascending, its values, and whether all was searched."""
+
+    times: Array
+    values: Array
+    is_complete: bool
+
+
+def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> SampledNumber:
+    """Add instants where h passes zero and returns between two of the grid."""
     if len(times) < 3:
-        return times, h, True
+        return SampledNumber(times, h, is_complete=True)
     targets = Targets(
         1, np.zeros(1, dtype=np.intp), np.zeros(1, dtype=np.intp), np.array([error]), np.zeros(1, dtype=bool)
     )
@@ -106,7 +114,7 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
         worth = wide & (pool.bound_heights(shape) > least)
         pool, shape = pool.select(worth), shape.select(worth)
         if not len(pool.target):
-            return merge_samples(more_t, more_h, complete=True)
+            return merge_samples(more_t, more_h, is_complete=True)
         if probes > MAX_PROBES:
             break
         probe_times = pool.choose_probes(shape)
@@ -119,7 +127,7 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
         pool = select_hidden(
             pool.divide(shape, probe_times, side * (values[np.searchsorted(instants, probe_times)] - error))
         )
-    return merge_samples(more_t, more_h, complete=False)
+    return merge_samples(more_t, more_h, is_complete=False)
 
 
 def select_hidden(pool: Intervals) -> Intervals:
@@ -127,12 +135,12 @@ def select_hidden(pool: Intervals) -> Intervals:
     return pool.select((pool.f[:, 1] <= 0.0) & (pool.f[:, 2] <= 0.0))
 
 
-def merge_samples(times: list[Array], h: list[Array], *, complete: bool) -> tuple[Array, Array, bool]:
-    """Return all sampled instants, ascending, and their values."""
+def merge_samples(times: list[Array], h: list[Array], *, is_complete: bool) -> SampledNumber:
+    """Put all sampled instants in order; each stands once."""
     t, values = np.concatenate(times), np.concatenate(h)
     order = np.argsort(t, kind="stable")
     new = np.append(True, np.diff(t[order]) > 0.0)
-    return t[order][new], values[order][new], complete
+    return SampledNumber(t[order][new], values[order][new], is_complete)
 
 
 def find_roots(sample: NumberSampler, bracket: Bracket, level: Array) -> Array:
