@@ -196,9 +196,7 @@ def compute_derivative(evaluate: Callable[[float], NoisyValue], number: float, s
 
 
 def choose_first_step(base: NoisyValue, size: float) -> float:
-    """Return the step, `size` times a power of two, at which the run's error balances a third derivative of the
-    measure's own size.
-    """
+    """Return `size` times the power of two at which the run's error balances a third derivative of its own size."""
     relative = base.error / abs(base.value) if base.value else 0.0
     step = FIRST_STEP
     while step**3 > 8.0 * NOISE_FACTOR * relative and step > MIN_FIRST_STEP:

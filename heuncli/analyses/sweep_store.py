@@ -102,7 +102,7 @@ class Store:
         return int(found[0])
 
     def has_result(self, key: bytes) -> bool:
-        """Whether there is a result for the key."""
+        """Return whether there is a result for the key."""
         with convert_errors(self.name):
             return self.connection.execute("SELECT 1 FROM answers WHERE key = ?", (key,)).fetchone() is not None
 

@@ -115,7 +115,7 @@ def require_store(connection: sqlite3.Connection, name: str, may_be_empty: bool 
 
 
 def _is_empty(connection: sqlite3.Connection) -> bool:
-    """Whether there are no tables."""
+    """Return whether there are no tables."""
     return bool(connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0)
 
 

@@ -98,7 +98,7 @@ class MeasureCourse:
             yield i, self.samples[i], self.samples[i + 1]
 
     def is_interrupted(self, i: int) -> bool:
-        """Whether the course does not continue from a sample to the next: one has no measure, or it jumps."""
+        """Return whether the course ends between the i-th sample and the next: one has no measure, or it jumps."""
         left, right = self.samples[i], self.samples[i + 1]
         return left.gap is None or right.gap is None or (left.x, right.x) in self.jumps
 

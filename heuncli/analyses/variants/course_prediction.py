@@ -158,8 +158,7 @@ def make_corners(surroundings: Surroundings, x: Array, gaps: Array) -> list[Arra
 
 
 def spans_magnitudes(course: MeasureCourse, surroundings: Surroundings) -> bool:
-    """Return whether the measure runs through several magnitudes, as towards a pole, so that its logarithm may be
-    interpolated.
+    """Return whether the measure runs through several magnitudes, as towards a pole: then its logarithm is smoother.
 
     Not where it may touch a value at or beyond 0, which no logarithm reaches: towards a zero the logarithm falls
     ever faster, towards a pole it rises ever faster.

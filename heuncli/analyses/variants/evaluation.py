@@ -84,8 +84,9 @@ class VariantEvaluator:
         return variants.load(overrides)
 
     def load_samples(self, variable: DesignVariable) -> list[Spec]:
-        """Load the scenes at some places between the bounds of a variable, without those that are invalid. Raises
-        SpecError if all are.
+        """Load the scenes at some places between the bounds of a variable, without those that are invalid.
+
+        Raises SpecError if all are invalid.
         """
         specs: list[Spec] = []
         errors: list[SpecError] = []
@@ -129,7 +130,7 @@ class VariantEvaluator:
 
 
 def varies_cases(spec: Spec) -> bool:
-    """Whether `case` means the load case: a spec may have a parameter of that name."""
+    """Return whether `case` means the load case: a spec may have a parameter of that name."""
     return bool(spec.cases) and CASE not in spec.parameters
 
 
@@ -153,10 +154,9 @@ def measure_study(request: MeasureRequest, study: Study) -> MeasureValue:
 
 
 def is_near_left_out(peak: Peak, study: Study) -> bool:
-    """Whether an extreme is next to instants that its search left out because rounding decides them: it may be exceeded
-    there.
+    """Return whether an extreme is next to instants that its search left out, where it may be exceeded.
 
-    The search leaves these instants out together with the intervals to their neighbours.
+    The search leaves out instants at which rounding decides numbers, with the intervals to their neighbours.
     """
     if peak.time is None or not study.left_out:
         return False

@@ -99,7 +99,7 @@ class VariantResult(NamedTuple):
         return bool(self.measures) and all(reading.value is not None for reading in self.measures)
 
     def get_measure(self, index: int) -> MeasureValue:
-        """Return a measure; of a variant that could not be solved one without a number."""
+        """Return a measure; it has no number if the variant could not be solved."""
         return self.measures[index] if self.measures else NO_VALUE
 
     def find_noisy_value(self, index: int, magnitude: float = 0.0) -> NoisyValue:

@@ -102,7 +102,7 @@ class RandomVariable(NamedTuple):
 
 
 def make_axis(name: str, texts: Sequence[str]) -> ParameterAxis:
-    """Make an axis of values in the form of `--set`: of numbers, if all are numbers of one unit."""
+    """Make an axis of values in the form of `--set`: of numbers if all have one unit, or else of the texts."""
     numbers: list[float] = []
     unit: str | None = None
     for text in texts:

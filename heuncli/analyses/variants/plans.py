@@ -139,7 +139,7 @@ class Plan(NamedTuple):
         return values
 
     def iter_numbers(self, shard: tuple[int, int] = (1, 1)) -> Iterator[int]:
-        """Iterate over the numbers of the variants; of a shard k of n: every n-th one, from the k-th on."""
+        """Iterate over the numbers of the variants; shard (k, n): over every n-th one, from the k-th on."""
         k, n = shard
         return iter(range(k - 1, self.size, n))
 
@@ -195,7 +195,10 @@ def make_draws(laws: Sequence[RandomVariable], samples: int, seed: int = 0, *, i
 
 
 def make_saltelli_plan(A: Array, B: Array) -> Array:
-    """Make Saltelli's plan: of each sample A, B, and A with its i-th parameter from B, (samples (d + 2), d)."""
+    """Make Saltelli's plan, (samples (d + 2), d).
+
+    Each sample gives d + 2 rows: A, B, and for each parameter A with that parameter from B.
+    """
     samples, d = A.shape
     rows = np.repeat(A[:, None, :], d + 2, axis=1)
     rows[:, 1] = B

@@ -96,9 +96,7 @@ def estimate_deviation(sorted_values: Array, s: float) -> BoundedEstimate:
 
 
 def estimate_percentile(sorted_values: Array, percent: float) -> BoundedEstimate:
-    """Estimate the value below which `percent` per cent lie, from a sorted sample; interpolated between two values
-    where it falls so.
-    """
+    """Estimate the value below which `percent` per cent lie, from a sorted sample, by interpolation."""
     n, share = len(sorted_values), 0.01 * percent
     low_index, high_index = _find_least_count(TAIL, n, share) - 1, _find_least_count(1.0 - TAIL, n, share)
     low = float(sorted_values[low_index]) if low_index >= 0 else None
@@ -169,7 +167,11 @@ def _draw_weights(count: int) -> Array:
 
 
 def _estimate_ratio(m: Array, v: Array, units: Places, weights: Array | None) -> BoundedEstimate:
-    """Estimate the ratio of two means, with its interval; weights: of resampled units, None: without an interval."""
+    """Estimate the ratio of the means of m and v (n,), with its interval.
+
+    units (n,): the unit of each sample
+    weights (RESAMPLES, units): how often each unit is drawn; None: without an interval
+    """
     R = float(m.mean()) / float(v.mean())
     if weights is None:
         return BoundedEstimate(R, None, None)

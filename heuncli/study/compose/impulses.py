@@ -298,7 +298,7 @@ def are_shares(name: str, value: Any) -> bool:
 
 
 def find_largest_difference(values: Array, check_values: Array, matched_pairs: Sequence[tuple[int, int]]) -> float:
-    """Return the largest difference of numbers over the impulses that both runs have; of others the number itself."""
+    """Return the largest difference of numbers between two runs over the impulses; a missing number counts as 0."""
     reference = np.zeros_like(values)
     for i, k in matched_pairs:
         reference[i] = check_values[k]

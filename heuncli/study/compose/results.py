@@ -239,8 +239,9 @@ def compose_in_parts(
 
 
 def divide_instants(count: int, part_size: int) -> list[slice]:
-    """Divide the instants into parts of about `part_size`; all but the last consist of whole blocks, as all at once are
-    multiplied.
+    """Divide the instants into parts of about `part_size`.
+
+    All parts but the last consist of whole blocks of the matrix products, so that each number keeps its bits.
     """
     blocks, in_part = count // BLOCK, max(1, part_size // BLOCK)
     bounds = BLOCK * np.linspace(0, blocks, max(1, blocks // in_part) + 1).astype(int)
@@ -311,8 +312,9 @@ def find_largest_force(recovery: Recovery, s: Array) -> float:
 
 
 def drop_axes(foundation: Mapping[str, Any], largest: float, parts: list[slice]) -> None:
-    """Remove the central axis where the total is zero relative to the largest force of the run; a part knew only its
-    own largest.
+    """Remove the central axis where the total is zero relative to the largest force of the run.
+
+    A part of the results knew only its own largest force.
     """
     for part in parts:
         is_zero = is_zero_force(foundation["force"][part], largest)

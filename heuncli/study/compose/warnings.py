@@ -45,7 +45,11 @@ def make_status(history: History, mechanism: Mechanism) -> Status:
 def collect_warnings(
     setup: Setup, history: History, recovery: Recovery, joints: Mapping[str, JointBlock], residual: float
 ) -> tuple[str, ...]:
-    """Collect the warnings at the instants of `recovery`; joints: their block, residual: of d'Alembert's principle."""
+    """Collect the warnings at the instants of `recovery`.
+
+    joints: their block in the results
+    residual: of d'Alembert's principle, relative to the largest force
+    """
     return (
         *warn_unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
@@ -225,7 +229,7 @@ def describe_partial(partial: Sequence[PartialFriction]) -> str:
 
 
 def make_partial_note(partial_by_time: dict[float, list[PartialFriction]]) -> str:
-    """Explain the mark beside numbers, with the names of the friction."""
+    """Explain the mark next to numbers, with the names of the friction."""
     names = dict.fromkeys(own.name for partial in partial_by_time.values() for own in partial)
     some = ", ".join(list(names)[:MAX_NAMED]) + (" ..." if len(names) > MAX_NAMED else "")
     rate = f"{compute_full_friction_rate():.3g}"
@@ -237,7 +241,10 @@ HINT = "not at rest; analysis: {type: rest} finds the rest position"
 
 
 def describe_accelerations(recovery: Recovery) -> list[str]:
-    """Return a sentence on a state that its loads set in motion; recovery: of one instant."""
+    """Describe in a sentence that the loads of a state set it in motion; empty if they do not.
+
+    recovery: at the state's one instant
+    """
     setup = recovery.setup
     if setup.spec.analysis.type != "state" or not setup.model["freedoms"]:
         return []
@@ -258,7 +265,10 @@ def describe_accelerations(recovery: Recovery) -> list[str]:
 
 
 def list_accelerated_bodies(recovery: Recovery) -> list[str]:
-    """List the bodies that are accelerated from rest, the fastest first: of the centre of mass, or turning."""
+    """List the bodies that are accelerated from rest, the fastest first, with the acceleration that is larger.
+
+    It is that of the centre of mass, or the angular one.
+    """
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
     mass = mechanism.scale_masses
     radius = np.sqrt(np.array([np.trace(b.inertia) for b in mechanism.bodies]) / mass)
@@ -299,8 +309,9 @@ def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
 
 
 def find_load_scale(recovery: Recovery) -> Array:
-    """Return the largest load on each body, including its weight and inertia loads, (n,) [N]; moments are divided by
-    the scene's size.
+    """Find the largest load on each body, including its weight and inertia loads, (n,) [N].
+
+    Moments are divided by the scene's size.
     """
     setup = recovery.setup
     largest: Array = inertia_scale(setup.scene.mechanism, recovery.states)[0]

@@ -49,8 +49,9 @@ def describe_integration(setup: Setup) -> list[str]:
 
 
 def find_restart_method(setup: Setup) -> tuple[Method, str] | None:
-    """Return the method that the run would be restarted with, and why, if its beginning is stiff or events end its
-    steps; else None.
+    """Find the method that the run would be restarted with, and why; None if it would not.
+
+    A run is restarted if its beginning is stiff, or if events end most steps.
     """
     if not setup.is_auto or setup.method is None or setup.method.is_determined:
         return None

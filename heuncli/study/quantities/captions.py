@@ -344,7 +344,7 @@ def check_text(option: str, text: str) -> str:
 
 
 def _find_label_path(path: str, spec: Spec, option: str) -> str:
-    """Return the path under which a label is kept, for a path as users write it. Raises UsageError."""
+    """Find the path under which a label is stored, from a path as users write it. Raises UsageError."""
     paths = dict(iter_label_paths(spec))
     found = paths.get(path)
     if found is not None:
@@ -358,7 +358,7 @@ def _find_label_path(path: str, spec: Spec, option: str) -> str:
 
 
 def iter_label_paths(spec: Spec) -> Iterator[tuple[str, str]]:
-    """Yield everything that has a name: the path as users write it, and the path under which its label is kept.
+    """Yield all that has a label: the path as users write it, and the path under which its label is stored.
 
     Points have two paths, as in the spec and as in the results.
     """

@@ -182,8 +182,9 @@ def find_curve_instants(study: Study, curve: Curve, x: Array) -> Array:
 
 
 def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
-    """Find the instants at which the curve's own x number has the values x, (n,). That number must only rise or only
-    fall. Raises NotComparable.
+    """Find the instants at which the curve's own x number has the values x, (n,).
+
+    Raises NotComparable if that number does not only rise or only fall.
     """
     path = curve.x_of
     assert path is not None
@@ -224,9 +225,7 @@ def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
 
 
 def estimate_error(study: Study, path: str, values: Array) -> float:
-    """Return the error of a number of the results, as tables state it; of exactly solved numbers, their rounding
-    error.
-    """
+    """Return the error of a number of the results as tables state it; at least its rounding."""
     stated = float(np.nan_to_num(find_search_error(study, find_values(study.results, path).keys)))
     return max(stated, tolerances.WRITTEN * float(np.max(np.abs(values))))
 

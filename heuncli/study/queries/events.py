@@ -291,8 +291,9 @@ def describe_reasons(
 
 
 def estimate_instant_errors(study: Study, result: Crossings) -> Array:
-    """Estimate the errors of the instants. At an impulse it is by how much other runs differ; at other jumps, the
-    motion's error.
+    """Estimate the errors of the instants.
+
+    At an impulse it is the difference between the runs; at other jumps it follows from the motion's error.
     """
     history, errors = study.history, result.error.copy()
     impulse_distances = [find_impulse_time_differences(history.impulses, other) for other in history.check_impulses]

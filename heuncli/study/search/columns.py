@@ -65,8 +65,9 @@ class Sampleable(Protocol):
     def compose_reports(
         self, recovery: Recovery, reports: frozenset[str], open_marker: OpenMarker | None = None
     ) -> Results:
-        """Return some reports' blocks of a recovery; open_marker: marks indeterminate numbers where the recovery does
-        not look for them.
+        """Return some reports' blocks of a recovery.
+
+        open_marker: marks indeterminate numbers where the recovery does not look for them
         """
 
 
@@ -127,8 +128,9 @@ class StudyColumns:
 
     @cached_property
     def grid_verdicts(self) -> VerdictsBetween | None:
-        """The verdicts on what is indeterminate between the instants of the grid; None if it has to be found at each
-        instant, or is not needed.
+        """The verdicts on what is indeterminate between the instants of the grid.
+
+        None if they are not needed, or if it must be found at each instant.
         """
         if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):
             # the scene is a tree, or needs no verdicts
@@ -186,8 +188,7 @@ class StudyColumns:
         return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
 
     def finish(self, peaks: Extremes) -> Extremes:
-        """Return the extremes of the channels: with their paths, places along series of cuts, and of magnitudes instead
-        of their squares.
+        """Complete the extremes: with the paths, the places along series of cuts, and magnitudes in place of squares.
 
         Quantities along runs that are no polynomial of loads are searched there again.
         """
@@ -285,8 +286,9 @@ def choose_search_times(setup: Setup, history: History, max_instants: int = MAX_
 
 
 def has_loads_along_coordinates(setup: Setup) -> bool:
-    """Return whether loads depend on coordinates or points: if they push a constrained direction, no step shows how
-    fast they change.
+    """Return whether loads depend on coordinates or points.
+
+    If they push along a constrained direction, no integration step shows how fast they change.
     """
     return any(value.uses for load in setup.scene.mechanism.loads for value in load.values)
 

@@ -63,8 +63,10 @@ class Bracket(NamedTuple):
 
 
 def find_crossings(sample: NumberSampler, times: Array, h: Array, error: float) -> Crossings:
-    """Find where the sampled number passes zero within the span of `times`, (n,) ascending; h: its values there, error:
-    of h.
+    """Find where the sampled number passes zero within the span of `times`, (n,) ascending.
+
+    h (n,): its values there
+    error: of the number
     """
     times, h, complete = refine_grid(sample, times, h, error)
     known = np.isfinite(h)
@@ -188,8 +190,9 @@ def choose_next_share(bracket: Bracket, c: Array, e: Array, width: Array) -> Arr
 
 
 def estimate_time_errors(sample: NumberSampler, root_times: Array, error: float, span: tuple[float, float]) -> Array:
-    """Return the time within which h exceeds its error on both sides of each root, (n,); nan if none within a part of
-    the span does.
+    """Estimate the errors of roots, (n,): the time within which h exceeds its error on both sides.
+
+    nan where it does not do so within a part of the span
     """
     time_errors, open_ = np.full(len(root_times), np.nan), np.ones(len(root_times), dtype=bool)
     d = tolerances.KERNEL["one_instant"] * max(abs(span[1]), 1e-300)

@@ -75,9 +75,7 @@ def compute_envelope(values: Array) -> Array:
 
 
 def find_impulse_extremes(setup: Setup, impulse: Block) -> dict[str, Extremes]:
-    """Return the lowest and the highest of the section forces along each stretch, at an impulse that was solved with
-    these cuts.
-    """
+    """Find the extremes of the section forces along each stretch at an impulse, which was solved with these cuts."""
     found: dict[str, Extremes] = {}
     for cuts in setup.cuts:
         if isinstance(cuts, Stretch):

@@ -79,8 +79,9 @@ def sample_laws(time_laws: Sequence[Expression], times: Array) -> Array:
 
 
 def refine_to_bounds(time_laws: Sequence[Expression], times: Array, max_instants: int) -> tuple[Array, bool]:
-    """Add instants until no expression can leave its samples by much between them, according to its bounds; return
-    whether `max_instants` are enough.
+    """Add instants until no expression can leave its samples by much between them, according to its bounds.
+
+    Returns whether `max_instants` are enough.
     """
     span = float(np.ptp(times))
     for expression in time_laws:
@@ -105,9 +106,7 @@ def refine_to_bounds(time_laws: Sequence[Expression], times: Array, max_instants
 
 
 def refine_for_loads(setup: Setup, history: History, grid: Array, max_instants: int) -> tuple[Array, bool]:
-    """Return a grid (n,), ascending, with more instants where applied loads need them; and whether `max_instants` are
-    enough.
-    """
+    """Add instants to a grid (n,) where applied loads need them; return also whether `max_instants` are enough."""
 
     def loads(times: Array) -> Array:
         """Sample forces and moments of all loads, (n_t, 6 n_loads); 0 where one is indeterminate."""

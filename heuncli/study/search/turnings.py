@@ -153,8 +153,9 @@ def refine_until_predicted(
 
 
 def find_doubtful(samples: SampledTurns, slack: Slack) -> Mask:
-    """Mark the intervals of a grid next to an instant that its neighbours do not predict, (n - 1,): the others, half as
-    wide as the prediction's, need not be sampled.
+    """Mark the intervals of a grid next to an instant that its neighbours do not predict, (n - 1,).
+
+    The others are half as wide as the prediction's, and need not be sampled.
     """
     times, values, _ = samples
     is_doubtful = np.ones(max(len(times) - 1, 0), dtype=bool)

@@ -132,8 +132,9 @@ class LoadErrors(ErrorEstimates):
         self.find_extent(*name).add(values, rounding, terms, (self.is_requested, self.is_claimed), extra_difference)
 
     def add(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
-        """Add instants, with masks of those requested and of those before the horizon; each has the solution of run A,
-        then of the others.
+        """Add instants, each with the solution of run A, then of the others.
+
+        is_requested, is_claimed (n,): which of them are requested, and which are before the horizon
         """
         count = len(recovered.times) // max(len(is_requested), 1)
         same = (
