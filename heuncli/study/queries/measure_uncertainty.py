@@ -17,9 +17,8 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
 SI = Units({})
-SQUARE_ROUNDING = (
-    4.0 * tolerances.EPS
-)  # relative to the largest square along a series of cuts: rounding of its polynomial
+# rounding of the polynomial of squares along a series of cuts, relative to the largest of these
+SQUARE_ROUNDING = 4.0 * tolerances.EPS
 
 
 def find_unit(path: str, spec: Spec) -> str:

@@ -29,9 +29,7 @@ from heuncli.study.search.extremes import (
 )
 
 MAX_PROBES = 2_000_000  # instants sampled in one search: turning points of some hundred thousand cycles
-OFF_MIDDLE = (
-    0.52  # share of an interval at which it is sampled: not the middle, so that nothing periodic looks constant
-)
+OFF_MIDDLE = 0.52  # share of an interval at which it is sampled: off its middle, nothing periodic looks constant
 NO_INSTANTS = np.zeros(0)
 MIN_PREDICTIONS = 2  # consecutive correct predictions of an interval
 # share of the range of four neighbours: the error of cubics through seven instants per period
