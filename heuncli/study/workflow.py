@@ -25,7 +25,7 @@ from heuncli.results.results_schema import SHARES
 from heuncli.scene.file_format.models import ResultCondition, Spec, Stop
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
-from heuncli.study.model.method_choice import explain_restart
+from heuncli.study.model.model_note import explain_restart
 from heuncli.study.model.options import Options, apply_options, has_few_numbers, require_memory
 from heuncli.study.model.selection import select_for_conditions
 from heuncli.study.model.setup import Setup, attach_locations, set_up
@@ -124,7 +124,7 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
     Raises what `solve` does.
     """
     from heuncli.loads.redundancy.advice import propose_replacements  # runs give none
-    from heuncli.study.model.method_choice import describe_integration, find_restart_method
+    from heuncli.study.model.forecast import describe_integration, find_restart_method
 
     with attach_locations(spec):
         selection = Options(

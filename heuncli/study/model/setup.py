@@ -29,13 +29,14 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.couplings import Rope
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.model.method_choice import choose_first_method, explain_method
 from heuncli.study.model.model_note import (
     add_rest_sentences,
+    choose_first_method,
     describe_attitudes,
     describe_files,
     describe_members,
     describe_reductions,
+    explain_method,
     make_model_block,
 )
 from heuncli.study.model.selection import EVERYTHING, Selection
