@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from heuncli.app.cli.options import REPORT_FORMATS
+from heuncli.app.cli.target import find_ending
 from heuncli.base.errors import Finding, HeunError, OutputError, Problem, UsageError
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple
@@ -103,7 +104,7 @@ def choose_form(output: str, requested: str | None) -> str:
         if form == "pdf" and output == STDOUT:
             raise UsageError(Problem("bad-option", "-o -: a PDF needs a file", hint="for example -o report.pdf"))
         return form
-    ending = output[output.rfind(".") :].lower() if "." in output.rpartition("/")[2] else ""
+    ending = find_ending(output)
     if output == STDOUT or ending in ENDINGS:
         return ENDINGS.get(ending, REPORT_FORMATS[0])
     hint = f"accepted: {', '.join(ENDINGS)}; with --format {'|'.join(REPORT_FORMATS)} any name is accepted"
