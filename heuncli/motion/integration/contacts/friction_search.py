@@ -22,8 +22,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.friction_groups import FrictionGroup, FrictionPlaces, PlaceResponse
-from heuncli.motion.integration.contacts.friction_problems import make_jamming_problem
 from heuncli.motion.integration.contacts.shared_impulses import join_names
+from heuncli.motion.integration.diagnosis.ambiguous_laws import make_jamming_problem
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array
 

@@ -110,7 +110,7 @@ class Latches:
         return [self.layout.contacts[i].name for i in released]
 
     def catch(
-        self, latch_conditions: LatchConditions, evaluation: Evaluation, contacts_touching: TouchingContacts
+        self, latch_conditions: LatchConditions, evaluation: Evaluation, touching: TouchingContacts
     ) -> list[LatchCatch]:
         """Catch what the extended latches can catch; evaluation: the state with all open that do not hold yet."""
         catches = []
@@ -126,7 +126,7 @@ class Latches:
                 continue
             rate, noise = measure_coordinate_rate(self.layout, evaluation, self.layout.contacts[i], self.end_time)
             place = self.find_catch_value(
-                i, stop, evaluation, contacts_touching, latch_conditions.is_value_passed[n], abs(rate) <= noise
+                i, stop, evaluation, touching, latch_conditions.is_value_passed[n], abs(rate) <= noise
             )
             if place is None:
                 continue
@@ -139,16 +139,16 @@ class Latches:
         """Return whether a latch holds the coordinate of a contact."""
         return self.coordinates.get(i) in {self.coordinates[k] for k in self.held_values}
 
-    def find_unheld_contacts(self, contacts_touching: TouchingContacts) -> Mask:
+    def find_unheld_contacts(self, touching: TouchingContacts) -> Mask:
         """Return which of the touching contacts no latch holds at their limit, (k,)."""
-        return np.array([not self.is_held(i) for i in contacts_touching.indices.tolist()], dtype=bool)
+        return np.array([not self.is_held(i) for i in touching.indices.tolist()], dtype=bool)
 
     def find_catch_value(
         self,
         i: int,
         stop: Stop,
         evaluation: Evaluation,
-        contacts_touching: TouchingContacts,
+        touching: TouchingContacts,
         is_passed: bool,
         is_still: bool,
     ) -> float | None:
@@ -158,9 +158,9 @@ class Latches:
         gap = float(evaluation.rows["gap"][0, contact.row])  # for an open latch, from its value, or from zero
         if latch.stop is not None:
             limits = self.limits[latch.stop]
-            for k, other in enumerate(self.layout.contacts[j] for j in contacts_touching.indices.tolist()):
+            for k, other in enumerate(self.layout.contacts[j] for j in touching.indices.tolist()):
                 is_limit = not other.is_rope and other.name == latch.stop and other.sense in latch.sides
-                if is_limit and contacts_touching.rate[k] <= contacts_touching.noise[k]:
+                if is_limit and touching.rate[k] <= touching.noise[k]:
                     return limits.high if other.sense > 0 else limits.low
             return None
         if latch.position is None:
