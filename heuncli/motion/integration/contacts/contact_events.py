@@ -7,6 +7,8 @@ the sentences.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli.base import tolerances
@@ -32,11 +34,11 @@ from heuncli.motion.integration.contacts.impulses import (
     make_impulse_event,
     make_right_sides,
 )
-from heuncli.motion.integration.contacts.latches import UNWATCHED, LatchConditions, Latches, add_catches
+from heuncli.motion.integration.contacts.latches import UNWATCHED, LatchCondition, Latches, add_catches
 from heuncli.motion.integration.contacts.restitution import ContactImpulses
 from heuncli.motion.integration.contacts.sequential_impacts import find_independent
 from heuncli.motion.integration.contacts.shared_impulses import SharedImpulse
-from heuncli.motion.integration.contacts.sticking import FrictionStates
+from heuncli.motion.integration.contacts.sticking import FrictionEvent, FrictionStates
 from heuncli.motion.integration.contacts.touching import (
     TouchingContacts,
     can_move_bodies,
@@ -84,7 +86,7 @@ class Contacts:
         state: Array,
         time: float,
         row: int | None,
-        latch_conditions: LatchConditions | None = None,
+        latch_conditions: Sequence[LatchCondition] | None = None,
     ) -> ImpulseEvent | None:
         """Handle an event and return the impulse that it causes, if any.
 
@@ -94,7 +96,8 @@ class Contacts:
         row: closure row of the contact that closed or opened there
         latch_conditions: the conditions of latches there; by default evaluated at the state
         """
-        latch_conditions = latch_conditions or self.latches.evaluate_conditions(given_impulse.before_time, state)
+        if latch_conditions is None:
+            latch_conditions = self.latches.evaluate_conditions(given_impulse.before_time, state)
         released_names = self.latches.release(latch_conditions)
         event = self.set_up_event(given_impulse, state, row, latch_conditions)
         outcome = self.find_outcome(event)
@@ -106,7 +109,7 @@ class Contacts:
         return self.make_event(time, event, outcome, shared_impulses)
 
     def set_up_event(
-        self, given_impulse: GivenImpulse, state: Array, row: int | None, latch_conditions: LatchConditions
+        self, given_impulse: GivenImpulse, state: Array, row: int | None, latch_conditions: Sequence[LatchCondition]
     ) -> EventSetting:
         """Set up what an event is solved from; arguments as those of `handle_event`. The order of the steps matters:
 
@@ -171,7 +174,8 @@ class Contacts:
                 return outcome
             before = self.contact_states.copy()
             is_struck = bool(event.sides.loads) or bool(outcome.impulses.impulses.any())
-            sentences = self.friction.decide(after_time, outcome.after_state, before, event.row, is_struck)
+            friction_event = FrictionEvent(after_time, outcome.after_state, before, event.row, is_struck)
+            sentences = self.friction.decide(friction_event)
             self.contact_states = self.friction.add_to(before)
             if not len(outcome.touching_states) or np.array_equal(before, self.contact_states):
                 self.notes.add(sentences)

@@ -37,10 +37,13 @@ from heuncli.scene.file_format.models import SIMULTANEOUS, ImpactModel
 def find_resting(
     touching: TouchingContacts, A: Array, moves: Mask, rate: Array, evaluation: Evaluation, layout: Layout
 ) -> tuple[Array, Array]:
-    """Return which of the touching contacts are held from here on (k,), and the accelerations of opening of all (k,).
+    """Return which of the touching contacts are held from here on, and how (k,): OPEN, CLOSED or CLOSED_BY_OTHERS; and
+    the accelerations of opening of all (k,).
 
     Only contacts without a rate of opening can rest.
 
+    A (k, k): accelerations of opening from unit forces; moves (k,): whether a force moves anything
+    rate (k,): rates of opening
     evaluation: the state after all impulses, every contact open
     """
     contacts = [layout.contacts[i] for i in touching.indices.tolist()]
@@ -50,17 +53,17 @@ def find_resting(
     is_still = rate == 0.0
     candidates = np.flatnonzero(is_still & moves)
     solution = solve_complementarity(A[np.ix_(candidates, candidates)], q[candidates], noise[candidates])
-    contact_states = np.full(len(contacts), OPEN)
-    contact_states[candidates[solution.bears]] = CLOSED
-    contact_states[candidates[solution.depends]] = CLOSED_BY_OTHERS
-    contact_states[is_still & ~moves & (q <= noise)] = CLOSED_BY_OTHERS  # beyond, a drive opens it
-    return contact_states, q + A @ scatter(solution.z, candidates, len(contacts))
+    touching_states = np.full(len(contacts), OPEN)
+    touching_states[candidates[solution.bears]] = CLOSED
+    touching_states[candidates[solution.depends]] = CLOSED_BY_OTHERS
+    touching_states[is_still & ~moves & (q <= noise)] = CLOSED_BY_OTHERS  # beyond, a drive opens it
+    return touching_states, q + A @ scatter(solution.z, candidates, len(contacts))
 
 
 def find_contradicted(
     touching: TouchingContacts,
     A: Array,
-    contact_states: Array,
+    touching_states: Array,
     rate: Array,
     evaluation: Evaluation,
     layout: Layout,
@@ -70,15 +73,16 @@ def find_contradicted(
     `find_resting` takes all applied loads as given, but load-dependent joint friction changes as contacts bear. A
     closed contact then may pull, or an open one accelerate inwards.
 
-    evaluation: the state with the contacts held that `contact_states` names
+    touching_states (k,), rate (k,): what is held, and the rates of opening
+    evaluation: the state with the contacts held that `touching_states` names
     """
     contacts = [layout.contacts[i] for i in touching.indices.tolist()]
     rows = evaluation.rows[0]
     noise = estimate_acceleration_noise(layout, touching, A, evaluation)
     z = np.array([-c.sense * float(rows["multiplier"][c.row]) for c in contacts])
     w = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    is_pulling = (contact_states == CLOSED) & (z * np.diag(A) < -noise)
-    return np.asarray(is_pulling | ((contact_states == OPEN) & (rate == 0.0) & (w < -noise)))
+    is_pulling = (touching_states == CLOSED) & (z * np.diag(A) < -noise)
+    return np.asarray(is_pulling | ((touching_states == OPEN) & (rate == 0.0) & (w < -noise)))
 
 
 def estimate_acceleration_noise(layout: Layout, touching: TouchingContacts, A: Array, evaluation: Evaluation) -> Array:
@@ -109,7 +113,10 @@ def is_short_flight(touching: TouchingContacts, rate: Array, acceleration: Array
 
 # Impulses
 
-MAX_ROUNDS = 60  # consecutive strikes at one instant, after which further ones are plastic
+# Rounds of simultaneous impacts at one instant: of MAX_ROUNDS, those after the first MAX_ELASTIC_ROUNDS are plastic, so
+# that rebounds which strike each other again and again come to an end.
+MAX_ELASTIC_ROUNDS = 60
+MAX_ROUNDS = 2 * MAX_ELASTIC_ROUNDS
 
 
 @record
@@ -189,9 +196,9 @@ def solve_simultaneous(
         if not (is_struck.any() or (v + added_rates < -noise).any()):
             v = v + added_rates  # e.g. impulses that lift resting contacts
             break
-        if rounds == 2 * MAX_ROUNDS:
+        if rounds == MAX_ROUNDS:
             raise EndlessImpacts(np.flatnonzero(count), int(np.argmax(count)), rounds)
-        e = np.where(is_plastic | (rounds >= MAX_ROUNDS), 0.0, touching.restitution)
+        e = np.where(is_plastic | (rounds >= MAX_ELASTIC_ROUNDS), 0.0, touching.restitution)
         candidates = np.flatnonzero((v <= noise) & moves)
         solution = solve_round(A, v, added_rates, candidates, np.where(is_struck, e, 0.0), noise)
         z = scatter(solution.z, candidates, len(v))
