@@ -1,21 +1,29 @@
-"""Collect the sentences on the contacts of a run, and count their strikes and the events at one instant."""
+"""Collect what is reported of contact events: sentences, contacts that share an impulse, strikes and their counts."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.motion.integration.contacts.contact_problem import ContactOutcome
+from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
+from heuncli.motion.integration.contacts.contact_problem import ContactOutcome, EventSetting
 from heuncli.motion.integration.contacts.latches import LatchCatch
 from heuncli.motion.integration.contacts.restitution import make_chattering_error
-from heuncli.motion.integration.contacts.shared_impulses import SharedImpulse, join_names
+from heuncli.motion.integration.contacts.shared_impulses import (
+    LoadedContact,
+    SharedImpulse,
+    find_shared_impulses,
+    join_names,
+    list_bilateral_contacts,
+    select_loaded,
+)
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.multibody.tree.layout import Layout
 
 MAX_SIMULTANEOUS = 16  # events at one instant, plus four per contact; more count as endless
 
 
-class ContactNotes:
+class EventNotes:
     """The sentences on the contacts of one run, and how often each contact is struck. Changes with every event."""
 
     def __init__(self, layout: Layout, end_time: float) -> None:
@@ -37,15 +45,13 @@ class ContactNotes:
     def add_notes(
         self,
         t: float,
-        contacts_touching: TouchingContacts,
+        touching: TouchingContacts,
         outcome: ContactOutcome,
         shared_impulses: tuple[SharedImpulse, ...],
     ) -> None:
         """Record notes on contacts that are struck together or come to rest."""
-        contacts = [self.layout.contacts[i] for i in contacts_touching.indices.tolist()]
-        struck_contacts = [
-            contacts[k] for k in np.flatnonzero(outcome.impulses.takes_part & (contacts_touching.rate < 0.0))
-        ]
+        contacts = [self.layout.contacts[i] for i in touching.indices.tolist()]
+        struck_contacts = [contacts[k] for k in np.flatnonzero(outcome.impulses.takes_part & (touching.rate < 0.0))]
         for contact in struck_contacts:
             self.strike_counts[contact.name] = self.strike_counts.get(contact.name, 0) + 1
         when = f"at t = {t:.6g} s"
@@ -72,3 +78,31 @@ class ContactNotes:
             self.sentences[f"{name} releases at t = {t:.6g} s"] = None
         for catch in catches:
             self.sentences[f"{self.layout.contacts[catch.contact].name} catches at t = {t:.6g} s"] = None
+
+
+def find_event_shares(layout: Layout, event: EventSetting, outcome: ContactOutcome) -> tuple[SharedImpulse, ...]:
+    """Find the contacts that share the impulse of an event: bearing ones, catching latches, and bilateral ones."""
+    impulses, which = outcome.impulses, event.problem.touching.indices
+    taking_part, n = np.flatnonzero(impulses.takes_part), len(event.sides.loads)
+    contacts = [
+        LoadedContact(
+            contact.name,
+            contact.row,
+            n + int(k),
+            impacts=int(impulses.count[k]),
+            comes_to_rest=bool(impulses.comes_to_rest[k]),
+        )
+        for k, contact in ((k, layout.contacts[which[k]]) for k in taking_part)
+    ]
+    catching_contacts = [layout.contacts[catch.contact] for catch in event.catches if catch.rate != 0.0]
+    first = n - len(catching_contacts)
+    contacts += [
+        LoadedContact(contact.name, contact.row, first + k, is_held=True) for k, contact in enumerate(catching_contacts)
+    ]
+    contacts += select_loaded(list_bilateral_contacts(layout), outcome.columns.multipliers)
+    is_coupled = np.zeros((len(contacts), len(contacts)), dtype=bool)
+    # also through contacts that bear nothing, which depends on the model, too
+    for group in find_coupled_groups(event.problem.A):
+        members = np.isin(taking_part, group)
+        is_coupled[: len(taking_part), : len(taking_part)] |= members[:, None] & members
+    return tuple(find_shared_impulses(contacts, is_coupled, outcome.columns.multipliers))
