@@ -14,7 +14,7 @@ from heuncli.kernel.events import hold_branches
 from heuncli.kernel.following import is_linear, prepare_step
 from heuncli.kernel.memory import Memory
 from heuncli.kernel.response import evaluate
-from heuncli.kernel.row_choice import choice_width
+from heuncli.kernel.selection import choice_width
 from heuncli.kernel.step_ends import restore_record
 from heuncli.kernel.steps import run_steps
 from heuncli.kernel.watches import MAX_PEAK_PARTS, reset_watches

@@ -14,8 +14,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.evaluator import evaluate_program
 from heuncli.kernel.kinematics import add_load_to_body, locate_point
 from heuncli.kernel.libm import NAN
-from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
-from heuncli.kernel.strains import find_span_vector
+from heuncli.kernel.strains import find_span_vector, measure_rope, rope_energy, rope_power
 
 
 def apply_loads(scene: cython.pointer[Scene]) -> cython.double:

@@ -28,8 +28,7 @@ from heuncli.kernel.loads import (
     slides_in_joint,
     sliding_velocity,
 )
-from heuncli.kernel.ropes import rope_power_tangent, rope_tangent
-from heuncli.kernel.strains import line_tangent
+from heuncli.kernel.strains import line_tangent, rope_power_tangent, rope_tangent
 from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
 
 
