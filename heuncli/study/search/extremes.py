@@ -317,8 +317,8 @@ def name_first_peaks(
         chosen, shape = pool.select(is_chosen), shape.select(is_chosen)
         probe_times = merge_neighbours(chosen.choose_probes(shape), chosen.t[:, 2] - chosen.t[:, 1])
         instants = sort_distinct(probe_times)
-        side = np.where(chosen.target < targets.n, -1.0, 1.0)
-        height = side * sample(instants)[np.searchsorted(instants, probe_times), chosen.column]
+        signs = np.where(chosen.target < targets.n, -1.0, 1.0)
+        height = signs * sample(instants)[np.searchsorted(instants, probe_times), chosen.column]
         probes += len(instants)
         is_equal = height >= equal[chosen.target]
         _move_earlier(best, probe_times[is_equal], chosen.column[is_equal], chosen.target[is_equal])

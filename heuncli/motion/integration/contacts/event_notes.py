@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.spelling import join_names
 from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.contact_problem import ContactOutcome, EventSetting
 from heuncli.motion.integration.contacts.latches import LatchCatch
@@ -13,7 +14,6 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     LoadedContact,
     SharedImpulse,
     find_shared_impulses,
-    join_names,
     list_bilateral_contacts,
     select_loaded,
 )
