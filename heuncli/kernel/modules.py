@@ -54,6 +54,7 @@ MODULES = (
     "solutions",
     "memory",
     "workspace",
+    "components",
     "attitudes",
     "dense",
     "bernstein",

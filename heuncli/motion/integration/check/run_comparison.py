@@ -21,14 +21,15 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
+from heuncli.kernel.choose import components
 from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.response import as_numbers
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.scene.shapes.rotations import largest_magnitude
 
 # Distance
 
@@ -60,15 +61,10 @@ def bound_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, 
     8 sin²(θ/2). This takes a tenth of the time of a comparison of all points, and leaves few instants for such a
     comparison.
     """
-    n = len(evaluation.times) // count
-    r, R = (group_by_run(evaluation.bodies[name], count).reshape(count, len(marks.reach), -1, n) for name in ("r", "R"))
-    extent, distance = largest_magnitude(r[0]) / size, np.zeros(n)
-    for k in range(count - 1):
-        for other in range(k + 1, count):
-            dr, dR = (x[other] - x[k] for x in (r, R))
-            turned = np.sqrt(0.5 * (dR * dR).sum(axis=1)) + tolerances.SUM_ROUNDING
-            distances = np.sqrt((dr * dr).sum(axis=1)) + turned * marks.reach[:, None]
-            np.maximum(distance, distances.max(axis=0), out=distance)
+    distance, extent = np.empty((2, len(evaluation.times) // count))
+    numbers = as_numbers(evaluation.bodies).reshape(-1)
+    components.bound_differences(numbers, count, marks.reach, tolerances.SUM_ROUNDING, distance, extent)
+    extent = extent / size
     bound = ROUNDING_MARGIN * (2.0 * (distance / size) + tolerances.PLACE_ROUNDING * np.maximum(extent, 1.0))
 
     def find_exact_error(which: Indices) -> Array:
@@ -85,12 +81,6 @@ def bound_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, 
         bound[others] = find_exact_error(others)
     bound[first] = exact
     return bound
-
-
-def group_by_run(values: Array, count: int) -> Array:
-    """Regroup values (c n, ...) of `count` runs, stored instant by instant, run after run, (c, ..., n)."""
-    each = values.reshape(-1, count, *values.shape[1:])
-    return np.ascontiguousarray(each.transpose(1, *range(2, each.ndim), 0))
 
 
 def find_point_distance(marks: MotionPoints, bodies: Table, count: int, size: float, first: int = 0) -> Array:
