@@ -33,7 +33,7 @@ from heuncli.results.results import Array, Indices, Mask
 
 # Distance
 
-FULL_CHECKS = 8  # instants at which all points are always compared
+FULL_CHECKS = 32  # instants at which all points are always compared: mostly those that the bound leaves open
 ROUNDING_MARGIN = 1.0 + 1e-9  # more than the rounding of a distance
 
 
