@@ -257,9 +257,9 @@ def little(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.mark.heavy
 @pytest.mark.parametrize("form", ["json", "csv"])
 def test_a_sample_takes_its_states_and_nothing_else(form: str, little: None) -> None:
-    """Some 7 numbers of state in two runs, its instant, as a number and as text; of it 15 numbers are told."""
+    """Some 7 numbers of state in two runs, its instant, as a number and as text; 15 numbers are told, and by cause."""
     few, many = (swinging(n, 2) for n in (3_000, 12_000))
-    wanted = frozenset({"joints"})
+    wanted = frozenset({"joints", "shares"})
     a, b = (peak(spec, wanted, pieces(form, spec)) for spec in (few, many))
     assert (b - a) / 9_000 <= 250.0, f"{(b - a) / 9_000:.0f} bytes a sample"
 

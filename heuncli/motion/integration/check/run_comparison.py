@@ -194,9 +194,9 @@ class JoinedStates:
         )
         return states
 
-    def take_first(self, n: int) -> JoinedStates:
-        """Select the states at the first n instants."""
-        return replace(self, place=self.place[:n])
+    def select(self, instants: slice | Mask) -> JoinedStates:
+        """Select the states at some instants, without copying them."""
+        return replace(self, place=self.place[instants])
 
 
 @record
