@@ -26,12 +26,12 @@ def record_width(workspace: Workspace, n: cython.int) -> int:
     return 2 * n + choice_width(cython.address(workspace.scene))
 
 
-def interpolate_steps(courses: dict[str, Any], n: cython.int, times: Any, states: Any, found: Any) -> None:
+def interpolate_steps(courses: dict[str, Any], n: cython.int, times: Any, states: Any, flags: Any) -> None:
     """Find states of n numbers at instants within steps whose polynomials were recorded, before their ends, (instants,
     n).
 
     courses: flat arrays `ends`, `spans` and `courses` of some steps, as an integration writes them. All arrays are
-    flat; found: 1 at these instants, 0 at the others, whose states stay as they are.
+    flat; flags: 1 at these instants, 0 at the others, whose states stay as they are.
     """
     k: cython.Py_ssize_t
     memory: Memory = Memory()
@@ -42,7 +42,7 @@ def interpolate_steps(courses: dict[str, Any], n: cython.int, times: Any, states
     course: cython.pp_double = memory.view_rows(courses["courses"], rows * count, n)
     t: cython.p_double = memory.view_row(times)
     rows_out: cython.pp_double = memory.view_rows(states, len(times), n)
-    is_found: cython.p_double = memory.view_row(found)
+    is_found: cython.p_double = memory.view_row(flags)
     for k in range(len(times)):
         step: cython.Py_ssize_t = find_step(ends, count, t[k])
         is_found[k] = 0.0

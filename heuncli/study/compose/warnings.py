@@ -220,17 +220,17 @@ class PartialSamples(NamedTuple):
     there.
     """
 
-    count: int
+    sample_count: int
     first_time: float
     first: tuple[PartialFriction, ...]
 
     def add_later(self, later: PartialSamples | None) -> PartialSamples:
         """Add the samples of a later part of the run."""
-        return self if later is None else self._replace(count=self.count + later.count)
+        return self if later is None else self._replace(sample_count=self.sample_count + later.sample_count)
 
-    def describe(self, sample_count: int) -> str:
-        """Describe them in a sentence; sample_count: of all samples."""
-        which = f"{self.count} of {sample_count} samples, first at t = {self.first_time:.6g} s"
+    def describe(self, total_count: int) -> str:
+        """Describe them in a sentence; total_count: of all samples."""
+        which = f"{self.sample_count} of {total_count} samples, first at t = {self.first_time:.6g} s"
         return f"loads and accelerations at {which}, do not include full friction: {describe_partial(self.first)}"
 
 
