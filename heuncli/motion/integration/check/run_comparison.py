@@ -68,7 +68,7 @@ def bound_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, 
     bound = ROUNDING_MARGIN * (2.0 * (distance / size) + tolerances.PLACE_ROUNDING * np.maximum(extent, 1.0))
 
     def find_exact_error(which: Indices) -> Array:
-        bodies = evaluation.bodies[(count * which[:, None] + np.arange(count)).ravel()]
+        bodies = evaluation.bodies.take((count * which[:, None] + np.arange(count)).ravel(), axis=0)
         return find_motion_error(marks, bodies, count, size)
 
     if len(bound) <= FULL_CHECKS or not np.isfinite(bound).all():
@@ -186,12 +186,9 @@ class JoinedStates:
     place: Indices
 
     def __getitem__(self, instants: slice | Mask) -> Array:
-        place = self.place[instants]
-        states, is_run_state = np.empty((len(place), self.run_states.shape[1])), place < len(self.run_states)
-        states[is_run_state], states[~is_run_state] = (
-            self.run_states[place[is_run_state]],
-            self.others[place[~is_run_state] - len(self.run_states)],
-        )
+        place, run_count = self.place[instants], len(self.run_states)
+        states, is_other = self.run_states.take(place, axis=0, mode="clip"), place >= run_count
+        states[is_other] = self.others.take(place[is_other] - run_count, axis=0)
         return states
 
     def select(self, instants: slice | Mask) -> JoinedStates:
