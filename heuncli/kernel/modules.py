@@ -52,6 +52,7 @@ MODULES = (
     "solutions",
     "memory",
     "workspace",
+    "components",
     "attitudes",
     "dense",
     "bernstein",

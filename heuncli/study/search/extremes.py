@@ -231,7 +231,7 @@ def _compute_bends(times: Array, slope: Array, step: Array, smooth: Mask) -> tup
     ends = np.append(~smooth, True)
     for edge, inward in ((begins, 1), (ends, -1)):
         k = np.flatnonzero(edge) + 1
-        near, far = second[np.clip(k + inward, 0, len(second) - 1)], second[np.clip(k + 2 * inward, 0, len(second) - 1)]
+        near, far = (second.take(k + n * inward, 0, mode="clip") for n in (1, 2))
         second[k] = np.where(np.isfinite(far), 2.0 * near - far, near)
     square = -(step * step)[:, None]
     return square * second[1:-2], square * second[2:-1]
