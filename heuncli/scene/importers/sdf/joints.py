@@ -57,7 +57,7 @@ class JointAxis(NamedTuple):
 NO_AXIS = JointAxis((0.0, 0.0, 1.0), "", None, None, None, 0.0, 0.0, 0.0, 0.0)  # of a joint that is fixed or a ball
 
 
-class Gear(NamedTuple):
+class Gearbox(NamedTuple):
     """The relation theta_2 = -ratio theta_1 of a gearbox.
 
     reference: scoped name of the link from which both angles count: theta_1 to the parent about the first axis,
@@ -84,7 +84,7 @@ class SdfJoint(NamedTuple):
     axis: JointAxis
     second_axis: JointAxis | None = None
     lead: float = 0.0
-    gear: Gear | None = None
+    gear: Gearbox | None = None
 
     @property
     def path(self) -> str:
@@ -159,13 +159,13 @@ def _read_lead(element: XmlElement, path: str, fields: UrdfFields) -> float:
     return lead or (-2.0 * math.pi / turns if turns else 0.0)
 
 
-def _read_gear(element: XmlElement, scope: str, path: str, fields: UrdfFields) -> Gear | None:
+def _read_gear(element: XmlElement, scope: str, path: str, fields: UrdfFields) -> Gearbox | None:
     """Read the ratio of a gearbox, and from which link its angles count."""
     ratio = read_child_number(element, "gearbox_ratio", path, fields, 1.0)
     reference = read_child_word(element, "gearbox_reference_body", path, fields)
     if ratio == 0.0:
         fields.report("import-joint", element, path, "gearbox_ratio is 0", "give the ratio of the angles")
-    return None if ratio is None or reference is None else Gear(ratio, f"{scope}{reference}")
+    return None if ratio is None or reference is None else Gearbox(ratio, f"{scope}{reference}")
 
 
 def find_kind_of_turning(axis: JointAxis) -> str:
