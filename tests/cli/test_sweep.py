@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
+from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.parameters import Values
 from heuncli.app.commands.sweep import running
 from heuncli.base import process
 from tests.shared.command import Done, Heun

@@ -36,12 +36,12 @@ import numpy.typing as npt
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array
 
-CONFIDENCE = 0.95  # of intervals
-TAIL = 0.5 * (1.0 - CONFIDENCE)
+CONFIDENCE = 0.95  # probability that an interval contains the true value
+TAIL = 0.5 * (1.0 - CONFIDENCE)  # probability that it lies below the interval; and above
 NORMAL = 1.959963984540054  # z: deviations of a normal law within which 95 % of it lie
 PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)
-MIN_COUNT = 2  # of numbers that have a deviation
-MIN_BOUNDED = 5  # of numbers whose deviation has an interval
+MIN_COUNT = 2  # fewest numbers that have a deviation
+MIN_BOUNDED = 5  # fewest numbers whose deviation has an interval
 
 
 class BoundedEstimate(NamedTuple):
@@ -96,9 +96,7 @@ def estimate_deviation(sorted_values: Array, s: float) -> BoundedEstimate:
 
 
 def estimate_percentile(sorted_values: Array, percent: float) -> BoundedEstimate:
-    """Estimate the value below which `percent` per cent lie, from a sorted sample; interpolated between two values
-    where it falls so.
-    """
+    """Estimate the value below which `percent` per cent lie, from a sorted sample, by interpolation."""
     n, share = len(sorted_values), 0.01 * percent
     low_index, high_index = _find_least_count(TAIL, n, share) - 1, _find_least_count(1.0 - TAIL, n, share)
     low = float(sorted_values[low_index]) if low_index >= 0 else None
@@ -117,13 +115,13 @@ def _find_least_count(probability: float, n: int, share: float) -> int:
     return high
 
 
-Places = npt.NDArray[np.signedinteger[Any]]
-MIN_INDEX_COUNT = 8  # of samples for indices
-MIN_INDEX_BOUNDED = 64  # of samples whose indices have intervals
+Places = npt.NDArray[np.signedinteger[Any]]  # the unit, or repetition, that each sample belongs to
+MIN_INDEX_COUNT = 8  # fewest samples that give indices
+MIN_INDEX_BOUNDED = 64  # fewest samples whose indices have intervals
 EXTRA_CONFIDENCE = 0.03  # added to the share p at that many samples; it falls with the root of their number
-MAX_UNITS = 512
-RESAMPLES = 999
-ROUNDING = 1e-12  # of the variance: deviations below are rounding
+MAX_UNITS = 512  # units that are resampled; more samples are put together in batches
+RESAMPLES = 999  # drawings of the units
+ROUNDING = 1e-12  # standard error of an index below which it is rounding
 
 
 class SobolIndices(NamedTuple):
@@ -169,7 +167,11 @@ def _draw_weights(count: int) -> Array:
 
 
 def _estimate_ratio(m: Array, v: Array, units: Places, weights: Array | None) -> BoundedEstimate:
-    """Estimate the ratio of two means, with its interval; weights: of resampled units, None: without an interval."""
+    """Estimate the ratio of the means of m and v (n,), with its interval.
+
+    units (n,): the unit of each sample
+    weights (RESAMPLES, units): how often each unit is drawn; None: without an interval
+    """
     R = float(m.mean()) / float(v.mean())
     if weights is None:
         return BoundedEstimate(R, None, None)
@@ -190,7 +192,7 @@ def _estimate_ratio(m: Array, v: Array, units: Places, weights: Array | None) ->
 
 
 def _confidence(n: int) -> float:
-    """The share of drawings that lie within an interval, for n samples."""
+    """Return the share of drawings that lie within an interval, for n samples."""
     return CONFIDENCE + EXTRA_CONFIDENCE * math.sqrt(MIN_INDEX_BOUNDED / n)
 
 

@@ -5,10 +5,15 @@ Impure: the clock.
 
 from __future__ import annotations
 
-from heuncli.analyses.variants.cached_evaluation import CachedEvaluator
-from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
-from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, WORKER_DIED, VariantResult, make_failed_result
-from heuncli.analyses.variants.parameters import format_value
+from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.measures import (
+    TIME_LIMIT_CODE,
+    WORKER_DIED,
+    CachedEvaluator,
+    VariantResult,
+    make_failed_result,
+)
+from heuncli.analyses.variants.parameters import Values, format_value
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.entry import UsageError, run_contained
 from heuncli.app.cli.output import print_stderr

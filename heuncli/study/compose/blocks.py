@@ -131,7 +131,7 @@ def make_reaction_blocks(recovery: Recovery, by_cause: bool) -> dict[str, Any]:
 
 
 def make_requested_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
-    """Make the blocks of some reports; of a report with requested entries, these alone."""
+    """Make the blocks of some reports, each with its requested entries only."""
     return select_blocks(make_blocks(recovery, reports), recovery.setup.selection)
 
 
@@ -241,9 +241,7 @@ def find_open_section(recovery: Recovery, cuts: Cuts) -> Mapping[str, Mask]:
 
 
 def make_bushing_block(load: BushingLoad, applied_load: AppliedLoad, states: BodyStates) -> ForceBlock:
-    """Make the block of a bushing: its shift and turn, and the load it exerts on `to`, in its own axes, which are fixed
-    in `from`.
-    """
+    """Make the block of a bushing: its shift, its turn, and its load on `to`, in axes fixed in `from`."""
     assert applied_load.strain is not None
     shift, turn = applied_load.strain[:, 0], applied_load.strain[:, 1]
     R = np.eye(3) if load.a == GROUND else states.R[:, load.a]

@@ -111,9 +111,7 @@ def compose(
                 setup, history, recovery, composed.blocks.get("joints", {}), accuracy["balance_residual"]
             ),
             *warn_near_singular(composed.unknown),
-            *warn_of_wheels(setup, history, composed.blocks, impulses),
-            *warn_of_belts(setup, recovery, composed.blocks, impulses),
-            *warn_of_threads(setup, impulses),
+            *warn_of_couplings(setup, history, recovery, composed.blocks, impulses),
             *(rest.warnings if rest is not None else ()),
             *setup.start_warnings,
         ),
@@ -143,45 +141,17 @@ def make_known_blocks(
     return make_blocks_without_unknown(recovery, reports, history.checked_run.run, history.jumps, open_marker)
 
 
-def warn_of_wheels(setup: Setup, history: History, blocks: Block, impulses: Impulses | None) -> tuple[str, ...]:
-    """Warn of wheels that lift or slip where no event covers it."""
-    if not setup.spec.rolling:
+def warn_of_couplings(
+    setup: Setup, history: History, recovery: Recovery, blocks: Block, impulses: Impulses | None
+) -> tuple[str, ...]:
+    """Warn of wheels that lift or slip, belts that push and threads without friction, where no event covers it."""
+    spec = setup.spec
+    if not spec.rolling and not any(own.type in ("belt", "screw") for own in spec.couplings.values()):
         return ()
-    from heuncli.study.compose.warnings import (  # few scenes have them
-        warn_of_wheels_at_impulses,
-        warn_of_wheels_at_instant,
-    )
+    from heuncli.study.compose.coupling_warnings import iter_coupling_warnings  # few scenes have them
 
-    instant_warnings = (
-        warn_of_wheels_at_instant(setup.spec, blocks.get("couplings", {})) if history.checked_run is None else ()
-    )
-    return (*instant_warnings, *(warn_of_wheels_at_impulses(setup.spec, impulses) if impulses is not None else ()))
-
-
-def warn_of_threads(setup: Setup, impulses: Impulses | None) -> tuple[str, ...]:
-    """Warn of threads that transmit impulses."""
-    if impulses is None or not any(own.type == "screw" for own in setup.spec.couplings.values()):
-        return ()
-    from heuncli.study.compose.warnings import warn_of_threads_at_impulses  # few scenes have them
-
-    return tuple(warn_of_threads_at_impulses(setup.spec, impulses))
-
-
-def warn_of_belts(setup: Setup, recovery: Recovery, blocks: Block, impulses: Impulses | None) -> tuple[str, ...]:
-    """Warn of belts that would push where no event covers it."""
-    if not any(own.type == "belt" for own in setup.spec.couplings.values()):
-        return ()
-    from heuncli.study.compose.warnings import (  # few scenes have them
-        warn_of_belts_at_impulses,
-        warn_of_belts_at_instant,
-    )
-
-    largest = recovery.load_magnitudes.by_unit["N"]
-    has_one_instant = setup.spec.analysis.type != "motion"
-    instant_warnings = (
-        warn_of_belts_at_instant(setup.spec, blocks.get("couplings", {}), largest) if has_one_instant else ()
-    )
-    return (*instant_warnings, *(warn_of_belts_at_impulses(setup.spec, impulses) if impulses is not None else ()))
+    largest_force = recovery.load_magnitudes.by_unit["N"] if history.checked_run is None else None
+    return tuple(iter_coupling_warnings(spec, blocks.get("couplings", {}), largest_force, impulses))
 
 
 def find_impulses(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:
@@ -269,8 +239,9 @@ def compose_in_parts(
 
 
 def divide_instants(count: int, part_size: int) -> list[slice]:
-    """Divide the instants into parts of about `part_size`; all but the last consist of whole blocks, as all at once are
-    multiplied.
+    """Divide the instants into parts of about `part_size`.
+
+    All parts but the last consist of whole blocks of the matrix products, so that each number keeps its bits.
     """
     blocks, in_part = count // BLOCK, max(1, part_size // BLOCK)
     bounds = BLOCK * np.linspace(0, blocks, max(1, blocks // in_part) + 1).astype(int)
@@ -341,8 +312,9 @@ def find_largest_force(recovery: Recovery, s: Array) -> float:
 
 
 def drop_axes(foundation: Mapping[str, Any], largest: float, parts: list[slice]) -> None:
-    """Remove the central axis where the total is zero relative to the largest force of the run; a part knew only its
-    own largest.
+    """Remove the central axis where the total is zero relative to the largest force of the run.
+
+    A part of the results knew only its own largest force.
     """
     for part in parts:
         is_zero = is_zero_force(foundation["force"][part], largest)

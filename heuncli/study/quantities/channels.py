@@ -218,9 +218,9 @@ def collect_series_loads(results: Results) -> list[Channel]:
 def make_section_channels(
     name: str, section: Mapping[str, Any], units: Mapping[str, str] = NO_UNITS
 ) -> tuple[Channel, ...]:
-    """Make the channels of a section: its forces, then the stresses and deflections it has; of a series of cuts
-    (n_t, n_cuts) each.
+    """Make the channels of a section: its forces, then its stresses and deflections, if it has them.
 
+    section: its block; that of a series of cuts gives channels along it, (n_t, n_cuts)
     units: replacements of units, for impulses instead of forces
     """
     stress = section.get("stress", {})

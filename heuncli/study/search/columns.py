@@ -65,9 +65,23 @@ class Sampleable(Protocol):
     def compose_reports(
         self, recovery: Recovery, reports: frozenset[str], open_marker: OpenMarker | None = None
     ) -> Results:
-        """Return some reports' blocks of a recovery; open_marker: marks indeterminate numbers where the recovery does
-        not look for them.
+        """Return some reports' blocks of a recovery.
+
+        open_marker: marks indeterminate numbers where the recovery does not look for them
         """
+
+
+class RunSample(NamedTuple):
+    """A number along a series of cuts at one instant.
+
+    run: name of the series
+    nodes, values: positions along it [m], and the number there, (9 m,) each
+    """
+
+    run: str
+    instant: float
+    nodes: Array
+    values: Array
 
 
 class StudyColumns:
@@ -114,10 +128,12 @@ class StudyColumns:
 
     @cached_property
     def grid_verdicts(self) -> VerdictsBetween | None:
-        """The verdicts on what is indeterminate between the instants of the grid; None if it has to be found at each
-        instant, or is not needed.
+        """The verdicts on what is indeterminate between the instants of the grid.
+
+        None if they are not needed, or if it must be found at each instant.
         """
-        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):  # of a tree
+        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):
+            # the scene is a tree, or needs no verdicts
             return None
         from heuncli.study.compose.unknown_numbers import (  # where there are closed chains
             VerdictsBetween,
@@ -172,8 +188,7 @@ class StudyColumns:
         return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
 
     def finish(self, peaks: Extremes) -> Extremes:
-        """Return the extremes of the channels: with their paths, places along series of cuts, and of magnitudes instead
-        of their squares.
+        """Complete the extremes: with the paths, the places along series of cuts, and magnitudes in place of squares.
 
         Quantities along runs that are no polynomial of loads are searched there again.
         """
@@ -194,24 +209,19 @@ class StudyColumns:
             for side, bounds in ((-1.0, low), (1.0, high)):
                 i = int(np.searchsorted(instants, peak_times[int(side > 0.0), k]))
                 s = np.broadcast_to(results.sections[name]["s"], values.shape)[i]
-                own = name, float(instants[i]), s, values[i]
-                bounds[first + k], place = self._find_place(first + k, side, own, float(bounds[first + k]))
+                run_sample = RunSample(name, float(instants[i]), s, values[i])
+                bounds[first + k], place = self._find_place(first + k, side, run_sample, float(bounds[first + k]))
                 side_places.append(place)
             places.append((side_places[0], side_places[1]))
         return peaks._replace(low=low, high=high, places=tuple(places))
 
-    def _find_place(
-        self, k: int, side: float, run_sample: tuple[str, float, Array, Array], value: float
-    ) -> tuple[float, CutPosition]:
-        """Return the value of an extreme of a series of cuts, and its place.
-
-        run_sample: name of the run, instant, nodes along the run, and the values at these
-        """
+    def _find_place(self, k: int, side: float, run_sample: RunSample, value: float) -> tuple[float, CutPosition]:
+        """Return the value of an extreme of the k-th channel, along a series of cuts, and its place."""
         assert self.setup is not None
         from heuncli.study.search.cuts import cut_at, find_sides, find_stretch, locate_summit
 
         setup, (name, instant, nodes, values) = self.setup, run_sample
-        s, end, ends = locate_summit(nodes, values, side)
+        s, end, ends = locate_summit(nodes, values, side)  # position, side of a load there, ends of the smooth piece
         if self.bent and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:
@@ -235,7 +245,7 @@ class StudyColumns:
         return value, find_stretch(setup, name).make_place(s, end)
 
 
-WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: the first samples for extremes
+WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # shares of each step of the integrator: where extremes are sampled first
 MAX_TURN = np.pi / 8.0  # rad: largest turn of a body between two of these instants, 1/8 period of the second order
 MAX_INSTANTS = 100_000
 
@@ -276,8 +286,9 @@ def choose_search_times(setup: Setup, history: History, max_instants: int = MAX_
 
 
 def has_loads_along_coordinates(setup: Setup) -> bool:
-    """Return whether loads depend on coordinates or points: if they push a constrained direction, no step shows how
-    fast they change.
+    """Return whether loads depend on coordinates or points.
+
+    If they push along a constrained direction, no integration step shows how fast they change.
     """
     return any(value.uses for load in setup.scene.mechanism.loads for value in load.values)
 

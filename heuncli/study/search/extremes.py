@@ -27,17 +27,19 @@ from heuncli.study.search.intervals import (
     fill_missing,
 )
 
-ColumnSampler = Callable[[Array], Array]  # of sorted instants (n,) the quantities there, (n, n_columns)
-HeightToBeat = Callable[[Array, Array, Indices], Array]  # by the heights at both ends of intervals, and their targets
+# takes sorted instants (n,), returns the quantities there, (n, n_columns)
+ColumnSampler = Callable[[Array], Array]
+# takes the heights at both ends of intervals and the targets these belong to, returns the height to be exceeded
+HeightToBeat = Callable[[Array, Array, Indices], Array]
 
 FIRST_INTERVALS = 4  # intervals of a quantity that are sampled in the first round, twice as many in each following one
 MIN_STRETCH = 5  # fewest instants of a smooth stretch that show its second derivative and how that changes
 MAX_ROUNDS = 60  # enough halvings to reach rounding at an unannounced jump
 MAX_PROBES = 100_000  # instants sampled in one search
-MAX_COLUMNS = 400  # of varying quantities, in tables; if there are more, the grid's own values are shown
-SAME_PROBE = 1e-4  # of an interval: closer instants are sampled as one; the summit's error is the square of it
-GOOD_ENOUGH = 0.1  # of a quantity's own error: a smaller gain is not searched for
-BOTH_SIDES = (-1.0, 1.0)
+MAX_COLUMNS = 400  # varying quantities that a table searches; if there are more, it shows the values at the instants
+SAME_PROBE = 1e-4  # share of an interval: closer instants are sampled as one; the summit's error is its square
+GOOD_ENOUGH = 0.1  # share of a quantity's own error: a smaller gain is not searched for
+BOTH_SIDES = (-1.0, 1.0)  # the lowest and the highest: signs that make each a maximum
 
 
 class Targets(NamedTuple):

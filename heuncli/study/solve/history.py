@@ -194,9 +194,7 @@ def integrate_checked(
 
 
 def integrate_with_event_method(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> CheckedRun:
-    """Compute a motion with its check run; if events end most steps, restart it with a method of few stages where that
-    is faster.
-    """
+    """Integrate a motion with its check run; restart it with a method of few stages if that passes events faster."""
     method, runs.eventful = runs.method, setup.is_auto
     try:
         return make_checked_run(runs, tolerance, LoadErrors(setup, by_cause))

@@ -99,11 +99,11 @@ def find_coupling_numbers(loads: CouplingLoads, joints: Sequence[Joint], states:
     return numbers_by_quantity
 
 
-ROW_CHANGE = 1e-6  # of the largest multiplier: indeterminate loads change by more when other rows are chosen
+ROW_CHANGE = 1e-6  # relative to the largest multiplier: a change of the chosen rows changes indeterminate loads by more
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
 
-Quantity = tuple[str, Array]  # of couplings: name, a key of error_estimates.UNITS; values (n, k, 3) or (n, k, 1)
+Quantity = tuple[str, Array]  # name, a key of error_estimates.UNITS, and the couplings' values (n, k, 3) or (n, k, 1)
 
 
 class ComparedInstants(NamedTuple):
@@ -122,7 +122,7 @@ class LoadErrors(ErrorEstimates):
         """keep_instants: store the intermediate results of the instants, which would be large for a whole run"""
         super().__init__(setup, weights)
         self.keep_instants, self.by_cause = keep_instants, by_cause
-        self.last: ComparedInstants | None = None  # of the instants that were added last
+        self.last: ComparedInstants | None = None  # results of the instants that were added last
         self.is_requested = self.is_claimed = np.zeros(0, dtype=bool)
 
     def add_values(
@@ -132,8 +132,9 @@ class LoadErrors(ErrorEstimates):
         self.find_extent(*name).add(values, rounding, terms, (self.is_requested, self.is_claimed), extra_difference)
 
     def add(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
-        """Add instants, with masks of those requested and of those before the horizon; each has the solution of run A,
-        then of the others.
+        """Add instants, each with the solution of run A, then of the others.
+
+        is_requested, is_claimed (n,): which of them are requested, and which are before the horizon
         """
         count = len(recovered.times) // max(len(is_requested), 1)
         same = (

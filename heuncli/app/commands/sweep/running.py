@@ -22,9 +22,10 @@ from itertools import islice
 from heuncli.analyses.sweep_rows import SweepHead
 from heuncli.analyses.sweep_store import Store, StoredRows, choose_sweep, format_sweep, open_store, split_store_argument
 from heuncli.analyses.sweep_store_file import write_head
-from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
+from heuncli.analyses.variants.evaluation import VariantEvaluator
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.analyses.variants.measures import VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.analyses.variants.plans import Plan
 from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import BUG, UsageError

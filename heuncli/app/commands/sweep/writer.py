@@ -15,7 +15,7 @@ from itertools import islice
 from typing import Any
 
 from heuncli.analyses.sweep_rows import SweepColumns, SweepHead, SweptRow, make_columns
-from heuncli.analyses.variants.cached_evaluation import strip_numbers
+from heuncli.analyses.variants.measures import strip_numbers
 from heuncli.app.cli import terminal
 from heuncli.app.cli.documents import render_document
 from heuncli.app.cli.entry import UsageError

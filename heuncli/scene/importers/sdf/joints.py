@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Vec
 from heuncli.scene.importers.attitudes import rotate_vector, rotation_from_roll_pitch_yaw
@@ -17,19 +19,26 @@ from heuncli.scene.importers.sdf.frames import (
     invert_pose,
 )
 from heuncli.scene.importers.sdf.values import read_child_flag, read_child_number, read_child_word, read_values
-from heuncli.scene.importers.urdf.document import NO_LIMIT, X_AXIS, Mimic, UrdfJoint, UrdfLink
+from heuncli.scene.importers.urdf.document import (
+    NO_LIMIT,
+    X_AXIS,
+    LinkPose,
+    LoopJoint,
+    Mimic,
+    UrdfJoint,
+    UrdfLink,
+    make_massless_link,
+)
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
-KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball")
+KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2")
+KINDS_OF_TWO_AXES = ("universal", "revolute2")  # the first axis is fixed in the parent, the second in the child
 KIND_HINTS = {
-    "universal": "write two joints of type revolute with a link without mass between",
-    "revolute2": "write two joints of type revolute with a link between",
     "screw": "write a joint of type prismatic, import, and add a coupling of type screw to the spec",
     "gearbox": "write a joint of type revolute, import, and add a coupling of type ratio to the spec",
 }
 JOINT_NOISE = ("sensor", "physics", "plugin")
-JOINT_PARTS = ("pose", "parent", "child", "axis")
 AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
 LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
 DYNAMICS_PARTS = ("damping", "friction", "spring_stiffness", "spring_reference")
@@ -56,8 +65,14 @@ class JointAxis(NamedTuple):
     reference: float
 
 
+NO_AXIS = JointAxis((0.0, 0.0, 1.0), "", None, None, None, 0.0, 0.0, 0.0, 0.0)  # of a joint that is fixed or a ball
+
+
 class SdfJoint(NamedTuple):
-    """A joint as the file has it. Its ends are scoped names of frames."""
+    """A joint as the file has it. Its ends are scoped names of frames.
+
+    second_axis: of a joint of two axes, which turn one after the other
+    """
 
     name: str
     element: XmlElement
@@ -65,6 +80,7 @@ class SdfJoint(NamedTuple):
     parent: str
     child: str
     axis: JointAxis
+    second_axis: JointAxis | None = None
 
     @property
     def path(self) -> str:
@@ -93,23 +109,37 @@ def read_joint(
     for part in element.children:
         if part.tag in JOINT_NOISE or ":" in part.tag:
             ignored_tags[f"{part.tag} in joints"] += 1
-    fields.report_unknown_parts(element, path, *JOINT_PARTS, *JOINT_NOISE)
+    fields.report_unknown_parts(element, path, "pose", "parent", "child", "axis", *_list_axis_tags(kind), *JOINT_NOISE)
     ends = [read_child_word(element, tag, path, fields) for tag in ("parent", "child")]
     parent, child = (None if end is None else WORLD if end == WORLD else f"{scope}{end}" for end in ends)
-    axis = fields.find_child(element, "axis", path) if kind not in ("fixed", "ball") else None
-    if axis is None and kind not in (None, "fixed", "ball"):
-        fields.report("import-missing", element, path, "<axis> is missing", "add <axis><xyz>0 0 1</xyz></axis>")
-        kind = None
     problem_count = len(fields.problems)
     own = f"{scope}{name}"
-    parts = _read_axis(
-        axis or XmlElement("axis", {}, [], element.line, element.column), scope, own, has_model_axes, path, fields
-    )
+    axes: list[JointAxis] = []
+    for tag in _list_axis_tags(kind):
+        axis = fields.find_child(element, tag, path)
+        if axis is None:
+            hint = f"add <{tag}><xyz>0 0 1</xyz></{tag}>"
+            fields.report("import-missing", element, path, f"<{tag}> is missing", hint)
+        else:
+            axes.append(_read_axis(axis, scope, own, has_model_axes, path, fields))
     if name is None or kind is None or parent is None or child is None or len(fields.problems) > problem_count:
         return None
-    if kind == "revolute" and parts.limits is None:
-        kind = "continuous"
-    return SdfJoint(own, element, kind, parent, child, parts)
+    if not axes:
+        return SdfJoint(own, element, kind, parent, child, NO_AXIS._replace(frame=own))
+    if kind not in ("prismatic", "continuous"):
+        kind = _find_kind_of_turning(axes[0])
+    return SdfJoint(own, element, kind, parent, child, *axes)
+
+
+def _list_axis_tags(kind: str | None) -> tuple[str, ...]:
+    """List the tags of the axes that a kind of joint has."""
+    if kind in (None, "fixed", "ball"):
+        return ()
+    return ("axis", "axis2") if kind in KINDS_OF_TWO_AXES else ("axis",)
+
+
+def _find_kind_of_turning(axis: JointAxis) -> str:
+    return "continuous" if axis.limits is None else "revolute"
 
 
 def _read_axis(
@@ -203,14 +233,16 @@ def _read_mimic(axis: XmlElement, scope: str, path: str, fields: UrdfFields) -> 
 
 def make_joints(
     joints: list[SdfJoint], links: dict[str, UrdfLink], frames: FrameTree, model: XmlElement
-) -> dict[str, UrdfJoint]:
-    """Make the joints of URDF in the order of the file, and add the links without mass that they need to `links`: the
-    world, and the frames, which are fixed to what they are attached to, and so become points.
+) -> tuple[dict[str, UrdfJoint], tuple[LoopJoint, ...]]:
+    """Make the joints of URDF in the order of the file, and those that close loops of the others. The links without
+    mass that they need are added to `links`: the world, and the frames, which are fixed to what they are attached to,
+    and so become points.
     """
-    fields, urdf_joints = frames.fields, dict[str, UrdfJoint]()
+    fields, urdf_joints, loop_joints = frames.fields, dict[str, UrdfJoint](), list[LoopJoint]()
     frame_names = {name for name, frame in frames.frames.items() if frame.element.tag == "frame"}
     link_names = {*links, WORLD}
     by_name = {joint.name: joint for joint in joints}
+    names_of_loop_joints = _find_loop_joints(joints, link_names, frames)
     for name, frame in frames.frames.items():
         if name in by_name:
             joint = by_name[name]
@@ -232,7 +264,10 @@ def make_joints(
             else:
                 if parent == WORLD and WORLD not in links:
                     links[WORLD] = make_massless_link(WORLD, model)
-                _make_joint(joint, parent, child, links, urdf_joints, frames)
+                if name in names_of_loop_joints:
+                    loop_joints.append(_make_loop_joint(joint, parent, child, frames))
+                else:
+                    _make_joint(joint, parent, child, links, urdf_joints, frames)
         elif name in frame_names and (link := frames.find_link(name, link_names)) not in (None, WORLD):
             attached_to = frame.attached_to if frame.attached_to in frame_names else link
             assert attached_to is not None
@@ -240,12 +275,35 @@ def make_joints(
             pose = frames.compute_pose(name, attached_to)
             mount = frames.choose_name(f"{name}_mount")
             urdf_joints[mount] = UrdfJoint(mount, frame.element, "fixed", attached_to, name, pose, X_AXIS)
-    return urdf_joints
+    return urdf_joints, tuple(loop_joints)
 
 
-def make_massless_link(name: str, element: XmlElement) -> UrdfLink:
-    """Make a link without mass and shapes that stands at the place of an element of the file."""
-    return UrdfLink(name, XmlElement("link", {}, [], element.line, element.column), None)
+def _find_loop_joints(joints: Iterable[SdfJoint], links: set[str], frames: FrameTree) -> set[str]:
+    """Find the joints that close loops: those that a walk from the roots outward does not take, as it reached their
+    child by another joint before. Roots are the links that no joint carries, and the first of a loop without one.
+    """
+    outward: dict[str, list[SdfJoint]] = {}
+    carried: set[str] = set()
+    for joint in joints:
+        parent = frames.find_link(joint.parent, links)
+        child = frames.find_link(joint.child, links)
+        if parent is not None and child is not None:
+            outward.setdefault(parent, []).append(joint)
+            carried.add(child)
+    names = [name for name in frames.frames if name in links]
+    reached, found = set[str](), set[str]()
+    for start in (*(name for name in names if name not in carried), *names):
+        queue = [] if start in reached else [start]
+        reached.update(queue)
+        for name in queue:  # the list grows during the loop
+            for joint in outward.get(name, ()):
+                child = frames.find_link(joint.child, links)
+                if child in reached:
+                    found.add(joint.name)
+                elif child is not None:
+                    reached.add(child)
+                    queue.append(child)
+    return found
 
 
 def _find_end(
@@ -259,6 +317,30 @@ def _find_end(
     return name if tag == "parent" and name in frame_names and link not in (None, WORLD) else link
 
 
+def _turn_axis(axis: JointAxis, joint: str, frames: FrameTree) -> Vec:
+    """Return an axis of a joint in the joint's own frame."""
+    turn = frames.compute_pose(axis.frame, joint)
+    if turn.rpy == ZERO:
+        return axis.direction
+    return rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis.direction)
+
+
+def _make_urdf_joint(joint: SdfJoint, parent: str, child: str, pose: LinkPose, frames: FrameTree) -> UrdfJoint:
+    part = joint.axis
+    return UrdfJoint(
+        joint.name, joint.element, joint.kind, parent, child, pose, _turn_axis(part, joint.name, frames), part.limits,
+        part.effort, part.mimic, part.damping, part.friction, part.stiffness, part.reference,
+    )  # fmt: skip
+
+
+def _make_loop_joint(joint: SdfJoint, parent: str, child: str, frames: FrameTree) -> LoopJoint:
+    if joint.second_axis is not None:
+        message, hint = "a joint of two axes closes a loop", "exchange it with another joint of the loop in the file"
+        frames.fields.report("import-joint", joint.element, joint.path, message, hint)
+    in_parent, in_child = (frames.compute_pose(joint.name, link) for link in (parent, child))
+    return LoopJoint(_make_urdf_joint(joint, parent, child, in_parent, frames), in_child)
+
+
 def _make_joint(
     joint: SdfJoint,
     parent: str,
@@ -267,22 +349,24 @@ def _make_joint(
     urdf_joints: dict[str, UrdfJoint],
     frames: FrameTree,
 ) -> None:
-    """Make one joint, and a second that fixes the child to it where its pose differs from that of the child."""
+    """Make one joint: with a link without mass between its two axes, if it has two, and with a second joint that fixes
+    the child to it where its pose differs from that of the child.
+    """
     in_child = frames.compute_pose(joint.name, child)
     is_at_child = in_child == NO_POSE or joint.kind == "fixed"
     in_parent = frames.compute_pose(child if is_at_child else joint.name, parent)
-    axis = joint.axis.direction
-    turn = frames.compute_pose(joint.axis.frame, joint.name)
-    if turn.rpy != ZERO:
-        axis = rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis)
     own_child = child
     if not is_at_child:
         own_child = frames.choose_name(f"{joint.name}_frame")
         links[own_child] = make_massless_link(own_child, joint.element)
         name = frames.choose_name(f"{joint.name}_mount")
         urdf_joints[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
-    part = joint.axis
-    urdf_joints[joint.name] = UrdfJoint(
-        joint.name, joint.element, joint.kind, parent, own_child, in_parent, axis, part.limits, part.effort,
-        part.mimic, part.damping, part.friction, part.stiffness, part.reference,
-    )  # fmt: skip
+    if joint.second_axis is None:
+        urdf_joints[joint.name] = _make_urdf_joint(joint, parent, own_child, in_parent, frames)
+        return
+    cross = frames.choose_name(f"{joint.name}_cross")
+    links[cross] = make_massless_link(cross, joint.element)
+    urdf_joints[joint.name] = _make_urdf_joint(joint, parent, cross, in_parent, frames)
+    second = joint._replace(axis=joint.second_axis, kind=_find_kind_of_turning(joint.second_axis))
+    name = frames.choose_name(f"{joint.name}_2")
+    urdf_joints[name] = replace(_make_urdf_joint(second, cross, own_child, NO_POSE, frames), name=name)

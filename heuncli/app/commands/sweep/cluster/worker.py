@@ -16,8 +16,9 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import heuncli
-from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.app.cli.variant_workers import solve_contained
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.form import KERNEL
