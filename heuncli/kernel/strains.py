@@ -57,11 +57,19 @@ def find_bushing_rotation(scene: cython.pointer[Scene], load: cython.pointer[Loa
     return find_rotation_vector(Mat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z))
 
 
+def find_bushing_shift(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return d."""
+    return rotate_back(bushing_axes(scene, load), find_span_vector(scene, load))
+
+
 def bushing_strain(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """Return d or phi, depending on the part of a bushing that the load is."""
-    if load.kind == BUSHING_SHIFT:
-        return rotate_back(bushing_axes(scene, load), find_span_vector(scene, load))
-    return find_bushing_rotation(scene, load)
+    return find_bushing_shift(scene, load) if load.kind == BUSHING_SHIFT else find_bushing_rotation(scene, load)
+
+
+def other_strain(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the strain of the other part of a bushing: phi or d."""
+    return find_bushing_rotation(scene, load) if load.kind == BUSHING_SHIFT else find_bushing_shift(scene, load)
 
 
 def find_rotation_vector(R: Mat3) -> Vec3:
@@ -241,12 +249,26 @@ def strain_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], x: 
     """Return the change of a bushing's shift or rotation x."""
     if load.a == load.b:
         return Vec3(0.0, 0.0, 0.0)
-    if load.kind == BUSHING_SHIFT:
-        displacement: Vec3 = sub(point_tangent(scene, load.b, load.q).x, point_tangent(scene, load.a, load.p).x)
-        swept: Vec3 = vector_tangent(scene, load.a, rotate(bushing_axes(scene, load), x))
-        return rotate_back(bushing_axes(scene, load), sub(displacement, swept))
+    return bushing_shift_tangent(scene, load, x) if load.kind == BUSHING_SHIFT else bushing_turn_tangent(scene, load, x)
+
+
+def other_strain_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the change of the strain of the other part of a bushing between two bodies."""
+    x: Vec3 = other_strain(scene, load)
+    return bushing_turn_tangent(scene, load, x) if load.kind == BUSHING_SHIFT else bushing_shift_tangent(scene, load, x)
+
+
+def bushing_shift_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], d: Vec3) -> Vec3:
+    """Return the change of a bushing's shift d."""
+    displacement: Vec3 = sub(point_tangent(scene, load.b, load.q).x, point_tangent(scene, load.a, load.p).x)
+    swept: Vec3 = vector_tangent(scene, load.a, rotate(bushing_axes(scene, load), d))
+    return rotate_back(bushing_axes(scene, load), sub(displacement, swept))
+
+
+def bushing_turn_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], phi: Vec3) -> Vec3:
+    """Return the change of a bushing's rotation vector phi."""
     relative_rotation: Vec3 = sub(rotation_tangent(scene, load.b), rotation_tangent(scene, load.a))
-    return rotation_vector_rate(x, rotate_back(bushing_axes(scene, load), relative_rotation))
+    return rotation_vector_rate(phi, rotate_back(bushing_axes(scene, load), relative_rotation))
 
 
 # Elastic ropes
