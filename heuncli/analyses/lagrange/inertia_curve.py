@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import compute_accelerations, compute_length, compute_rates
+from heuncli.analyses.lagrange.coordinate_rates import compute_accelerations, compute_length, compute_rates
 from heuncli.analyses.lagrange.equations import get_velocity_motion
 from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives, get_start_time, make_start_state
 from heuncli.analyses.lagrange.results import InertiaCurve
