@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
 from heuncli.scene.shapes.rotations import cross_matrix
