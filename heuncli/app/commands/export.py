@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
-from heuncli.analyses.load_cases import model
+from heuncli.analyses.load_cases import unit_systems
 from heuncli.analyses.load_cases.assembly import assemble_load_cases, select_results
-from heuncli.analyses.load_cases.model import LoadCases, convert_load_cases
+from heuncli.analyses.load_cases.model import LoadCases
+from heuncli.analyses.load_cases.unit_systems import convert_load_cases
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, QUIET, SET, SPEC, TIME_LIMIT, CaptionRequest, Option, SolverRequest
@@ -193,12 +194,12 @@ def choose_form(request: ExportRequest) -> str:
     raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension", hint=hint))
 
 
-def _parse_units(words: str | None) -> model.UnitSystem:
+def _parse_units(words: str | None) -> unit_systems.UnitSystem:
     """Parse the consistent units of --units; SI by default. Raises UsageError."""
     if words is None:
-        return model.SI
+        return unit_systems.SI
     try:
-        return model.parse_units(words)
+        return unit_systems.parse_units(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
 

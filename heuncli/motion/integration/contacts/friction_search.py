@@ -19,11 +19,12 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import record
+from heuncli.base.spelling import join_names
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.friction_groups import FrictionGroup, FrictionPlaces, PlaceResponse
-from heuncli.motion.integration.contacts.friction_problems import make_jamming_problem
-from heuncli.motion.integration.contacts.shared_impulses import join_names
+from heuncli.motion.integration.diagnosis.ambiguous_laws import make_jamming_problem
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array
 
@@ -46,32 +47,39 @@ class StateTrial(NamedTuple):
     jam: tuple[int, int] | None
 
 
-class StateSearch:
-    """The search for the choice at an instant; used for one call of `FrictionStates.decide` (sticking.py).
+@record
+class FrictionQuestion:
+    """What is known where the states of friction are to be decided, of n places.
 
-    groups: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
+    t, state, contact_states: the instant [s], the state there, and the contact states that stops and latches have
+    groups: places without a rate
+    slip (n,): signs of the others' rates
+    coordinates (n,): where each would stick
     broken: the group that has reached what it can hold; None: none has
     earlier_slips: groups that slipped before and are too slow yet to show it: their number, and the sign of their slip
     response: of all places, without their loads
     """
 
-    def __init__(
-        self,
-        places: FrictionPlaces,
-        t: float,
-        state: Array,
-        holding: Array,
-        groups: list[FrictionGroup],
-        slip: Array,
-        coordinates: Array,
-        broken: int | None,
-        earlier_slips: dict[int, int],
-        response: PlaceResponse,
-    ) -> None:
-        self.places, self.t, self.state, self.holding = places, t, state, holding
-        self.groups, self.slip, self.coordinates = groups, slip, coordinates
-        self.broken, self.earlier_slips = broken, earlier_slips
-        self.leaders = [group.leader for group in groups]
+    t: float
+    state: Array
+    contact_states: Array
+    groups: list[FrictionGroup]
+    slip: Array
+    coordinates: Array
+    broken: int | None
+    earlier_slips: dict[int, int]
+    response: PlaceResponse
+
+
+class StateSearch:
+    """The search for the choice at an instant; used for one call of `FrictionStates.decide` (sticking.py)."""
+
+    def __init__(self, places: FrictionPlaces, question: FrictionQuestion) -> None:
+        self.places, self.t, self.state = places, question.t, question.state
+        self.contact_states, response = question.contact_states, question.response
+        self.groups, self.slip, self.coordinates = question.groups, question.slip, question.coordinates
+        self.broken, self.earlier_slips = question.broken, question.earlier_slips
+        self.leaders = [group.leader for group in self.groups]
         self.trials: dict[Choice, StateTrial] = {}
         self.noise, self.slack = response.noise, response.slack
         self.response = response.response[np.ix_(self.leaders, self.leaders)]
@@ -93,7 +101,7 @@ class StateSearch:
             for k, transmission in zip(group.members, group.transmissions, strict=True):
                 sticks[k] = chosen == STICKS
                 coordinate_or_sign[k] = self.coordinates[k] if chosen == STICKS else chosen * np.sign(transmission)
-        return self.places.set_states(self.holding, sticks, coordinate_or_sign, self.list_sticking(choice))
+        return self.places.set_states(self.contact_states, sticks, coordinate_or_sign, self.list_sticking(choice))
 
     def list_sticking(self, choice: Choice) -> tuple[FrictionGroup, ...]:
         """Return the groups of several places that stick in a choice."""
@@ -147,11 +155,12 @@ class StateSearch:
             if jams:
                 raise self.jamming_error(*jams[0])
             raise self.undecided_error("no choice of them agrees with the motion that it leads to")
-        # rule 3
+        # rule 3 of this module
         most = max(found, key=lambda other: other.count(STICKS))
         for other in found:
-            # Rule 4. Another choice contradicts this one if something sticks in it that slips here, or, where it has a
-            # different slip, if static friction is kinetic (the motion then is unique) or nothing sticks here.
+            # Rule 4: two that differ otherwise are an error. Another choice contradicts this one if something sticks in
+            # it that slips here, or, where it has a different slip, if static friction is kinetic (the motion then is
+            # unique) or nothing sticks here.
             differs = any(x == STICKS and y != STICKS for x, y in zip(other, most, strict=True)) or (
                 other != most and (self.places.has_one_size or STICKS not in most)
             )
@@ -195,10 +204,10 @@ class StateSearch:
                 allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve)) + self.slack[k]
                 if not (is_met and reserve >= -allowed):
                     next_states[n] = -1 if value > 0.0 else 1
-            elif n == self.broken:  # rule 1
+            elif n == self.broken:  # rule 1: it slips as it was pushed, or the other way
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = -choice[n]
-            elif choice[n] == self.earlier_slips.get(n):  # rule 2
+            elif choice[n] == self.earlier_slips.get(n):  # rule 2: it slips on unless it would turn back
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = STICKS
             elif not choice[n] * acceleration > noise[k]:
@@ -220,9 +229,9 @@ class StateSearch:
         """Return whether a friction that sticks depends on other constraints than those of its group."""
         if not evaluation.rows["closed"][0, self.places.rows].any():
             return False
-        holding = evaluation.holding[0].copy()
-        holding[self.places.indices] = 0.0
-        opened = self.places.evaluate(self.t, self.state, holding)
+        contact_states = evaluation.holding[0].copy()
+        contact_states[self.places.indices] = 0.0
+        opened = self.places.evaluate(self.t, self.state, contact_states)
         in_groups = sum(len(group.members) - 1 for group in self.list_sticking(choice))
         return int(evaluation.dependent_count[0]) != int(opened.dependent_count[0]) + in_groups
 
