@@ -200,7 +200,7 @@ def make_symmetric_matrix(value: Any) -> loads.Matrix:
     """Make the matrix of a stiffness or damping without tables: the symmetric part of one, or a diagonal one."""
     if is_matrix(value):
         rows = tuple(tuple(0.5 * (value[i][j] + value[j][i]) for j in range(3)) for i in range(3))
-        return rows[0], rows[1], rows[2]  # type: ignore[return-value]
+        return rows[0], rows[1], rows[2]
     x, y, z = expand_to_axes(value)
     return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
 
