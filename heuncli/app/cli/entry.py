@@ -27,9 +27,9 @@ from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.reading import forget_files_read
 from heuncli.version import VERSION
 
-INTERRUPTED = 130
-Given = TypeVar("Given")
-BUG = 70
+INTERRUPTED = 130  # exit code
+BUG = 70  # exit code
+Result = TypeVar("Result")
 EXIT_CODE_PRIORITY = (BUG, 5, 2, 3, 4, 1)  # manual/commands.md, "Exit codes": which exit code stands for several files
 MIN_MEMORY = 160e6  # bytes of address space for the modules of Python, NumPy and the kernel
 UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # messages of system loaders
@@ -58,7 +58,7 @@ def enter(argv: Sequence[str]) -> int:
         return INTERRUPTED
 
 
-def run_contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
+def run_contained(work: Callable[[], Result], argv: Sequence[str]) -> Result:
     """Run the work of a command line and return its result; every failure becomes a HeunError.
 
     Lack of memory becomes LimitError, any other unexpected exception KernelError where the compiled kernel is not of
