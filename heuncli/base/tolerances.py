@@ -367,6 +367,9 @@ INERTIA_REFUSED = 1e-3  # relative to the largest moment of inertia: limit on a 
 # relative to the largest moment of inertia: moments typed with ten digits keep triangle inequality and symmetry this
 # well
 INERTIA_TYPED = 1e-9
+# of a bushing's matrix, scaled to 1 on its diagonal: matrices typed with ten digits are symmetric and semidefinite so
+# well
+STIFFNESS_TYPED = 1e-9
 # relative to mass * size^2 of a robot: smaller moments of inertia in its file are rounding of a CAD program, which
 # cancels lengths known to EPS: (1e-16)^2 is far below, and no part of a robot is 1e-10 of its size
 NO_IMPORTED_MOMENT = 1e-20

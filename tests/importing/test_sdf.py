@@ -253,6 +253,75 @@ def test_a_joint_of_two_axes_turns_about_both(kind: str) -> None:
     assert specs[0]["bodies"]["a_cross"]["mass"] == 0 and specs[0]["bodies"]["leg"] == specs[1]["bodies"]["leg"]
 
 
+LEAD = 0.02
+
+
+@pytest.mark.parametrize(
+    ("value", "hand"),
+    [
+        (f"<screw_thread_pitch>{LEAD}</screw_thread_pitch>", 1),
+        (f"<thread_pitch>{-2 * np.pi / LEAD!r}</thread_pitch>", 1),
+        (f"<thread_pitch>7</thread_pitch><screw_thread_pitch>{-LEAD}</screw_thread_pitch>", -1),
+    ],
+)
+@pytest.mark.parametrize("pose", ["", "<pose>0.3 0.1 -0.2 0 0 0.7</pose>"])
+def test_a_screw_falls_as_its_thread_lets_it(value: str, hand: int, pose: str) -> None:
+    """(J + m r^2) alpha = -m g r on a vertical axis through the centre, r = lead/2 pi: right-handed, it falls turning
+    backward.
+    """
+    on_axis = MASS.replace("<inertial>", f"<inertial>{pose.replace('-0.2', '0.4')}") if pose else MASS
+    text = imported(model(axis="<xyz>0 0 2</xyz>", kind="screw", joint=pose + value, leg=on_axis), free=True)
+    results = solve(load("s.yaml", f"{text}\nanalysis: {{duration: 0.2, samples: 3}}")).results
+    r, J, m, g, t = hand * LEAD / (2 * np.pi), 0.1, 2.0, 9.81, results.time
+    turned = -0.5 * m * g * r / (J + m * r * r) * t**2
+    near(results.coordinates["hip"]["angle"], turned, 0.1, 1e-9)
+    near(results.coordinates["hip_2"]["travel"], r * turned, 1e-3, 1e-9)
+    assert results.bodies["leg"]["center"][-1, 2] < results.bodies["leg"]["center"][0, 2]
+
+
+WHEELS = """<sdf version="1.10"><model name="m"><link name="arm">{mass}</link>
+<link name="one"><pose>0 0 0 0.4 0 0</pose>{heavy}</link><link name="two"><pose>1 0 0 0 0 0</pose>{mass}</link>
+<joint name="a" type="revolute"><parent>{a[0]}</parent><child>{a[1]}</child>{first}</joint>
+<joint name="b" type="revolute"><parent>{b[0]}</parent><child>{b[1]}</child>{second}</joint>
+<joint name="gear" type="gearbox"><parent>one</parent><child>two</child>
+<axis><xyz expressed_in="arm">0 1 0</xyz></axis><axis2><xyz expressed_in="arm">0 1 0</xyz></axis2>
+<gearbox_ratio>{ratio}</gearbox_ratio><gearbox_reference_body>{reference}</gearbox_reference_body></joint>
+</model></sdf>"""
+
+
+def wheels(ratio: float = 2.5, ends: tuple[str, str] = ("arm one", "arm two"), signs: tuple[int, int] = (1, 1), **more):
+    """Two wheels on an arm, the first with its centre beside its axis."""
+    axes = [f'<axis><xyz expressed_in="arm">0 {sign} 0</xyz>{{}}</axis>' for sign in signs]
+    a, b = (end.split() for end in ends)
+    texts = {"first": axes[0].format(""), "second": axes[1].format(""), "reference": "arm"} | more
+    heavy = MASS.replace("<inertial>", "<inertial><pose>0.2 0 0 0 0 0</pose>")
+    return WHEELS.format(mass=MASS, heavy=heavy, a=a, b=b, ratio=ratio, **texts)
+
+
+@pytest.mark.parametrize("ratio", [2.5, -0.4])
+@pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1)])
+@pytest.mark.parametrize("ends", [("arm one", "arm two"), ("arm one", "two arm"), ("one arm", "arm two")])
+def test_a_gearbox_couples_the_angles_from_its_reference(
+    ratio: float, signs: tuple[int, int], ends: tuple[str, str]
+) -> None:
+    """theta_2 = -ratio theta_1, each the angle of a wheel in the arm about the arm's y, whatever the joints count."""
+    results = solve(load("s.yaml", f"{imported(wheels(ratio, ends, signs), free=True)}\n"
+                                   "analysis: {duration: 0.3, samples: 4}")).results  # fmt: skip
+
+    def angle_in_arm(name: str) -> np.ndarray:
+        own = np.einsum("nji,njk->nik", results.bodies["arm"]["rotation"], results.bodies[name]["rotation"])
+        own = np.einsum("nij,kj->nik", own, own[0])
+        return np.arctan2(own[:, 0, 2], own[:, 0, 0])
+
+    assert abs(angle_in_arm("one")[-1]) > 0.05
+    near(angle_in_arm("two"), -ratio * angle_in_arm("one"), 1.0, 1e-9)
+
+
+def test_values_of_other_kinds_in_a_joint_are_passed_over() -> None:
+    extra = "<thread_pitch>1</thread_pitch><gearbox_ratio>1</gearbox_ratio>"
+    assert yaml.safe_load(imported(model(joint=extra))) == yaml.safe_load(imported(model()))
+
+
 def test_a_loop_without_a_root_hangs_on_its_first_link() -> None:
     text = four_bar_sdf(tuple("abcd"), np.random.default_rng(1)).replace("<parent>world", "<parent>rocker", 1)
     text = text.replace("<parent>world</parent><child>rocker", "<parent>rocker</parent><child>crank")
@@ -312,8 +381,17 @@ REFUSED = {
     ),
     "old pose": (model('<frame name="f"><pose frame="leg">0 0 0 0 0 0</pose></frame>'), "import-attribute", "gz sdf"),
     "not six": (model('<frame name="f"><pose>0 0 0</pose></frame>'), "import-number", "numbers"),
-    "screw": (model(kind="screw"), "import-joint", "screw"),
-    "gearbox": (model(kind="gearbox"), "import-joint", "ratio"),
+    "screw without lead": (model(kind="screw"), "import-missing", "screw_thread_pitch"),
+    "screw of lead 0": (model(kind="screw", joint="<thread_pitch>0</thread_pitch>"), "import-missing", "metres"),
+    "no such joint": (model(kind="gear"), "import-joint", "gearbox"),
+    "gearbox with one axis": (model(kind="gearbox"), "import-missing", "axis2"),
+    "gearbox of ratio 0": (wheels(0.0), "import-joint", "ratio"),
+    "gearbox without joints": (wheels(reference="one"), "import-joint", "revolute joint"),
+    "gearbox of other axes": (wheels(first="<axis><xyz>1 0 0</xyz></axis>"), "import-joint", "axis2"),
+    "gearbox of followers": (
+        wheels(first='<axis><xyz expressed_in="arm">0 1 0</xyz><mimic joint="b"/></axis>',
+               second='<axis><xyz>0 1 0</xyz><mimic joint="a"/></axis>'), "import-mimic", "gearbox",
+    ),
     "universal with one axis": (model(kind="universal"), "import-missing", "axis2"),
     "no axis": (model().replace("<axis><xyz>0 1 0</xyz></axis>", ""), "import-missing", "axis"),
     "unknown part": (model("<jiont/>"), "import-part", "joint"),

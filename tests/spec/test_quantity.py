@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
+from heuncli.base.units import parse_unit
 from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.quantity import read_function, read_number
 
@@ -154,3 +155,9 @@ def test_any_text_is_a_number_or_a_finding(text: str) -> None:
             assert math.isfinite(read_number(words, None, SCOPE))
         except Finding as finding:
             assert finding.message
+
+
+@pytest.mark.parametrize("unit", ["mm^99*mm^99/m^99/m^98", "km^99*km^99*km^99"])
+def test_a_unit_has_a_size(unit: str) -> None:
+    with pytest.raises(Finding, match="out of number range"):
+        parse_unit(unit)

@@ -61,8 +61,9 @@ def enter(argv: Sequence[str]) -> int:
 def run_contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
     """Run the work of a command line and return its result; every failure becomes a HeunError.
 
-    An unexpected exception becomes Bug, lack of memory becomes LimitError. It is raised outside of the `except`, so
-    that the caught exception and all that its frames hold are freed first.
+    Lack of memory becomes LimitError, any other unexpected exception KernelError where the compiled kernel is not of
+    these sources, else Bug. The error is raised outside of the `except`, so that the caught exception and all that its
+    frames hold are freed first.
     """
     error: HeunError
     try:
@@ -73,7 +74,7 @@ def run_contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
         error = LimitError(OUT_OF_MEMORY)
     except Exception as mishap:
         _print_traceback()
-        error = LimitError(OUT_OF_MEMORY) if _is_memory_error(mishap) else Bug(_make_bug_problem(mishap, argv))
+        error = _make_error(mishap, argv)
     raise error
 
 
@@ -142,6 +143,16 @@ def _require_memory() -> None:
 def _is_memory_error(error: Exception) -> bool:
     """Return whether a library could not be loaded for lack of memory."""
     return isinstance(error, ImportError) and any(words in str(error) for words in UNMAPPED)
+
+
+def _make_error(mishap: Exception, argv: Sequence[str]) -> HeunError:
+    """Make the error that an unexpected exception becomes."""
+    if _is_memory_error(mishap):
+        return LimitError(OUT_OF_MEMORY)
+    from heuncli.kernel.form import KernelError, find_stale_problem  # all else has it by now, or does not need it
+
+    stale = find_stale_problem()
+    return Bug(_make_bug_problem(mishap, argv)) if stale is None else KernelError(stale)
 
 
 def _print_traceback() -> None:

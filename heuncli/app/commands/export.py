@@ -14,7 +14,7 @@ from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, QUIET, SET, SPEC, TIME_LIMIT, CaptionRequest, Option, SolverRequest
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.cli.solving import apply_captions, load_spec, make_solver_options, print_warnings, require_choice
-from heuncli.app.cli.target import require_other_file, require_writable
+from heuncli.app.cli.target import find_ending, require_other_file, require_writable
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple
@@ -183,7 +183,7 @@ def choose_form(request: ExportRequest) -> str:
         return require_choice("--format", request.format, FORMATS)
     if output is None or output == STDOUT:
         return FORMATS[0]
-    ending = output[output.rfind(".") :].lower() if "." in output.rpartition("/")[2] else ""
+    ending = find_ending(output)
     if ending in ENDINGS:
         return ENDINGS[ending]
     if ending == AMBIGUOUS_ENDING:

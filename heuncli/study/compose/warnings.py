@@ -210,14 +210,32 @@ def list_partial_friction(mechanism: Mechanism, solutions: Evaluation) -> dict[f
     return found
 
 
-def describe_partial_samples(mechanism: Mechanism, solutions: Evaluation) -> list[str]:
-    """Return a sentence on the instants of results at which smoothed friction is below its full value."""
+class PartialSamples(NamedTuple):
+    """The samples at which smoothed friction is below its full value: how many, the first instant, and what is so
+    there.
+    """
+
+    sample_count: int
+    first_time: float
+    first: tuple[PartialFriction, ...]
+
+    def add_later(self, later: PartialSamples | None) -> PartialSamples:
+        """Add the samples of a later part of the run."""
+        return self if later is None else self._replace(sample_count=self.sample_count + later.sample_count)
+
+    def describe(self, total_count: int) -> str:
+        """Describe them in a sentence; total_count: of all samples."""
+        which = f"{self.sample_count} of {total_count} samples, first at t = {self.first_time:.6g} s"
+        return f"loads and accelerations at {which}, do not include full friction: {describe_partial(self.first)}"
+
+
+def find_partial_samples(mechanism: Mechanism, solutions: Evaluation) -> PartialSamples | None:
+    """Find the samples at which smoothed friction is below its full value; None if there are none."""
     found = list_partial_friction(mechanism, solutions) if has_smoothed_friction(mechanism) else {}
     if not found:
-        return []
+        return None
     first = min(found)
-    which = f"{len(found)} of {len(solutions.times)} samples, first at t = {first:.6g} s"
-    return [f"loads and accelerations at {which}, do not include full friction: {describe_partial(found[first])}"]
+    return PartialSamples(len(found), first, tuple(found[first]))
 
 
 def describe_partial(partial: Sequence[PartialFriction]) -> str:

@@ -172,7 +172,7 @@ def can_compose_in_parts(setup: Setup) -> bool:
     may_be_indeterminate = bool(
         setup.model["redundant"] or layout.contacts or layout.friction_contacts or layout.mechanism.couplings
     )
-    if setup.method is None or (layout.rows and may_be_indeterminate) or SHARES in setup.selection.reports:
+    if setup.method is None or (layout.rows and may_be_indeterminate):
         return False
     return not any(isinstance(condition, ResultCondition) for condition in setup.spec.analysis.conditions)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.integrated_scene import find_one_sided_limits
-from heuncli.results.results import NOWHERE, Array, CutPosition, Extremes, Results
+from heuncli.results.results import NOWHERE, Array, CutPosition, Extremes, Indices, Results
 from heuncli.scene.shapes.rotations import instants_last, squared_lengths
 from heuncli.study.compose.recovery import RANK_REPORTS, Recovery
 from heuncli.study.model.setup import Setup
@@ -275,14 +275,19 @@ def choose_search_times(setup: Setup, history: History, max_instants: int = MAX_
     parts = np.clip(turn_parts, 1, max_instants + 1).astype(int)  # for faster turning the search is incomplete
     enough = is_followed and per_step == len(WITHIN_STEP) and int(parts.sum()) <= max_instants
     parts = np.minimum(parts, max(1, max_instants // len(grid))) if not enough else parts
-    first = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
-    times = np.append(grid[first] + share * np.diff(grid)[first], grid[-1:])
+    times = divide_evenly(grid, parts) if (parts > 1).any() else grid
     if not enough or not has_loads_along_coordinates(setup):
         return times, enough
     from heuncli.study.search.law_instants import refine_for_loads
 
     return refine_for_loads(setup, history, times, max_instants)
+
+
+def divide_evenly(grid: Array, parts: Indices) -> Array:
+    """Divide the intervals between instants (n,) into so many equal parts each, (n - 1,); return all instants."""
+    first = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
+    return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:])
 
 
 def has_loads_along_coordinates(setup: Setup) -> bool:

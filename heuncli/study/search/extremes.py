@@ -231,7 +231,7 @@ def _compute_bends(times: Array, slope: Array, step: Array, smooth: Mask) -> tup
     ends = np.append(~smooth, True)
     for edge, inward in ((begins, 1), (ends, -1)):
         k = np.flatnonzero(edge) + 1
-        near, far = second[np.clip(k + inward, 0, len(second) - 1)], second[np.clip(k + 2 * inward, 0, len(second) - 1)]
+        near, far = (second.take(k + n * inward, 0, mode="clip") for n in (1, 2))
         second[k] = np.where(np.isfinite(far), 2.0 * near - far, near)
     square = -(step * step)[:, None]
     return square * second[1:-2], square * second[2:-1]
@@ -317,8 +317,8 @@ def name_first_peaks(
         chosen, shape = pool.select(is_chosen), shape.select(is_chosen)
         probe_times = merge_neighbours(chosen.choose_probes(shape), chosen.t[:, 2] - chosen.t[:, 1])
         instants = sort_distinct(probe_times)
-        side = np.where(chosen.target < targets.n, -1.0, 1.0)
-        height = side * sample(instants)[np.searchsorted(instants, probe_times), chosen.column]
+        signs = np.where(chosen.target < targets.n, -1.0, 1.0)
+        height = signs * sample(instants)[np.searchsorted(instants, probe_times), chosen.column]
         probes += len(instants)
         is_equal = height >= equal[chosen.target]
         _move_earlier(best, probe_times[is_equal], chosen.column[is_equal], chosen.target[is_equal])

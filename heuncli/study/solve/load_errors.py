@@ -337,8 +337,9 @@ class LoadErrors(ErrorEstimates):
         """
         mechanism, origin = self.setup.scene.mechanism, self.setup.moment_point
         arm = states.centre - origin
-        reach = np.abs(arm).max(axis=(1, 2))
-        self.reach = max(self.reach, float(reach.max()))
+        self.reach = max(self.reach, float(np.abs(arm).max()))
+        # a component of d x F is a sum of two products: the largest component of d alone would be too little
+        reach = np.abs(arm).sum(axis=2).max(axis=1)
         moments = terms.moment + reach * terms.force
         forces_rounding, moments_rounding = terms.rounding
         elements = [load for (kind, _), load in find_ground_loads(mechanism, actions).items() if kind == "elements"]
@@ -348,7 +349,7 @@ class LoadErrors(ErrorEstimates):
             ("foundation", *total_wrench, reach),
             ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1), reach),
             ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1), reach),
-            *(("elements", *load[:2], reach + np.abs(load.point - origin).max(axis=1)) for load in elements),
+            *(("elements", *load[:2], reach + np.abs(load.point - origin).sum(axis=1)) for load in elements),
         ]
         for kind, force, moment, lever in wrenches:
             F, M = project_to_plane(force, moment) if mechanism.planar else (force, moment)

@@ -36,13 +36,8 @@ from heuncli.app.cli.target import is_same_file, note_si_format
 from heuncli.app.cli.variant_workers import make_death_result, solve_contained
 from heuncli.app.commands.sweep.axes import parse_shard
 from heuncli.app.commands.sweep.request import SweepRequest
-from heuncli.app.commands.sweep.writer import (
-    SweepOutput,
-    SweepWarnings,
-    collect_warnings,
-    print_warnings_summary,
-    write_sweep,
-)
+from heuncli.app.commands.sweep.sweep_warnings import SweepWarnings, collect_warnings, print_warnings_summary
+from heuncli.app.commands.sweep.writer import SweepOutput, write_sweep
 from heuncli.base.errors import OutputError, Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.signals import GracefulStop

@@ -7,10 +7,10 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
+from heuncli.base.spelling import join_names
 from heuncli.motion.integration.contacts.impulses import GivenImpulse, ImpulseEvent, RightSides
 from heuncli.motion.integration.contacts.latches import LatchCatch
 from heuncli.motion.integration.contacts.restitution import ContactImpulses
-from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns

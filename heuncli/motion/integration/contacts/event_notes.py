@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.spelling import join_names
 from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.contact_problem import ContactOutcome, EventSetting
 from heuncli.motion.integration.contacts.latches import LatchCatch
@@ -13,14 +14,14 @@ from heuncli.motion.integration.contacts.shared_impulses import (
     LoadedContact,
     SharedImpulse,
     find_shared_impulses,
-    join_names,
     list_bilateral_contacts,
     select_loaded,
 )
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.multibody.tree.layout import Layout
 
-MAX_SIMULTANEOUS = 16  # events at one instant, plus four per contact; more count as endless
+# Events at one instant, and for each contact; more count as endless.
+MAX_SIMULTANEOUS, MAX_PER_CONTACT = 16, 4
 
 
 class EventNotes:
@@ -37,7 +38,7 @@ class EventNotes:
         near = tolerances.KERNEL["least_step"] * self.end_time
         self.simultaneous_count = self.simultaneous_count + 1 if t - self.last_event_time <= near else 0
         self.last_event_time = t
-        if self.simultaneous_count > MAX_SIMULTANEOUS + 4 * len(self.layout.contacts):
+        if self.simultaneous_count > MAX_SIMULTANEOUS + MAX_PER_CONTACT * len(self.layout.contacts):
             raise make_chattering_error(
                 t, max(self.strike_counts, key=lambda name: self.strike_counts[name], default="")
             )
@@ -49,7 +50,7 @@ class EventNotes:
         outcome: ContactOutcome,
         shared_impulses: tuple[SharedImpulse, ...],
     ) -> None:
-        """Record notes on contacts that are struck together or come to rest."""
+        """Record notes on contacts that are struck together, come to rest, or pull instead of flying for an instant."""
         contacts = [self.layout.contacts[i] for i in touching.indices.tolist()]
         struck_contacts = [contacts[k] for k in np.flatnonzero(outcome.impulses.takes_part & (touching.rate < 0.0))]
         for contact in struck_contacts:
@@ -58,6 +59,11 @@ class EventNotes:
         if len(struck_contacts) > 1 and not shared_impulses:
             names = join_names([contact.name for contact in struck_contacts])
             self.sentences[f"{when} {names} impact at the same time, and do not load each other"] = None
+        for k in np.flatnonzero(outcome.impulses.impulses < 0.0):  # restitution.py, bring_plastic_to_rest
+            self.sentences[
+                f"{when} the impulse of {contacts[k].name} is negative: it replaces the load on it during a flight too "
+                "short to be seen"
+            ] = None
         for k in np.flatnonzero(outcome.at_rest):
             name = contacts[k].name
             count = self.strike_counts.get(name, 0)

@@ -20,10 +20,10 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
+from heuncli.base.spelling import join_names
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.friction_groups import FrictionGroup, FrictionPlaces, PlaceResponse
-from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.diagnosis.ambiguous_laws import make_jamming_problem
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array

@@ -28,6 +28,7 @@ import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import join_names
 from heuncli.motion.integration.contacts.friction_groups import (
     FrictionGroup,
     FrictionPlaces,
@@ -38,7 +39,6 @@ from heuncli.motion.integration.contacts.friction_groups import (
 )
 from heuncli.motion.integration.contacts.friction_search import FrictionQuestion, StateSearch
 from heuncli.motion.integration.contacts.latches import measure_coordinate_rate
-from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.results.results import Array, Mask
 
@@ -92,7 +92,8 @@ class FrictionStates:
 
     def add_to(self, contact_states: Array) -> Array:
         """Return contact states with those of the friction."""
-        return self.places.set_states(contact_states, *self.present)
+        present = self.present
+        return self.places.set_states(contact_states, present.sticks, present.coordinate_or_sign, present.groups)
 
     def begin_event(self) -> None:
         """Take the present states as those before an event."""

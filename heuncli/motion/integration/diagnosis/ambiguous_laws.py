@@ -20,8 +20,8 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.spelling import join_names
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import IntegratedScene
 from heuncli.multibody.mechanism.couplings import Coordinate, Coupling

@@ -377,7 +377,8 @@ def compute_branch_inertias(scene: PreparedScene, poses: TreePoses) -> list[floa
             for sums in (masses, moments, firsts):
                 sums[parent] += sums[k]
     arms = poses.r
-    return (moments - 2.0 * np.sum(arms * firsts, axis=1) + masses * np.sum(arms**2, axis=1)).tolist()
+    inertias: list[float] = (moments - 2.0 * np.sum(arms * firsts, axis=1) + masses * np.sum(arms**2, axis=1)).tolist()
+    return inertias
 
 
 def make_artificial_inertia_rows(

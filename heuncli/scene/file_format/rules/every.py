@@ -5,6 +5,7 @@ from __future__ import annotations
 from heuncli.scene.file_format.rules import (  # noqa: F401 (each registers its rules)
     analysis,
     bodies,
+    bushings,
     couplings,
     expect,
     joints,
@@ -17,7 +18,6 @@ from heuncli.scene.file_format.rules import (  # noqa: F401 (each registers its 
     rolling,
     sections,
     segments,
-    sensors,
     stops,
 )
 from heuncli.scene.file_format.rules.registry import RULES, DraftDocument, Rule, Violation, iter_violations

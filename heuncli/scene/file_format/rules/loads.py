@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from heuncli.base import units as u
 from heuncli.base.joint_kinds import FREE, POINT, TYPES, JointKind, format_kind_names, kinds_accepting_load
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_negative
-from heuncli.scene.expressions.programs import Expression, out_of_range_texts
 from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
 from heuncli.scene.file_format.rules.bodies import FULL_FRICTION_HINT
@@ -196,20 +194,6 @@ def check_brake(draft: DraftDocument) -> Iterator[Violation]:
             elif (t := find_first_negative(value, duration)) is not None:
                 message = f"{key} must not be negative, but is {value.value(t):g} at t = {t:.4g} s"
                 yield Violation(path, message, "it resists motion in both directions: give its magnitude")
-
-
-@rule("bushing-table")
-def check_bushing_table(draft: DraftDocument) -> Iterator[Violation]:
-    """The tables of a bushing have a value at zero deflection."""
-    for name, load in draft.document.forces.items():
-        for key in ("stiffness", "turning") if isinstance(load, fl.BushingEntry) else ():
-            laws = getattr(load, key)
-            parts = (laws.x, laws.y, laws.z) if isinstance(laws, fl.ShiftLaws | fl.TurnLaws) else laws
-            for law in parts if isinstance(parts, tuple) else (parts,):
-                if isinstance(law, Expression) and math.isnan(law.value(0.0, (0.0,))):
-                    message, hint = out_of_range_texts(law.tables[0])
-                    full_message = f"{key} has no value at zero deflection of the bushing: {message}"
-                    yield Violation(("forces", name, key), full_message, hint)
 
 
 def check_friction_coefficient(name: str, load: fl.FrictionEntry, kind: JointKind) -> Iterator[Violation]:

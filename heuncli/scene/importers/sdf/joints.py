@@ -1,44 +1,33 @@
-"""Read the joints of an SDF, and make those of URDF from them."""
+"""Read the joints of an SDF."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Iterable
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.records import replace
-from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Vec
-from heuncli.scene.importers.attitudes import rotate_vector, rotation_from_roll_pitch_yaw
 from heuncli.scene.importers.description import LEFT_OUT_CODE
 from heuncli.scene.importers.sdf.frames import (
     MODEL,
-    NO_POSE,
     WORLD,
-    FrameTree,
-    invert_pose,
 )
 from heuncli.scene.importers.sdf.values import read_child_flag, read_child_number, read_child_word, read_values
 from heuncli.scene.importers.urdf.document import (
     NO_LIMIT,
-    X_AXIS,
-    LinkPose,
-    LoopJoint,
     Mimic,
-    UrdfJoint,
-    UrdfLink,
-    make_massless_link,
 )
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
-KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2")
-KINDS_OF_TWO_AXES = ("universal", "revolute2")  # the first axis is fixed in the parent, the second in the child
-KIND_HINTS = {
-    "screw": "write a joint of type prismatic, import, and add a coupling of type screw to the spec",
-    "gearbox": "write a joint of type revolute, import, and add a coupling of type ratio to the spec",
-}
+SCREW, GEARBOX = "screw", "gearbox"
+KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2", SCREW, GEARBOX)
+# Of a universal joint the first axis is fixed in the parent, the second in the child; of a gearbox they are those of
+# the two joints that it couples.
+KINDS_OF_TWO_AXES = ("universal", "revolute2", GEARBOX)
 JOINT_NOISE = ("sensor", "physics", "plugin")
+# Values of screws and gearboxes, which some programs write with every joint.
+KIND_VALUES = ("thread_pitch", "screw_thread_pitch", "gearbox_ratio", "gearbox_reference_body")
 AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
 LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
 DYNAMICS_PARTS = ("damping", "friction", "spring_stiffness", "spring_reference")
@@ -68,10 +57,23 @@ class JointAxis(NamedTuple):
 NO_AXIS = JointAxis((0.0, 0.0, 1.0), "", None, None, None, 0.0, 0.0, 0.0, 0.0)  # of a joint that is fixed or a ball
 
 
+class Gearbox(NamedTuple):
+    """The relation theta_2 = -ratio theta_1 of a gearbox.
+
+    reference: scoped name of the link from which both angles count: theta_1 to the parent about the first axis,
+    theta_2 to the child about the second
+    """
+
+    ratio: float
+    reference: str
+
+
 class SdfJoint(NamedTuple):
     """A joint as the file has it. Its ends are scoped names of frames.
 
     second_axis: of a joint of two axes, which turn one after the other
+    lead: of a screw, along the axis for each revolution about it [m]; otherwise 0
+    gear: of a gearbox, which is no joint of the tree
     """
 
     name: str
@@ -81,6 +83,8 @@ class SdfJoint(NamedTuple):
     child: str
     axis: JointAxis
     second_axis: JointAxis | None = None
+    lead: float = 0.0
+    gear: Gearbox | None = None
 
     @property
     def path(self) -> str:
@@ -103,13 +107,14 @@ def read_joint(
     path = f"joint {scope}{name}" if name is not None else "joint"
     kind = fields.read_word(element, "type", path)
     if kind is not None and kind not in KINDS:
-        hint = KIND_HINTS.get(kind, f"known: {', '.join(KINDS)}")
+        hint = f"known: {', '.join(KINDS)}"
         fields.report("import-joint", element, path, f"a joint of type '{kind}' cannot be read", hint)
         kind = None
     for part in element.children:
         if part.tag in JOINT_NOISE or ":" in part.tag:
             ignored_tags[f"{part.tag} in joints"] += 1
-    fields.report_unknown_parts(element, path, "pose", "parent", "child", "axis", *_list_axis_tags(kind), *JOINT_NOISE)
+    known_tags = ("pose", "parent", "child", "axis", *_list_axis_tags(kind))
+    fields.report_unknown_parts(element, path, *known_tags, *KIND_VALUES, *JOINT_NOISE)
     ends = [read_child_word(element, tag, path, fields) for tag in ("parent", "child")]
     parent, child = (None if end is None else WORLD if end == WORLD else f"{scope}{end}" for end in ends)
     problem_count = len(fields.problems)
@@ -122,13 +127,16 @@ def read_joint(
             fields.report("import-missing", element, path, f"<{tag}> is missing", hint)
         else:
             axes.append(_read_axis(axis, scope, own, has_model_axes, path, fields))
+    lead = _read_lead(element, path, fields) if kind == SCREW else 0.0
+    gear = _read_gear(element, scope, path, fields) if kind == GEARBOX else None
     if name is None or kind is None or parent is None or child is None or len(fields.problems) > problem_count:
         return None
     if not axes:
         return SdfJoint(own, element, kind, parent, child, NO_AXIS._replace(frame=own))
     if kind not in ("prismatic", "continuous"):
-        kind = _find_kind_of_turning(axes[0])
-    return SdfJoint(own, element, kind, parent, child, *axes)
+        kind = find_kind_of_turning(axes[0])
+    second_axis = axes[1] if len(axes) > 1 else None
+    return SdfJoint(own, element, kind, parent, child, axes[0], second_axis, lead, gear)
 
 
 def _list_axis_tags(kind: str | None) -> tuple[str, ...]:
@@ -138,7 +146,29 @@ def _list_axis_tags(kind: str | None) -> tuple[str, ...]:
     return ("axis", "axis2") if kind in KINDS_OF_TWO_AXES else ("axis",)
 
 
-def _find_kind_of_turning(axis: JointAxis) -> str:
+def _read_lead(element: XmlElement, path: str, fields: UrdfFields) -> float:
+    """Read the travel of a screw for each revolution [m]: positive if it is right-handed.
+
+    Up to SDF 1.9 it stands as <thread_pitch> in radians per metre, positive if it is left-handed.
+    """
+    lead = read_child_number(element, "screw_thread_pitch", path, fields, 0.0)
+    turns = read_child_number(element, "thread_pitch", path, fields, 0.0)
+    if not lead and not turns and lead is not None and turns is not None:
+        hint = "write <screw_thread_pitch>, the metres for each revolution"
+        fields.report("import-missing", element, path, "the lead of the screw is missing, or 0", hint)
+    return lead or (-2.0 * math.pi / turns if turns else 0.0)
+
+
+def _read_gear(element: XmlElement, scope: str, path: str, fields: UrdfFields) -> Gearbox | None:
+    """Read the ratio of a gearbox, and from which link its angles count."""
+    ratio = read_child_number(element, "gearbox_ratio", path, fields, 1.0)
+    reference = read_child_word(element, "gearbox_reference_body", path, fields)
+    if ratio == 0.0:
+        fields.report("import-joint", element, path, "gearbox_ratio is 0", "give the ratio of the angles")
+    return None if ratio is None or reference is None else Gearbox(ratio, f"{scope}{reference}")
+
+
+def find_kind_of_turning(axis: JointAxis) -> str:
     return "continuous" if axis.limits is None else "revolute"
 
 
@@ -229,144 +259,3 @@ def _read_mimic(axis: XmlElement, scope: str, path: str, fields: UrdfFields) -> 
     if joint is None or multiplier is None or offset is None or reference is None:
         return None
     return Mimic(part, f"{scope}{joint}", multiplier, offset - multiplier * reference)
-
-
-def make_joints(
-    joints: list[SdfJoint], links: dict[str, UrdfLink], frames: FrameTree, model: XmlElement
-) -> tuple[dict[str, UrdfJoint], tuple[LoopJoint, ...]]:
-    """Make the joints of URDF in the order of the file, and those that close loops of the others. The links without
-    mass that they need are added to `links`: the world, and the frames, which are fixed to what they are attached to,
-    and so become points.
-    """
-    fields, urdf_joints, loop_joints = frames.fields, dict[str, UrdfJoint](), list[LoopJoint]()
-    frame_names = {name for name, frame in frames.frames.items() if frame.element.tag == "frame"}
-    link_names = {*links, WORLD}
-    by_name = {joint.name: joint for joint in joints}
-    names_of_loop_joints = _find_loop_joints(joints, link_names, frames)
-    for name, frame in frames.frames.items():
-        if name in by_name:
-            joint = by_name[name]
-            parent, child = (_find_end(end, tag, link_names, frame_names, joint, frames) for end, tag in joint.ends)
-            if parent is None or child is None:
-                continue
-            if child == WORLD:
-                message, hint = "its child is the world", "exchange <parent> and <child>"
-                fields.report("import-tree", joint.element, joint.path, message, hint)
-            elif joint.axis.frame not in frames.frames:
-                message = f"its axis is expressed in '{joint.axis.frame}', which is not there"
-                fields.report(
-                    "import-tree",
-                    joint.element,
-                    joint.path,
-                    message,
-                    suggest(joint.axis.frame, frames.frames, "frames"),
-                )
-            else:
-                if parent == WORLD and WORLD not in links:
-                    links[WORLD] = make_massless_link(WORLD, model)
-                if name in names_of_loop_joints:
-                    loop_joints.append(_make_loop_joint(joint, parent, child, frames))
-                else:
-                    _make_joint(joint, parent, child, links, urdf_joints, frames)
-        elif name in frame_names and (link := frames.find_link(name, link_names)) not in (None, WORLD):
-            attached_to = frame.attached_to if frame.attached_to in frame_names else link
-            assert attached_to is not None
-            links[name] = make_massless_link(name, frame.element)
-            pose = frames.compute_pose(name, attached_to)
-            mount = frames.choose_name(f"{name}_mount")
-            urdf_joints[mount] = UrdfJoint(mount, frame.element, "fixed", attached_to, name, pose, X_AXIS)
-    return urdf_joints, tuple(loop_joints)
-
-
-def _find_loop_joints(joints: Iterable[SdfJoint], links: set[str], frames: FrameTree) -> set[str]:
-    """Find the joints that close loops: those that a walk from the roots outward does not take, as it reached their
-    child by another joint before. Roots are the links that no joint carries, and the first of a loop without one.
-    """
-    outward: dict[str, list[SdfJoint]] = {}
-    carried: set[str] = set()
-    for joint in joints:
-        parent = frames.find_link(joint.parent, links)
-        child = frames.find_link(joint.child, links)
-        if parent is not None and child is not None:
-            outward.setdefault(parent, []).append(joint)
-            carried.add(child)
-    names = [name for name in frames.frames if name in links]
-    reached, found = set[str](), set[str]()
-    for start in (*(name for name in names if name not in carried), *names):
-        queue = [] if start in reached else [start]
-        reached.update(queue)
-        for name in queue:  # the list grows during the loop
-            for joint in outward.get(name, ()):
-                child = frames.find_link(joint.child, links)
-                if child in reached:
-                    found.add(joint.name)
-                elif child is not None:
-                    reached.add(child)
-                    queue.append(child)
-    return found
-
-
-def _find_end(
-    name: str, tag: str, link_names: set[str], frame_names: set[str], joint: SdfJoint, frames: FrameTree
-) -> str | None:
-    """Find the link, or for a parent the frame, that an end of a joint names; None, and a problem, if there is none."""
-    link = frames.find_link(name, link_names)
-    if link is None:
-        hint = suggest(name, frames.frames, "frames")
-        frames.fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is not there", hint)
-    return name if tag == "parent" and name in frame_names and link not in (None, WORLD) else link
-
-
-def _turn_axis(axis: JointAxis, joint: str, frames: FrameTree) -> Vec:
-    """Return an axis of a joint in the joint's own frame."""
-    turn = frames.compute_pose(axis.frame, joint)
-    if turn.rpy == ZERO:
-        return axis.direction
-    return rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis.direction)
-
-
-def _make_urdf_joint(joint: SdfJoint, parent: str, child: str, pose: LinkPose, frames: FrameTree) -> UrdfJoint:
-    part = joint.axis
-    return UrdfJoint(
-        joint.name, joint.element, joint.kind, parent, child, pose, _turn_axis(part, joint.name, frames), part.limits,
-        part.effort, part.mimic, part.damping, part.friction, part.stiffness, part.reference,
-    )  # fmt: skip
-
-
-def _make_loop_joint(joint: SdfJoint, parent: str, child: str, frames: FrameTree) -> LoopJoint:
-    if joint.second_axis is not None:
-        message, hint = "a joint of two axes closes a loop", "exchange it with another joint of the loop in the file"
-        frames.fields.report("import-joint", joint.element, joint.path, message, hint)
-    in_parent, in_child = (frames.compute_pose(joint.name, link) for link in (parent, child))
-    return LoopJoint(_make_urdf_joint(joint, parent, child, in_parent, frames), in_child)
-
-
-def _make_joint(
-    joint: SdfJoint,
-    parent: str,
-    child: str,
-    links: dict[str, UrdfLink],
-    urdf_joints: dict[str, UrdfJoint],
-    frames: FrameTree,
-) -> None:
-    """Make one joint: with a link without mass between its two axes, if it has two, and with a second joint that fixes
-    the child to it where its pose differs from that of the child.
-    """
-    in_child = frames.compute_pose(joint.name, child)
-    is_at_child = in_child == NO_POSE or joint.kind == "fixed"
-    in_parent = frames.compute_pose(child if is_at_child else joint.name, parent)
-    own_child = child
-    if not is_at_child:
-        own_child = frames.choose_name(f"{joint.name}_frame")
-        links[own_child] = make_massless_link(own_child, joint.element)
-        name = frames.choose_name(f"{joint.name}_mount")
-        urdf_joints[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
-    if joint.second_axis is None:
-        urdf_joints[joint.name] = _make_urdf_joint(joint, parent, own_child, in_parent, frames)
-        return
-    cross = frames.choose_name(f"{joint.name}_cross")
-    links[cross] = make_massless_link(cross, joint.element)
-    urdf_joints[joint.name] = _make_urdf_joint(joint, parent, cross, in_parent, frames)
-    second = joint._replace(axis=joint.second_axis, kind=_find_kind_of_turning(joint.second_axis))
-    name = frames.choose_name(f"{joint.name}_2")
-    urdf_joints[name] = replace(_make_urdf_joint(second, cross, own_child, NO_POSE, frames), name=name)

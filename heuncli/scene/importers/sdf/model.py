@@ -23,7 +23,8 @@ from heuncli.scene.importers.sdf.frames import (
     FrameTree,
     read_pose,
 )
-from heuncli.scene.importers.sdf.joints import SdfJoint, make_joints, read_joint
+from heuncli.scene.importers.sdf.joint_tree import make_joints
+from heuncli.scene.importers.sdf.joints import SdfJoint, read_joint
 from heuncli.scene.importers.sdf.values import (
     as_attribute,
     read_attribute_flag,
