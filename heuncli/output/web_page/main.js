@@ -118,7 +118,7 @@ function showGoverning(envelope, history, goTo) {
 /** A load case while it is shown. */
 class ShownCase {
   /**
-   * @param {object[]} runs all cases @param {number} run the number of this one
+   * @param {import("./data.js").CaseData[]} runs all cases @param {number} run the number of this one
    * @param {object} previous what the case before it left
    * @param {(run: number, frame?: number) => void} change to another case
    */
@@ -215,7 +215,7 @@ class ShownCase {
   }
 }
 
-/** Show the load cases, each in a fresh copy of the page's main part. @param {object[]} runs */
+/** Show the load cases, each in a fresh copy of the page's main part. @param {import("./data.js").CaseData[]} runs */
 function showCases(runs) {
   const blank = document.querySelector("main").cloneNode(true);
   let shown = null;

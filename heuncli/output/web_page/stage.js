@@ -85,7 +85,7 @@ function paintMachine(pen, scene, poses, view, options, colours) {
 
 /**
  * Draw the machine at a frame.
- * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./view.js").View} view
+ * @param {HTMLCanvasElement} canvas @param {import("./data.js").CaseData} data @param {import("./view.js").View} view
  * @param {object} options the frame and what is chosen to be drawn @param {import("./labels.js").LabelList} labels
  */
 export function drawMachine(canvas, data, view, options, colours, labels) {

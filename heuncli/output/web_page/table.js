@@ -9,7 +9,11 @@ const COLUMNS = ["", "x", "y", "z", "value", ""];
 
 /** A cell whose number follows the frame. */
 class Cell {
-  /** @param {string} path @param {(frame: number) => number} value SI @param {string} missing what stands for nan */
+  /**
+   * @param {string} path @param {(frame: number) => number} value SI
+   * @param {number} size how many of its unit an SI unit has @param {import("./digits.js").Style} style
+   * @param {string} missing what stands for nan
+   */
   constructor(path, value, size, style, missing = "open") {
     this.element = makeElement("td", "", { "data-path": path });
     this.element.addEventListener("pointerenter", () => this.showDigits());
@@ -42,7 +46,10 @@ function addHeading(body, text, kind, note = "") {
 
 /** The table. */
 export class NumberTable {
-  /** @param {HTMLTableElement} table @param {object} data @param {import("./selection.js").Selection} selection */
+  /**
+   * @param {HTMLTableElement} table @param {import("./data.js").CaseData} data
+   * @param {import("./selection.js").Selection} selection
+   */
   constructor(table, data, selection) {
     this.table = table;
     this.data = data;
