@@ -42,7 +42,12 @@ from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, list_whole_
 from heuncli.loads.kinetostatics.balance import system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, point_motions
-from heuncli.loads.kinetostatics.coupling_numbers import make_coupling_block
+from heuncli.loads.kinetostatics.coupling_numbers import (
+    DRIVE_ELEMENT_NUMBERS,
+    efficiency,
+    make_coupling_block,
+    pressure_angle,
+)
 from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_actions
 from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, foundation_block, make_element_keys
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_block
@@ -256,9 +261,7 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
     spec_coupling, names = coupling_loads.coupling.entry, [body.name for body in mechanism.bodies]
     block = make_coupling_block(coupling_loads, names, find_pretension(coupling_loads, recovery.loads))
-    if spec_coupling.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.coupling_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
-
+    if spec_coupling.type in DRIVE_ELEMENT_NUMBERS:
         is_impulse = bool(recovery.solutions.loads.shape[1] < len(layout.tables["loads"]))  # at an impulse no load acts
         block |= {
             k: v
@@ -268,8 +271,6 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
             if k not in block
         }
     if coupling_loads.friction is not None:
-        from heuncli.loads.kinetostatics.coupling_numbers import efficiency  # few scenes have it
-
         found = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
         own_load = next((own for own in recovery.loads if own.action is coupling_loads.friction), None)
         if own_load is not None and own_load.reserve is not None:
@@ -277,8 +278,6 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
             block["reserve"] = own_load.reserve
         block["efficiency"] = found
     if spec_coupling.type == "cam":
-        from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
-
         block["pressure_angle"] = pressure_angle(coupling_loads, mechanism.joints, recovery.states)
     return block
 

@@ -257,8 +257,8 @@ class Study:
 
     def _recover(self, times: Array, reports: frozenset[str]) -> Recovery:
         """Recover the results at other instants."""
-        recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in reports)
-        return recover(self.setup, recovered, self.options.least_norm)
+        solutions = resample(self.setup.runner, self.history, times, by_cause=SHARES in reports)
+        return recover(self.setup, solutions, self.options.least_norm)
 
     @property
     def chunk_size(self) -> int:

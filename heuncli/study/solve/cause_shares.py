@@ -79,7 +79,7 @@ class ComparedShares(NamedTuple):
 
 def iter_compared_shares(
     setup: Setup,
-    recovered: Evaluation,
+    solutions: Evaluation,
     states: BodyStates,
     applied_actions: Sequence[Action],
     kinds: Set[str],
@@ -87,7 +87,7 @@ def iter_compared_shares(
 ) -> Iterator[ComparedShares]:
     """Yield the shares of the compared kinds of loads, of joints, couplings, foundation and sections."""
     layout = setup.scene.layout
-    shares = find_shares(layout, recovered, states, applied_actions, find_cause_columns(layout.mechanism))
+    shares = find_shares(layout, solutions, states, applied_actions, find_cause_columns(layout.mechanism))
     factor = compute_term_ratio(shares.cause_results, terms)
     joint_shares = [rotate_joint_loads(load, states, setup.selection.axes) for load in shares.joints]
     shares_of_kinds = (
