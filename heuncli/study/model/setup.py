@@ -43,7 +43,7 @@ from heuncli.study.model.selection import EVERYTHING, Selection
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.cuts import Cuts
-    from heuncli.loads.kinetostatics.sensors import PlacedSensor
+    from heuncli.loads.kinetostatics.moved_reactions import PlacedSensor
     from heuncli.loads.redundancy.self_stress import CachedStress
     from heuncli.multibody.tree.layout import Layout
     from heuncli.study.model.rest_pose import Rest
@@ -92,7 +92,7 @@ class Setup:
         """What reads reactions elsewhere."""
         if not self.spec.sensors:
             return ()
-        from heuncli.loads.kinetostatics.sensors import make_sensors  # few scenes have them
+        from heuncli.loads.kinetostatics.moved_reactions import make_sensors  # few scenes have them
 
         return make_sensors(self.spec, self.scene.mechanism)
 

@@ -223,17 +223,15 @@ class LoadErrors(MotionErrors):
         self, states: BodyStates, joints: Sequence[JointLoads], acting: Sequence[Action], terms: BalanceTerms
     ) -> None:
         """Add the loads of the bearings of joints, and what sensors read."""
-        F, M = terms.rounding
-        if any(load.joint.bearings is not None for load in joints):
-            from heuncli.loads.kinetostatics.bearings import iter_bearing_terms  # few joints have them
-
-            for values, by_force, by_moment in iter_bearing_terms(joints):
-                largest_term = by_force * terms.force + by_moment * terms.moment
-                self.add_values(("bearings", "force"), values, by_force * F + by_moment * M, largest_term)
-        if not self.setup.sensors:
+        if not self.setup.sensors and all(load.joint.bearings is None for load in joints):
             return
-        from heuncli.loads.kinetostatics.sensors import find_sensor_reaction  # few scenes have them
+        # few scenes have them
+        from heuncli.loads.kinetostatics.moved_reactions import find_sensor_reaction, iter_bearing_terms
 
+        F, M = terms.rounding
+        for values, by_force, by_moment in iter_bearing_terms(joints):
+            largest_term = by_force * terms.force + by_moment * terms.moment
+            self.add_values(("bearings", "force"), values, by_force * F + by_moment * M, largest_term)
         mechanism = self.setup.scene.mechanism
         for sensor in self.setup.sensors:
             reaction = find_sensor_reaction(sensor, mechanism, self.setup.cuts, states, joints, acting)
