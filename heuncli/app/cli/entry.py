@@ -228,6 +228,26 @@ def read_plain(argv: Sequence[str]) -> ParsedCommand | None:
     return ParsedCommand(command, make_request(request, values))
 
 
+# Options of other programs: what they are called here.
+FOREIGN_OPTIONS = {
+    **{f"--{form}": f"--format {form}" for form in ("json", "csv", "markdown", "table")}, "--md": "--format markdown",
+    "--out": "--output FILE", "--outfile": "--output FILE", "--save": "--output FILE", "--param": "--set NAME=VALUE",
+    "--times": "--at WHEN", "--verbose": "--full", "--short": "--summary", "--silent": "--quiet",
+    "--tol": "--tolerance NUMBER", "--dt": "--step SECONDS", "--solver": "--method NAME", "--timeout": "--time-limit S",
+}  # fmt: skip
+
+
+def find_option_hints(argv: Sequence[str]) -> list[str]:
+    """Return a hint for each option of another program, where the command has such an option under heun's name."""
+    command = find_command(argv[0]) if argv else None
+    if command is None:
+        return []
+    words = {word for field in list_fields(command.request) for word in field.option.words}
+    typed = [word.partition("=")[0] for word in argv[1:]]
+    found = {word: FOREIGN_OPTIONS[word] for word in typed if word in FOREIGN_OPTIONS and word not in words}
+    return [f"hint: write {known} for {word}" for word, known in found.items() if known.split()[0] in words]
+
+
 def _read_with_typer(argv: list[str]) -> ParsedCommand | int:
     """Read any command line by typer; what typer prints goes to the streams as heun writes them."""
     import contextlib
@@ -244,7 +264,7 @@ def _read_with_typer(argv: list[str]) -> ParsedCommand | int:
         if not isinstance(parsed, int):
             parsed = typer_reader.read(argv)
     if text := errors.getvalue():
-        print_stderr(text.removesuffix("\n"))
+        print_stderr("\n".join([text.removesuffix("\n"), *find_option_hints(argv)]))
     if text := output.getvalue():
         emit(text)
     return parsed
