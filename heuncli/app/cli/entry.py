@@ -175,7 +175,7 @@ def _make_bug_problem(bug: Exception, argv: Sequence[str]) -> Problem:
     return Problem("bug", f"this is a bug in heun: {type(bug).__name__}: {bug}{where}", hint=hint)
 
 
-NUMBERS: dict[object, Callable[[str], float]] = {float | None: float, int | None: int}
+NUMBER_PARSERS: dict[object, Callable[[str], float]] = {float | None: float, int | None: int}
 
 
 def read_command_line(argv: Sequence[str]) -> ParsedCommand | int:
@@ -209,21 +209,21 @@ def read_plain(argv: Sequence[str]) -> ParsedCommand | None:
             values[field.name] = True
         elif field.type == tuple[str, ...]:
             values[field.name] = (*values.get(field.name, ()), text)
-        elif field.type in NUMBERS:
+        elif field.type in NUMBER_PARSERS:
             try:
-                values[field.name] = NUMBERS[field.type](text)
+                values[field.name] = NUMBER_PARSERS[field.type](text)
             except ValueError:
                 return None
         else:
             values[field.name] = text
-    targets = [field for field in fields if not field.option.words]
-    if any(target.type == tuple[str, ...] for target in targets):
-        values |= {targets[0].name: tuple(arguments)} if arguments else {}
-    elif len(arguments) > len(targets):
+    positional_fields = [field for field in fields if not field.option.words]
+    if any(target.type == tuple[str, ...] for target in positional_fields):
+        values |= {positional_fields[0].name: tuple(arguments)} if arguments else {}
+    elif len(arguments) > len(positional_fields):
         return None
     else:
-        values |= {target.name: argument for target, argument in zip(targets, arguments, strict=False)}
-    if any(target.name not in values and target.default is REQUIRED for target in targets):
+        values |= {target.name: argument for target, argument in zip(positional_fields, arguments, strict=False)}
+    if any(target.name not in values and target.default is REQUIRED for target in positional_fields):
         return None
     return ParsedCommand(command, make_request(request, values))
 
