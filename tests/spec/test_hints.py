@@ -43,6 +43,17 @@ def hint(text: str) -> str:
     return next(iter(found.values()))
 
 
+@pytest.mark.parametrize("kind", ["ball", "universal, axis: [1, 0, 0], to_axis: [0, 1, 0]"])
+@pytest.mark.parametrize(
+    "line",
+    ["stops: {s: {joint: b, angle: [0, 1]}}", "forces: {m: {type: motor, joint: b, stall: 2, idle: 30}}",
+     "forces: {t: {type: torque, joint: b, value: 2}}"],
+)  # fmt: skip
+def test_a_joint_of_several_rotations_is_pins_in_a_row_for_what_acts_about_one(kind: str, line: str) -> None:
+    joint = f"joints:\n  b: {{type: {kind}, from: ground.O, to: ball.p}}\n"
+    assert "pins in a row, with bodies of mass: 0 between" in hint(SCENE.replace("joints:\n", joint) + line + "\n")
+
+
 @pytest.mark.parametrize("key", ["tolerance: 1e-8", "duration: 2", "samples: 5", "times: [0, 1]", "method: auto"])
 def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
     word = key.partition(":")[0]

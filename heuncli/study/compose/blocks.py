@@ -11,17 +11,18 @@ What a joint and its reaction pass through, from the file to a cell. Up to the n
     tables of a Layout        multibody/tree/layout.py               the arrays that the kernel reads
     History                   study/solve/history.py                 finds the kernel's solutions at the instants
     Evaluation                motion/integration/evaluator.py        the kernel's forces of tree joints and multipliers
+    Recovery                  study/compose/recovery.py              computes each of the following at its first use
     Resolution                loads/redundancy/resolve.py            in redundant scenes: what is determined
-    JointLoads                loads/kinetostatics/reactions.py       force and moment ON `to`; split where redundant
-    JointBlock of the Results results/results.py, made here          with components, shares, axes, indeterminate marks
+    JointLoads                loads/kinetostatics/reactions.py       by find_joint_loads: force and moment ON `to`
+    JointBlock of the Results results/results.py, made here          by make_joint_block: components, shares, marks
 
 JSON is written of that block (output/tables/export.py). After it:
 
     StoredArray               results/stored_arrays.py               stands for its arrays where a file holds long ones
-    Channel                   study/quantities/channels.py           path, unit, kind of error; its numbers are channels
+    Channel                   study/quantities/channels.py           by iter_channels: path, unit, kind of error
     Extremes                  results/results.py                     least and greatest value, each with its instant
-    RowGroup, TableBlock      output/tables/table_blocks.py          channels that share rows of a table
-    NumberCell                output/documents/document.py           in display units, with the digits of its error
+    RowGroup, TableBlock      output/tables/table_blocks.py          by build_block: channels that share rows of a table
+    NumberCell                output/documents/document.py           by make_cells: display units, digits of its error
     OutputTable               output/documents/document.py           its cells, placed; no other form of the number
 
 A section goes the same way: SectionEntry, Section, Cuts (loads/kinetostatics/cuts.py), its block, its channels. Those

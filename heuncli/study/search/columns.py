@@ -71,14 +71,14 @@ class Sampleable(Protocol):
         """
 
 
-class RunSample(NamedTuple):
+class SeriesSample(NamedTuple):
     """A number along a series of cuts at one instant.
 
-    run: name of the series
+    series: its name
     nodes, values: positions along it [m], and the number there, (9 m,) each
     """
 
-    run: str
+    series: str
     instant: float
     nodes: Array
     values: Array
@@ -209,19 +209,19 @@ class StudyColumns:
             for side, bounds in ((-1.0, low), (1.0, high)):
                 i = int(np.searchsorted(instants, peak_times[int(side > 0.0), k]))
                 s = np.broadcast_to(results.sections[name]["s"], values.shape)[i]
-                run_sample = RunSample(name, float(instants[i]), s, values[i])
-                bounds[first + k], place = self._find_place(first + k, side, run_sample, float(bounds[first + k]))
+                series_sample = SeriesSample(name, float(instants[i]), s, values[i])
+                bounds[first + k], place = self._find_place(first + k, side, series_sample, float(bounds[first + k]))
                 side_places.append(place)
             places.append((side_places[0], side_places[1]))
         return peaks._replace(low=low, high=high, places=tuple(places))
 
-    def _find_place(self, k: int, side: float, run_sample: RunSample, value: float) -> tuple[float, CutPosition]:
+    def _find_place(self, k: int, side: float, series_sample: SeriesSample, value: float) -> tuple[float, CutPosition]:
         """Return the value of an extreme of the k-th channel, along a series of cuts, and its place."""
         assert self.setup is not None
         from heuncli.study.search.cuts import cut_at, find_sides, find_stretch, locate_summit
 
-        setup, (name, instant, nodes, values) = self.setup, run_sample
-        s, end, ends = locate_summit(nodes, values, side)  # position, side of a load there, ends of the smooth piece
+        setup, (name, instant, nodes, values) = self.setup, series_sample
+        s, load_side, ends = locate_summit(nodes, values, side)  # ends: of the smooth piece
         if self.bent and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:
@@ -241,8 +241,8 @@ class StudyColumns:
                     else (search_result.low, search_result.low_at)
                 )
             )
-            end = float(find_sides(np.array(s), ends))
-        return value, find_stretch(setup, name).make_place(s, end)
+            load_side = float(find_sides(np.array(s), ends))
+        return value, find_stretch(setup, name).make_place(s, load_side)
 
 
 WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # shares of each step of the integrator: where extremes are sampled first

@@ -25,14 +25,16 @@ from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import sort_distinct
 
-HALVINGS = 2  # halvings of pieces whose loads change their sign: stresses and reduction lines have kinks there
+SIGN_CHANGE_HALVINGS = (
+    2  # halvings of pieces whose loads change their sign: stresses and reduction lines have kinks there
+)
 
 
 def replace_series_by_stretches(setup: Setup, bent: bool) -> Setup:
     """Return the setup with its series of cuts replaced by stretches; bent: for quantities that are no polynomial of
     loads.
     """
-    mechanism, halved = setup.scene.mechanism, HALVINGS if bent else 0
+    mechanism, halved = setup.scene.mechanism, SIGN_CHANGE_HALVINGS if bent else 0
 
     def make_whole(cuts: Cuts) -> PlaceableCuts:
         """Return a series of cuts through shapes as a stretch, all others as they are."""
@@ -109,11 +111,11 @@ def find_cut_extremes(stretch: Stretch, s: Array, values: Array) -> tuple[CutExt
     return CutExtreme(-float(low.height[0]) + 0.0, places[0]), CutExtreme(float(high.height[0]) + 0.0, places[1])
 
 
-class RunPeak(NamedTuple):
+class SeriesPeak(NamedTuple):
     """The place of a peak along a series of cuts.
 
     s: position [m]
-    side: of a load that acts there: BEFORE or BEYOND it; 0 inside of a piece
+    side: whether the place is just before or just beyond what acts there: BEFORE, BEYOND; 0 inside of a piece
     piece: positions of both ends of the smooth piece that it lies on
     """
 
@@ -122,18 +124,18 @@ class RunPeak(NamedTuple):
     piece: tuple[float, float]
 
 
-def locate_summit(s: Array, values: Array, side: float) -> RunPeak:
+def locate_summit(s: Array, values: Array, side: float) -> SeriesPeak:
     """Locate the highest (side 1) or the lowest (-1) of values at nodes s, (9 m,)."""
     return locate_peak(s, find_peaks(values[None])[side > 0.0])
 
 
-def locate_peak(s: Array, top: StretchPeaks) -> RunPeak:
+def locate_peak(s: Array, top: StretchPeaks) -> SeriesPeak:
     """Locate a peak of one instant along pieces with nodes s."""
     k, x = int(top.piece[0]) * (DEGREE + 1), float(top.position[0])
     a, b = float(s[k]), float(s[k + DEGREE])
     if x in (-1.0, 1.0):
-        return RunPeak(b, BEFORE, (a, b)) if x > 0.0 else RunPeak(a, BEYOND, (a, b))
-    return RunPeak(a + 0.5 * (b - a) * (x + 1.0), 0.0, (a, b))
+        return SeriesPeak(b, BEFORE, (a, b)) if x > 0.0 else SeriesPeak(a, BEYOND, (a, b))
+    return SeriesPeak(a + 0.5 * (b - a) * (x + 1.0), 0.0, (a, b))
 
 
 PARTS = 16  # a span with a passage is divided into so many

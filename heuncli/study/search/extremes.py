@@ -72,6 +72,7 @@ class Targets(NamedTuple):
     def _convert_error(self, error: Array, height: Array) -> Array:
         """Return the error (2n,) of heights from that (n,) of the numbers, at least their rounding."""
         size = np.where(np.isfinite(height), np.abs(height), 0.0).reshape(2, self.n)
+        # of squares: (|x| + e)^2 - x^2 = e^2 + 2 e |x|
         squared = error * error + 2.0 * error * np.sqrt(size)
         return np.asarray(np.where(self.is_squared, squared, error) + tolerances.SUM_ROUNDING * size).reshape(-1)
 
@@ -187,15 +188,17 @@ def find_intervals_above(
     heights, owner, column = heights[:, varies], targets.owner[varies], targets.column[varies]
     slope = (heights[1:] - heights[:-1]) / step[:, None]
     slope[~smooth] = np.nan
-    left, right = fill_missing(*_compute_bends(times, slope, step, smooth))
-    up, down = _compute_rises(slope, step)
-    most = np.maximum(np.abs(left), np.abs(right))
+    kappa_before, kappa_after = fill_missing(*_compute_bends(times, slope, step, smooth))
+    rise_before, rise_after = _compute_rises(slope, step)
+    most = np.maximum(np.abs(kappa_before), np.abs(kappa_after))
     doubt = FOURTH_DERIVATIVE_SHARE * most
     inner = np.concatenate([[False], smooth, [False]])
     parts = []
     for side in sides:
         target = owner if side < 0.0 else owner + targets.n
-        b, c, before, after, rising, falling = (side * x for x in (heights[:-1], heights[1:], left, right, up, down))
+        b, c, before, after, rising, falling = (
+            side * x for x in (heights[:-1], heights[1:], kappa_before, kappa_after, rise_before, rise_after)
+        )
         with np.errstate(invalid="ignore"):
             k, j = np.nonzero(
                 (bound_heights_cheaply(b, c, most, rising, falling) > to_beat(b, c, target)) & smooth[:, None]
@@ -205,16 +208,17 @@ def find_intervals_above(
             b[k, j], c[k, j], target[j]
         )
         k, j = k[is_promising], j[is_promising]
-        # neighbours after a jump or the end do not count: replacements follow from the bends
-        w, f, g = step[k], heights[k, j], heights[k + 1, j]
-        p, q = np.maximum(k - 1, 0), np.minimum(k + 2, len(times) - 1)
-        known = inner[k] & np.isfinite(heights[p, j]), inner[k + 2] & np.isfinite(heights[q, j])
-        t = [np.where(known[0], times[p], times[k] - w), np.where(known[1], times[q], times[k + 1] + w)]
-        a = np.where(known[0], heights[p, j], 2.0 * f - g - 2.0 * left[k, j])
-        d = np.where(known[1], heights[q, j], 2.0 * g - f - 2.0 * right[k, j])
+        # the interval b..c with its neighbours a and d (intervals.py); for one after a jump or the
+        # end, one on the parabola stands in
+        w, b_height, c_height = step[k], heights[k, j], heights[k + 1, j]
+        k_before, k_after = np.maximum(k - 1, 0), np.minimum(k + 2, len(times) - 1)
+        known = inner[k] & np.isfinite(heights[k_before, j]), inner[k + 2] & np.isfinite(heights[k_after, j])
+        t = [np.where(known[0], times[k_before], times[k] - w), np.where(known[1], times[k_after], times[k + 1] + w)]
+        a = np.where(known[0], heights[k_before, j], 2.0 * b_height - c_height - 2.0 * kappa_before[k, j])
+        d = np.where(known[1], heights[k_after, j], 2.0 * c_height - b_height - 2.0 * kappa_after[k, j])
         parts.append(Intervals(
-            np.stack([t[0], times[k], times[k + 1], t[1]], 1), side * np.stack([a, f, g, d], 1), doubt[k, j],
-            np.zeros(len(k), dtype=bool), target[j], column[j],
+            np.stack([t[0], times[k], times[k + 1], t[1]], 1), side * np.stack([a, b_height, c_height, d], 1),
+            doubt[k, j], np.zeros(len(k), dtype=bool), target[j], column[j],
         ))  # fmt: skip
     return concatenate_intervals(parts)
 
@@ -238,8 +242,8 @@ def _compute_bends(times: Array, slope: Array, step: Array, smooth: Mask) -> tup
 
 
 def _compute_rises(slope: Array, step: Array) -> tuple[Array, Array]:
-    """Return by how much a quantity rises in each interval if its slope before it continues, and backwards that after
-    it.
+    """Return how far a quantity would rise from b to c at its slope before b, and from c back to b at its slope after
+    c, (n_t - 1, m).
     """
     up, down = np.full(slope.shape, np.nan), np.full(slope.shape, np.nan)
     up[1:], down[:-1] = slope[:-1] * step[1:, None], -slope[1:] * step[:-1, None]

@@ -5,8 +5,8 @@ result of its kind at the requested instants. Forces of a kind are compared with
 moment divided by its longest arm; its moments with the largest moment, or the largest force times the size of the
 scene. The arm is the size of the scene; for the foundation it is the reach of the scene from the point that its moment
 is taken about. Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or the
-range of potential energy and work, because these have no zero of their own. A kind that is only the remainder of larger
-terms that cancel has error 0.
+range of potential energy and work, because these have no zero of their own. Where larger terms cancel and only rounding
+is left of a kind, its error is given as 0.
 
 motion_errors.py and load_errors.py collect the differences over a run; here are what one quantity collects (Extent),
 the terms whose rounding its sums carry (BalanceTerms), and the errors that follow (ErrorEstimates).

@@ -45,6 +45,12 @@ from heuncli.study.solve.error_estimates import (
 )
 from heuncli.study.solve.motion_errors import MotionErrors
 
+ROW_CHANGE = 1e-6  # relative to the largest multiplier: a change of the chosen rows changes indeterminate loads by more
+CUTS_AT_ONCE = 200_000  # instants times cuts whose loads are compared together
+BLOCK = 8  # instants are compared in whole blocks of so many, as BLAS has them
+
+Quantity = tuple[str, Array]  # name, a key of error_estimates.UNITS, and the couplings' values (n, k, 3) or (n, k, 1)
+
 
 def iter_coupling_results(
     couplings: Sequence[CouplingLoads], applied_actions: Sequence[Action], joints: Sequence[Joint], states: BodyStates
@@ -66,13 +72,6 @@ def iter_coupling_results(
             yield name, np.stack(values, axis=1)
         for name, parts in collect_by_quantity(coupling, joints, states).items():
             yield name, np.stack(parts, axis=1)[..., None]
-
-
-ROW_CHANGE = 1e-6  # relative to the largest multiplier: a change of the chosen rows changes indeterminate loads by more
-CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
-
-
-Quantity = tuple[str, Array]  # name, a key of error_estimates.UNITS, and the couplings' values (n, k, 3) or (n, k, 1)
 
 
 class ComparedInstants(NamedTuple):
@@ -97,11 +96,13 @@ class LoadErrors(MotionErrors):
         self.last: ComparedInstants | None = None  # results of the instants that were added last
 
     def add(self, solutions: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
-        """Add instants, each with the solution of run A, then of the others.
+        """Add instants, each with the solution of the first run, then of the others.
 
         is_requested, is_claimed (n,): which of them are requested, and which are before the horizon
         """
         count = len(solutions.times) // max(len(is_requested), 1)
+        # with other closure rows, indeterminate loads differ by more than their error: such instants are left out,
+        # unless all are so
         same = (
             find_equal_rows(solutions, count)
             if self.setup.model["redundant"]
@@ -285,7 +286,7 @@ class LoadErrors(MotionErrors):
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the cuts' loads in body axes, and the difference of the bodies' own orientation between the runs."""
-        from heuncli.loads.kinetostatics.sections import (  # as in recover
+        from heuncli.loads.kinetostatics.sections import (  # only scenes with sections load it
             find_acceleration_matrix,
             find_attachments,
             find_piece_loads,

@@ -51,7 +51,7 @@ class MotionErrors(ErrorEstimates):
         count = len(states.omega) // len(self.is_requested)
 
         def find_differences(values: Array) -> Array:
-            """Return the largest difference of each state from its perturbed copies."""
+            """Return the largest difference of the first run's vectors from those of the other runs, (n, b)."""
             own = values[0::count]
             return reduce(np.maximum, [compute_norms(own - values[k::count]) for k in range(1, count)])
 

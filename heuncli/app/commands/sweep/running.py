@@ -75,10 +75,10 @@ class PendingVariant(NamedTuple):
 
 def run_sweep(sweep: SweepTask, request: SweepRequest, output: SweepOutput) -> int:
     """Solve the missing variants and write all results; returns the exit code."""
-    number = sweep.store.find_or_add_sweep(sweep.head, sweep.compute_identity())
+    sweep_number = sweep.store.find_or_add_sweep(sweep.head, sweep.compute_identity())
     with GracefulStop() as stopping:
-        done_count = _solve_missing(sweep, number, request, stopping)
-    rows = sweep.store.find_rows(number, sweep.head.plan, sweep.shard)
+        done_count = _solve_missing(sweep, sweep_number, request, stopping)
+    rows = sweep.store.find_rows(sweep_number, sweep.head.plan, sweep.shard)
     if stopping.number:
         if request.store is None and done_count:
             write_sweep(sweep.head, rows, output)
@@ -99,7 +99,7 @@ def choose_exit_code(warnings: SweepWarnings, strict: bool) -> int:
     return BUG if "bug" in warnings.codes else 1 if strict and warnings.failure_count else 0
 
 
-def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stopping: GracefulStop) -> int:
+def _solve_missing(sweep: SweepTask, sweep_number: int, request: SweepRequest, stopping: GracefulStop) -> int:
     """Solve and store the missing variants; returns how many variants of the part are done."""
     pending: dict[int, PendingVariant] = {}
     count = SweepProgress(sweep.size)
@@ -111,12 +111,12 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
             if stopping.number:  # a batch in this process cannot wait for the descriptor
                 return
             values = plan.find_values(variant)
-            variant_values = PendingVariant(sweep.keys.make_key(values), values)
-            if store.has_result(variant_values.key):
-                store.link_variant(number, variant, *variant_values)
+            pending_variant = PendingVariant(sweep.keys.make_key(values), values)
+            if store.has_result(pending_variant.key):
+                store.link_variant(sweep_number, variant, *pending_variant)
                 count.stored += 1
             else:
-                pending[variant] = variant_values
+                pending[variant] = pending_variant
                 yield variant
 
     results = _solve_variants(sweep, iter_missing(), request, stopping.descriptor)
@@ -125,7 +125,7 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
             for variant, result in results:
                 if not count.successes and result.code in NO_NUMBER:
                     _require_numbers(sweep.evaluator, plan.find_values(variant))
-                store.add_result(number, variant, *pending.pop(variant), result)
+                store.add_result(sweep_number, variant, *pending.pop(variant), result)
                 count.add(result)
                 count.report(report)
         except OutputError as error:

@@ -177,6 +177,7 @@ class Contacts:
             friction_event = FrictionEvent(after_time, outcome.after_state, before, event.row, is_struck)
             sentences = self.friction.decide(friction_event)
             self.contact_states = self.friction.add_to(before)
+            # nothing touches, or the friction leaves the contacts as they were: both agree
             if not len(outcome.touching_states) or np.array_equal(before, self.contact_states):
                 self.notes.add(sentences)
                 return outcome

@@ -22,6 +22,7 @@ from heuncli.results.results import Array, Indices, Mask
 class ContactProblem:
     """The touching contacts, and how their rates respond to impulses.
 
+    touching: the k contacts
     A (k, k): rates of opening from unit impulses (restitution.py)
     moves (k,): whether a load at a contact would move anything
     rates (k,): rates of opening that given impulses and drives add
@@ -37,6 +38,7 @@ class ContactProblem:
 class EventSetting:
     """What an event is solved from.
 
+    sides: right sides of the impulse equations; `sides.still`: the results just before the event
     units: columns of what is given, then of a unit impulse at each touching contact
     catches: latches that catch; the last columns of what is given are those of the ones with a rate
     unwatched: contacts that a latch holds at their limits
@@ -76,18 +78,18 @@ class ContactOutcome:
     work: float
 
 
-def require_energy(jump: ImpulseEvent, energy_scale: float) -> None:
+def require_energy(event: ImpulseEvent, energy_scale: float) -> None:
     """Raise SolveError if the energies before and after an impulse and the work of its impulses do not add up.
 
     energy_scale: energy that the impulses would bring alone, which joints and others may take back
     """
-    before, after = jump.kinetic
-    size = max(before, after, abs(jump.work), tolerances.UNBALANCED * energy_scale)
-    if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
-        message = f"at t = {jump.time:.9g} s the energy balance of the impulse on {', '.join(jump.names)} is not met"
+    before, after = event.kinetic
+    size = max(before, after, abs(event.work), tolerances.UNBALANCED * energy_scale)
+    if not abs(after - before - event.work) <= tolerances.UNBALANCED * size:
+        message = f"at t = {event.time:.9g} s the energy balance of the impulse on {', '.join(event.names)} is not met"
         raise SolveError(
             Problem(
-                "blow-unbalanced", message, None, "a singular position, or nearly identical contacts", jump.names[0]
+                "blow-unbalanced", message, None, "a singular position, or nearly identical contacts", event.names[0]
             )
         )
 

@@ -76,15 +76,15 @@ class Latches:
         """end_time: of the run [s]."""
         self.layout, self.end_time = layout, end_time
         named = {stop.name: stop for stop in layout.mechanism.stops}
-        self.stops: dict[int, Stop] = {i: named[layout.contacts[i].name] for i in layout.latches}
+        self.latch_stops: dict[int, Stop] = {i: named[layout.contacts[i].name] for i in layout.latches}
         # the coordinate of each limit and latch
         self.coordinates = {
             i: (named[c.name].joint, named[c.name].quantity) for i, c in enumerate(layout.contacts) if c.name in named
         }
-        self.limits: Mapping[str, Stop] = named
+        self.stops_by_name: Mapping[str, Stop] = named
         self.conditions = Conditions(layout) if layout.latches else None
         self.held_values: dict[int, float] = {}
-        self.catch_counts: dict[int, int] = dict.fromkeys(self.stops, 0)
+        self.catch_counts: dict[int, int] = dict.fromkeys(self.latch_stops, 0)
 
     def evaluate_conditions(self, t: float, state: Array) -> tuple[LatchCondition, ...]:
         """Evaluate the conditions at a state, from its numbers alone."""
@@ -106,13 +106,13 @@ class Latches:
     @property
     def unused_names(self) -> list[str]:
         """Names of the latches that have not caught."""
-        return [stop.name for i, stop in self.stops.items() if not self.catch_counts[i]]
+        return [stop.name for i, stop in self.latch_stops.items() if not self.catch_counts[i]]
 
     def release(self, latch_conditions: Sequence[LatchCondition]) -> list[str]:
         """Release the latches that are drawn back; return their names."""
         released = [
             i
-            for i, condition in zip(self.stops, latch_conditions, strict=True)
+            for i, condition in zip(self.latch_stops, latch_conditions, strict=True)
             if condition.is_drawn_back and i in self.held_values
         ]
         for i in released:
@@ -124,7 +124,7 @@ class Latches:
     ) -> list[LatchCatch]:
         """Catch what the extended latches can catch; evaluation: the state with all open that do not hold yet."""
         catches = []
-        for (i, stop), condition in zip(self.stops.items(), latch_conditions, strict=True):
+        for (i, stop), condition in zip(self.latch_stops.items(), latch_conditions, strict=True):
             assert stop.latch is not None
             is_inactive = i in self.held_values or (self.catch_counts[i] > 0 and not stop.latch.every)
             if is_inactive or not condition.is_extended or condition.is_drawn_back or self.is_held(i):
@@ -158,13 +158,14 @@ class Latches:
         """Return the value at which an extended latch catches at a state; None if it does not catch."""
         assert stop.latch is not None
         contact, latch = self.layout.contacts[i], stop.latch
-        gap = float(evaluation.rows["gap"][0, contact.row])  # for an open latch, from its value, or from zero
+        # the coordinate less the value at which an open latch would hold; the coordinate itself if it has none
+        gap = float(evaluation.rows["gap"][0, contact.row])
         if latch.stop is not None:
-            limits = self.limits[latch.stop]
+            stop_caught = self.stops_by_name[latch.stop]
             for k, other in enumerate(self.layout.contacts[j] for j in touching.indices.tolist()):
                 is_limit = not other.is_rope and other.name == latch.stop and other.sense in latch.sides
                 if is_limit and touching.rate[k] <= touching.noise[k]:
-                    return limits.high if other.sense > 0 else limits.low
+                    return stop_caught.high if other.sense > 0 else stop_caught.low
             return None
         if latch.position is None:
             return gap

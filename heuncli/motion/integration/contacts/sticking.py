@@ -50,7 +50,7 @@ SHARED = "{} stick as one: how they share what holds the machine is indeterminat
 
 
 class PlaceStates(NamedTuple):
-    """The states of the k places where friction may stick.
+    """The states of the k places where friction may stick; a place is one coordinate that one friction may hold.
 
     sticks (k,): whether each sticks
     coordinate_or_sign (k,): its coordinate if it sticks, else the sign of its slip
@@ -101,44 +101,46 @@ class FrictionStates:
 
     def decide(self, event: FrictionEvent) -> list[str]:
         """Decide what sticks and slips from a state on; return sentences on what changes."""
-        places, released = self.places, self.places.release_all(event.contact_states)
-        opened = places.evaluate(event.t, event.state, released)
-        response = measure_response(self.evaluator, places.contacts, released, opened)
-        search = StateSearch(places, self.make_question(event, opened, response))
+        places, released_states = self.places, self.places.release_all(event.contact_states)
+        released_results = places.evaluate(event.t, event.state, released_states)
+        response = measure_response(self.evaluator, places.contacts, released_states, released_results)
+        search = StateSearch(places, self.make_question(event, released_results, response))
         choice = search.find_choice() if search.groups else ()
         unproved = search.find_unproved(choice)
         chosen_states = search.with_choice(choice)
         groups = search.list_sticking(choice)
         if groups and not has_fixed_transmissions(
-            self.evaluator, places.contacts, chosen_states, released, opened, groups, self.end_time
+            self.evaluator, places.contacts, chosen_states, released_states, released_results, groups, self.end_time
         ):
             raise search.indeterminate_error(choice)
         sticks = np.array(chosen_states[places.indices] > 0.0, dtype=bool)
         self.present = PlaceStates(sticks, chosen_states[self.layout.friction_slice], groups)
         return self.describe_changes(event.t) + [UNPROVED.format(name, event.t) for name in unproved]
 
-    def make_question(self, event: FrictionEvent, opened: Evaluation, response: PlaceResponse) -> FrictionQuestion:
+    def make_question(
+        self, event: FrictionEvent, released_results: Evaluation, response: PlaceResponse
+    ) -> FrictionQuestion:
         """Collect what is known of the places before the search.
 
-        opened: the results while no friction sticks or acts
+        released_results: the results while no friction sticks or acts
         """
         places = self.places
         stuck, coordinate_or_sign = self.earlier.sticks & (not event.is_struck), self.earlier.coordinate_or_sign
-        slip, is_at_rest = self.find_slips(opened, response, stuck, event.row)
+        slip, is_at_rest = self.find_slips(released_results, response, stuck, event.row)
         at_rest = np.flatnonzero(is_at_rest).tolist()
         can_join = np.full(len(places.indices), places.is_given)  # no friction depends on how it shares
         groups = make_groups(response, at_rest, can_join, self.earlier.groups)
-        broken, earlier_slips = None, {}
+        broken_loose, earlier_slips = None, {}
         for n, group in enumerate(groups):
             is_event = places.has_row(group, event.row)
-            if is_event and stuck[group.leader] and broken is None:
-                broken = n
+            if is_event and stuck[group.leader] and broken_loose is None:
+                broken_loose = n
             sign = find_common_sign(group, coordinate_or_sign)
             if not (is_event or event.is_struck or stuck[list(group.members)].any()) and sign:
                 earlier_slips[n] = sign
-        coordinates = np.where(stuck, coordinate_or_sign, opened.rows["gap"][0, places.rows])
+        coordinates = np.where(stuck, coordinate_or_sign, released_results.rows["gap"][0, places.rows])
         return FrictionQuestion(
-            event.t, event.state, event.contact_states, groups, slip, coordinates, broken, earlier_slips, response
+            event.t, event.state, event.contact_states, groups, slip, coordinates, broken_loose, earlier_slips, response
         )
 
     def describe_changes(self, t: float) -> list[str]:
@@ -156,7 +158,7 @@ class FrictionStates:
         ]
 
     def find_slips(
-        self, opened: Evaluation, response: PlaceResponse, stuck: Mask, row: int | None
+        self, released_results: Evaluation, response: PlaceResponse, stuck: Mask, row: int | None
     ) -> tuple[Array, Mask]:
         """Return the sign of the slip of each place (k,), and which are at rest, to rounding.
 
@@ -164,7 +166,8 @@ class FrictionStates:
         to the rounding of an instant.
         """
         measured = [
-            measure_coordinate_rate(self.layout, opened, contact, self.end_time) for contact in self.places.contacts
+            measure_coordinate_rate(self.layout, released_results, contact, self.end_time)
+            for contact in self.places.contacts
         ]
         rate, noise = np.array(measured).reshape(-1, 2).T
         rested = stuck | (np.array(self.places.rows) == row) | (np.abs(rate) <= noise)
@@ -199,5 +202,5 @@ def find_common_sign(group: FrictionGroup, coordinate_or_sign: Array) -> int:
 def read_places(evaluator: Evaluator, t: float, state: Array) -> Array:
     """Return the coordinates (k,) that sticking friction holds, at a state."""
     layout = evaluator.layout
-    opened = evaluator.evaluate(np.array([t]), state[None, :], holding=layout.open_contacts)
-    return np.asarray(opened.rows["gap"][0, [layout.contacts[i].row for i in layout.friction_contacts]])
+    released_results = evaluator.evaluate(np.array([t]), state[None, :], holding=layout.open_contacts)
+    return np.asarray(released_results.rows["gap"][0, [layout.contacts[i].row for i in layout.friction_contacts]])

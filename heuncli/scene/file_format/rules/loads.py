@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.base import units as u
-from heuncli.base.joint_kinds import FREE, POINT, TYPES, JointKind, format_kind_names, kinds_accepting_load
+from heuncli.base.joint_kinds import (
+    FREE,
+    POINT,
+    TYPES,
+    JointKind,
+    format_kind_names,
+    kinds_accepting_load,
+    propose_pins,
+)
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_negative
 from heuncli.scene.file_format import format_loads as fl
@@ -35,11 +43,11 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
         if isinstance(load, fl.TorqueEntry):
             if not kind.accepts_load("torque"):
                 where = " or ".join(f"{TORQUE_WORDS[k.motions[0]]} {k.name}" for k in kinds_accepting_load("torque"))
-                hint = "between two points use an actuator, on a body a couple"
+                hint = propose_pins(kind, "between two points use an actuator, on a body a couple")
                 yield Violation((*path, "joint"), f"type: torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, fl.MotorEntry):
             if kind.coordinates != ("angle",):
-                hint = "in a slide use a force of type torque, with a value in guide.speed"
+                hint = propose_pins(kind, "in a slide use a force of type torque, with a value in guide.speed")
                 yield Violation((*path, "joint"), f"a motor acts in a pin, not in a {kind.name}", hint)
         elif isinstance(load, fl.TurnSpringEntry):
             if load.torque is not None and kind.coordinates != ("angle",):
@@ -48,11 +56,11 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             elif not kind.accepts_load("turn_spring"):
                 allowed = format_kind_names(kinds_accepting_load("turn_spring"), "or")
                 message = f"a turn_spring acts in a {allowed}, not in a {kind.name}"
-                yield Violation((*path, "joint"), message, "between two points use a spring")
+                yield Violation((*path, "joint"), message, propose_pins(kind, "between two points use a spring"))
         elif isinstance(load, fl.DamperEntry):
             two_motion_kinds = [k for k in kinds_accepting_load("damper") if len(k.motions) == 2]
             if not kind.accepts_load("damper"):
-                hint = "between two points use a spring with damping"
+                hint = propose_pins(kind, "between two points use a spring with damping")
                 yield Violation((*path, "joint"), f"a damper has no effect in a {kind.name}", hint)
             if load.torque is not None or load.force is not None:
                 yield from check_damper_law(name, load, kind)

@@ -68,6 +68,7 @@ def make_joints(
                     loop_joints.append(_make_loop_joint(joint, parent, child, frames))
                 else:
                     _make_joint(joint, parent, child, links, urdf_joints, frames)
+        # a frame becomes a link without mass, fixed to what it is attached to
         elif name in frame_names and (link := frames.find_link(name, link_names)) not in (None, WORLD):
             attached_to = frame.attached_to if frame.attached_to in frame_names else link
             assert attached_to is not None
@@ -120,23 +121,26 @@ def _find_end(
     return name if tag == "parent" and name in frame_names and link not in (None, WORLD) else link
 
 
-def _turn_axis(axis: JointAxis, joint: str, frames: FrameTree) -> Vec:
+def _express_axis_in_joint(axis: JointAxis, joint: str, frames: FrameTree) -> Vec:
     """Return an axis of a joint in the joint's own frame."""
-    turn = frames.compute_pose(axis.frame, joint)
-    if turn.rpy == ZERO:
+    pose = frames.compute_pose(axis.frame, joint)
+    if pose.rpy == ZERO:
         return axis.direction
-    return rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis.direction)
+    return rotate_vector(rotation_from_roll_pitch_yaw(pose.rpy), axis.direction)
 
 
 def _make_urdf_joint(joint: SdfJoint, parent: str, child: str, pose: LinkPose, frames: FrameTree) -> UrdfJoint:
+    """Make a joint of URDF about the first axis of a joint of SDF."""
     part = joint.axis
     return UrdfJoint(
-        joint.name, joint.element, joint.kind, parent, child, pose, _turn_axis(part, joint.name, frames), part.limits,
-        part.effort, part.mimic, part.damping, part.friction, part.stiffness, part.reference,
+        joint.name, joint.element, joint.kind, parent, child, pose,
+        _express_axis_in_joint(part, joint.name, frames), part.limits, part.effort,
+        part.mimic, part.damping, part.friction, part.stiffness, part.reference,
     )  # fmt: skip
 
 
 def _make_loop_joint(joint: SdfJoint, parent: str, child: str, frames: FrameTree) -> LoopJoint:
+    """Make a joint that closes a loop; with a problem if it has more than one freedom to turn or slide."""
     if joint.second_axis is not None or joint.lead:
         kind = "screw" if joint.lead else "joint of two axes"
         message, hint = f"a {kind} closes a loop", "exchange it with another joint of the loop in the file"
@@ -157,7 +161,7 @@ def _make_joint(
     the child to it where its pose differs from that of the child.
     """
     in_child = frames.compute_pose(joint.name, child)
-    is_at_child = in_child == NO_POSE or joint.kind == "fixed"
+    is_at_child = in_child == NO_POSE or joint.kind == "fixed"  # a fixed joint needs no frame of its own
     in_parent = frames.compute_pose(child if is_at_child else joint.name, parent)
     own_child = child
     if not is_at_child:
@@ -171,6 +175,7 @@ def _make_joint(
     cross = frames.choose_name(f"{joint.name}_cross")
     links[cross] = make_massless_link(cross, joint.element)
     urdf_joints[joint.name] = _make_urdf_joint(joint, parent, cross, in_parent, frames)
+    # the second keeps the first one's name, by which its axis is turned, until it is made
     if joint.second_axis is not None:
         second = joint._replace(axis=joint.second_axis, kind=find_kind_of_turning(joint.second_axis))
     else:  # a screw: what turns is followed by what slides
@@ -202,6 +207,7 @@ def _couple_by_gearbox(
         frames.fields.report("import-joint", gearbox.element, gearbox.path, message, hint)
         return
     (leader, leader_sign), (follower, sign) = first, second
+    # theta_2 = -ratio theta_1; each sign turns a joint's position into its theta
     multiplier = -gear.ratio * leader_sign * sign
     if urdf_joints[follower].mimic is not None:
         leader, follower, multiplier = follower, leader, 1.0 / multiplier
@@ -222,7 +228,7 @@ def _find_geared_joint(
     wanted_links = frames.find_link(reference, links), frames.find_link(end, links)
     for joint in turning:
         joined_links = frames.find_link(joint.parent, links), frames.find_link(joint.child, links)
-        wanted, own = (unit_vector(_turn_axis(part, joint.name, frames)) for part in (axis, joint.axis))
+        wanted, own = (unit_vector(_express_axis_in_joint(part, joint.name, frames)) for part in (axis, joint.axis))
         if joined_links in (wanted_links, wanted_links[::-1]) and are_parallel(wanted, own):
             cosine = sum(a * b for a, b in zip(wanted, own, strict=True))
             return joint.name, math.copysign(1.0, cosine) * (1.0 if joined_links == wanted_links else -1.0)

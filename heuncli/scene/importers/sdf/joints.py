@@ -25,9 +25,9 @@ KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "r
 # Of a universal joint the first axis is fixed in the parent, the second in the child; of a gearbox they are those of
 # the two joints that it couples.
 KINDS_OF_TWO_AXES = ("universal", "revolute2", GEARBOX)
-JOINT_NOISE = ("sensor", "physics", "plugin")
+IGNORED_JOINT_TAGS = ("sensor", "physics", "plugin")
 # Values of screws and gearboxes, which some programs write with every joint.
-KIND_VALUES = ("thread_pitch", "screw_thread_pitch", "gearbox_ratio", "gearbox_reference_body")
+TAGS_OF_SOME_KINDS = ("thread_pitch", "screw_thread_pitch", "gearbox_ratio", "gearbox_reference_body")
 AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
 LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
 DYNAMICS_PARTS = ("damping", "friction", "spring_stiffness", "spring_reference")
@@ -102,6 +102,7 @@ def read_joint(
     """Read a joint; None, and problems, if something in it is wrong.
 
     has_model_axes: whether axes are along the model's frame where nothing else is said, as up to SDF 1.4
+    fields: reads attributes and collects problems
     """
     name = fields.read_word(element, "name", "joint")
     path = f"joint {scope}{name}" if name is not None else "joint"
@@ -111,14 +112,14 @@ def read_joint(
         fields.report("import-joint", element, path, f"a joint of type '{kind}' cannot be read", hint)
         kind = None
     for part in element.children:
-        if part.tag in JOINT_NOISE or ":" in part.tag:
+        if part.tag in IGNORED_JOINT_TAGS or ":" in part.tag:
             ignored_tags[f"{part.tag} in joints"] += 1
     known_tags = ("pose", "parent", "child", "axis", *_list_axis_tags(kind))
-    fields.report_unknown_parts(element, path, *known_tags, *KIND_VALUES, *JOINT_NOISE)
+    fields.report_unknown_parts(element, path, *known_tags, *TAGS_OF_SOME_KINDS, *IGNORED_JOINT_TAGS)
     ends = [read_child_word(element, tag, path, fields) for tag in ("parent", "child")]
-    parent, child = (None if end is None else WORLD if end == WORLD else f"{scope}{end}" for end in ends)
+    parent, child = (None if end is None else _scope_name(end, scope) for end in ends)
     problem_count = len(fields.problems)
-    own = f"{scope}{name}"
+    scoped_name = f"{scope}{name}"
     axes: list[JointAxis] = []
     for tag in _list_axis_tags(kind):
         axis = fields.find_child(element, tag, path)
@@ -126,17 +127,23 @@ def read_joint(
             hint = f"add <{tag}><xyz>0 0 1</xyz></{tag}>"
             fields.report("import-missing", element, path, f"<{tag}> is missing", hint)
         else:
-            axes.append(_read_axis(axis, scope, own, has_model_axes, path, fields))
+            axes.append(_read_axis(axis, scope, scoped_name, has_model_axes, path, fields))
     lead = _read_lead(element, path, fields) if kind == SCREW else 0.0
     gear = _read_gear(element, scope, path, fields) if kind == GEARBOX else None
     if name is None or kind is None or parent is None or child is None or len(fields.problems) > problem_count:
         return None
     if not axes:
-        return SdfJoint(own, element, kind, parent, child, NO_AXIS._replace(frame=own))
+        return SdfJoint(scoped_name, element, kind, parent, child, NO_AXIS._replace(frame=scoped_name))
+    # all others turn about their first axis; second_axis, lead and gear tell what else they do
     if kind not in ("prismatic", "continuous"):
         kind = find_kind_of_turning(axes[0])
     second_axis = axes[1] if len(axes) > 1 else None
-    return SdfJoint(own, element, kind, parent, child, axes[0], second_axis, lead, gear)
+    return SdfJoint(scoped_name, element, kind, parent, child, axes[0], second_axis, lead, gear)
+
+
+def _scope_name(name: str, scope: str) -> str:
+    """Return the scoped name of a frame; the world has no scope."""
+    return name if name == WORLD else f"{scope}{name}"
 
 
 def _list_axis_tags(kind: str | None) -> tuple[str, ...]:
@@ -153,7 +160,7 @@ def _read_lead(element: XmlElement, path: str, fields: UrdfFields) -> float:
     """
     lead = read_child_number(element, "screw_thread_pitch", path, fields, 0.0)
     turns = read_child_number(element, "thread_pitch", path, fields, 0.0)
-    if not lead and not turns and lead is not None and turns is not None:
+    if lead == 0.0 and turns == 0.0:  # None: already reported
         hint = "write <screw_thread_pitch>, the metres for each revolution"
         fields.report("import-missing", element, path, "the lead of the screw is missing, or 0", hint)
     return lead or (-2.0 * math.pi / turns if turns else 0.0)
@@ -169,6 +176,7 @@ def _read_gear(element: XmlElement, scope: str, path: str, fields: UrdfFields) -
 
 
 def find_kind_of_turning(axis: JointAxis) -> str:
+    """Return the kind of a joint that turns: revolute if it has limits."""
     return "continuous" if axis.limits is None else "revolute"
 
 
@@ -184,7 +192,7 @@ def _read_axis(
         numbers = read_values(xyz_part, path, fields, 3, is_length=True)
         direction = direction if numbers is None else (numbers[0], numbers[1], numbers[2])
         expressed_in = xyz_part.attributes.get("expressed_in", "").strip()
-        frame = joint if not expressed_in else WORLD if expressed_in == WORLD else f"{scope}{expressed_in}"
+        frame = _scope_name(expressed_in, scope) if expressed_in else joint
         if direction == ZERO:
             fields.report("import-joint", xyz_part, path, "the axis is 0 0 0", "give a direction, e.g. 0 0 1")
     if read_child_flag(axis, "use_parent_model_frame", path, fields, has_model_axes and frame == joint):
@@ -197,6 +205,7 @@ def _read_axis(
 
 
 def _leave_out_initial_position(axis: XmlElement, path: str, fields: UrdfFields) -> None:
+    """Note an initial position other than 0 as left out."""
     for part in axis.find_all("initial_position"):
         if read_values(part, path, fields, 1) not in (None, [0.0]):
             message = "<initial_position> is left out"
@@ -223,6 +232,7 @@ def _read_limits(axis: XmlElement, path: str, fields: UrdfFields) -> tuple[tuple
 
 
 def _read_bound(part: XmlElement, tag: str, path: str, fields: UrdfFields) -> float | None:
+    """Read one bound; None if it is absent or unlimited."""
     found = part.find_all(tag)
     if len(found) == 1 and found[0].text.lower() in UNLIMITED_WORDS:
         return None
