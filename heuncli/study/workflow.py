@@ -36,8 +36,9 @@ from heuncli.results.results_schema import SHARES
 from heuncli.scene.file_format.models import ResultCondition, Spec, Stop
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, find_impulses
-from heuncli.study.model.model_note import explain_restart, is_smooth
-from heuncli.study.model.options import Options, apply_options, has_few_numbers, require_memory
+from heuncli.study.model.memory import has_few_numbers, require_memory
+from heuncli.study.model.method_choice import explain_restart, is_smooth
+from heuncli.study.model.options import Options, apply_options
 from heuncli.study.model.selection import select_for_conditions
 from heuncli.study.model.setup import Setup, attach_locations, set_up
 from heuncli.study.queries.study import Study
