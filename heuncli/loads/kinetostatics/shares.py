@@ -26,15 +26,14 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.couplings import CouplingLoads, find_coupling_loads, list_coupling_actions
 from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.foundation import find_ground_loads
-from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
-from heuncli.loads.kinetostatics.sections import (
-    ABOUT_CENTROID,
+from heuncli.loads.kinetostatics.piece_loads import (
     compute_acceleration_matrix,
     find_attachments,
     find_piece_loads,
-    make_cut_places,
     to_body_axes,
 )
+from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
+from heuncli.loads.kinetostatics.sections import ABOUT_CENTROID, make_cut_places
 from heuncli.motion.integration.evaluator import CAUSES, Evaluation
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import Columns

@@ -17,7 +17,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
-from heuncli.loads.kinetostatics.cuts import Cuts, PlaceableCuts, list_attachments, list_distributed_loads
+from heuncli.loads.kinetostatics.cut_planes import list_attachments, list_distributed_loads
+from heuncli.loads.kinetostatics.cuts import Cuts, PlaceableCuts
 from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, StretchPeaks, find_peaks, make_cuts_at, make_stretch
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array, Block, CutPosition, Extremes
 from heuncli.results.results_schema import RESULTANTS
@@ -171,7 +172,7 @@ def find_passages(recover: Callable[[Array], Recovery], grid: Array) -> Array:
 
 def find_points_on_pieces(recovery: Recovery) -> Array:
     """Return 1 where a point that moves over a body lies on the piece of a single cut of it, else 0, (n_t, m)."""
-    from heuncli.loads.kinetostatics.sections import find_attachments, mark_points_on_pieces
+    from heuncli.loads.kinetostatics.piece_loads import find_attachments, mark_points_on_pieces
 
     actions = [
         *list_whole_joint_actions(recovery.joints),

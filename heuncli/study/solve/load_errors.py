@@ -286,7 +286,7 @@ class LoadErrors(MotionErrors):
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the cuts' loads in body axes, and the difference of the bodies' own orientation between the runs."""
-        from heuncli.loads.kinetostatics.sections import (  # only scenes with sections load it
+        from heuncli.loads.kinetostatics.piece_loads import (  # only scenes with sections load it
             find_acceleration_matrix,
             find_attachments,
             find_piece_loads,
