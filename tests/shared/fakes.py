@@ -176,7 +176,7 @@ class FakeStudy:
             for name, block in self.resample(times).joints.items()
         ]
         solutions = SimpleNamespace(times=np.asarray(times))
-        return SimpleNamespace(solutions=solutions, decided=None, setup=setup, requested_joints=joints)
+        return SimpleNamespace(solutions=solutions, resolution=None, setup=setup, requested_joints=joints)
 
     def compose_reports(self, recovery: Any, reports: Set[str], open_marker: Any = None) -> Results:
         """Some reports of such answers."""

@@ -101,7 +101,7 @@ def _translation(states: BodyStates, joint: Joint) -> Block:
     return {"travel": axial(D), "speed": axial(v), "acceleration": axial(a)}
 
 
-def point_motions(mechanism: Mechanism, states: BodyStates) -> Block:
+def evaluate_point_motions(mechanism: Mechanism, states: BodyStates) -> Block:
     """Return position, velocity and acceleration of every named point of a body."""
     block: Block = {}
     for i, body in enumerate(mechanism.bodies):
@@ -118,7 +118,7 @@ def point_motions(mechanism: Mechanism, states: BodyStates) -> Block:
 # Attitudes
 
 
-def body_quaternions(layout: Layout, evaluation: Evaluation) -> Array:
+def find_body_quaternions(layout: Layout, evaluation: Evaluation) -> Array:
     """Return the quaternions of all bodies in the order of the spec, (n_t, n, 4)."""
     angles = np.concatenate([find_start_angles(layout)[None], evaluation.freedoms["q"]])
     states = np.concatenate([layout.y0[None], evaluation.states])
@@ -130,7 +130,7 @@ def body_quaternions(layout: Layout, evaluation: Evaluation) -> Array:
     return np.asarray((later * signs[:, None])[:, [layout.place[i] for i in range(len(layout.bodies))]])
 
 
-def rodrigues_vectors(q: Array) -> Array:
+def find_rodrigues_vectors(q: Array) -> Array:
     """Return Rodrigues vectors tan(half the turn) n = (x, y, z) / w of quaternions (..., 4); nan close to half a
     turn.
     """

@@ -47,14 +47,14 @@ SUM_INSTANTS = 9  # instants whose self-stresses give the determinate sums
 class Resolution:
     """The joints' loads after a split of what redundancy leaves indeterminate.
 
-    words: sentences on the split
+    sentences: sentences on the split
     stress: the self-stresses that it chose from; None if there are none
     remaining_self_stress: those that it left indeterminate; None if there are none
     choices: the self-stresses that were added
     """
 
     joints: list[JointLoads]
-    words: tuple[str, ...] = ()
+    sentences: tuple[str, ...] = ()
     stress: SelfStress | None = None
     remaining_self_stress: SelfStress | None = None
     choices: tuple[SelfStressChoice, ...] = ()
@@ -80,7 +80,7 @@ class Resolution:
     @property
     def has_marks(self) -> bool:
         """Whether `mark` marks anything."""
-        return self.remaining_self_stress is not None or bool(self.words)
+        return self.remaining_self_stress is not None or bool(self.sentences)
 
     def mark(
         self, states: BodyStates, blocks: Block, couplings: Sequence[CouplingLoads], axes: str, keys: ElementKeys
@@ -94,7 +94,7 @@ class Resolution:
         if self.remaining_self_stress is not None:
             mark_joints(self.remaining_self_stress, self.joints, states, blocks, axes, keys)
             mark_couplings(self.remaining_self_stress, couplings, blocks, keys)
-        if self.words and self.stress is not None and reactions is not None:
+        if self.sentences and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, states, reactions, axes)
 
     def find_sums(
@@ -123,7 +123,7 @@ def resolve_redundancy(
     chosen_split = split_self_stress(joints, states, stress, least_norm)
     return Resolution(
         chosen_split.joints,
-        chosen_split.words,
+        chosen_split.sentences,
         chosen_split.initial_stress,
         chosen_split.remaining_stress,
         chosen_split.choices,
@@ -242,10 +242,10 @@ def find_sums(
     ]
     # joint, component: of each that is open
     joint_numbers, component = np.nonzero(np.reshape(is_indeterminate, (-1, 6)))
-    at_instants = relative_shares(stress, joint_numbers, component)
+    at_instants = find_relative_shares(stress, joint_numbers, component)
     in_poses = at_instants[:, selected]
     if neighbour_stress is not None:
-        in_poses = concatenate_shares(in_poses, relative_shares(neighbour_stress, joint_numbers, component))
+        in_poses = concatenate_shares(in_poses, find_relative_shares(neighbour_stress, joint_numbers, component))
     poses, requested_shares, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()
     for n, (k, i) in enumerate(zip(joint_numbers.tolist(), component.tolist(), strict=True)):
         load = joints[k]
@@ -254,21 +254,21 @@ def find_sums(
         values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
     for loads, number in ((own, number) for own in couplings for number in list_multiples(own)):
         r = loads.rows[number.rows[0]]
-        multiplier_shares = number.factor * relative_multipliers(stress, r)
+        multiplier_shares = number.factor * find_relative_multipliers(stress, r)
         if np.abs(multiplier_shares).max(initial=0.0) * stress.coupling_scale[r] <= tolerances.OPEN_SHARE:
             continue
         name = f"couplings.{loads.coupling.name}.{number.name}"
         selected_shares = multiplier_shares[:, selected]
         if neighbour_stress is not None:
             selected_shares = concatenate_shares(
-                selected_shares, number.factor * relative_multipliers(neighbour_stress, r)
+                selected_shares, number.factor * find_relative_multipliers(neighbour_stress, r)
             )
         poses[name], requested_shares[name] = selected_shares[0], multiplier_shares[0]
         values[name] = number.values
     return find_determinate_sums(poses, requested_shares, values, stress.length)
 
 
-def relative_multipliers(stress: SelfStress, r: int) -> Array:
+def find_relative_multipliers(stress: SelfStress, r: int) -> Array:
     """Return for every self-stress the multiplier of a closure row, relative to its largest share, (1, n_t, k)."""
     return np.asarray(stress.multipliers[None, :, r] / np.where(stress.largest > 0.0, stress.largest, 1.0))
 
@@ -284,7 +284,7 @@ def select_constraint_shares(stress: SelfStress, joints: Sequence[JointLoads], s
     return result
 
 
-def relative_shares(stress: SelfStress, joints: Indices, components: Indices) -> Array:
+def find_relative_shares(stress: SelfStress, joints: Indices, components: Indices) -> Array:
     """Return the shares of every self-stress in one component of each joint, relative to its largest, (n, n_t, k)."""
     return np.asarray(stress.shares[joints, :, components] / np.where(stress.largest > 0.0, stress.largest, 1.0))
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
-from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, power_imbalance, work_scale
+from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, find_power_imbalance, find_work_scale
 from heuncli.motion.integration.contacts.impulses import compute_free_impulse_energy
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Accuracy, Array, Mask, Results
@@ -73,7 +73,7 @@ class Balance:
         """Add the energy of instants, or their powers."""
         if self.span is not None:
             joints, layout = recovery.joints, self.setup.scene.layout
-            power_error = power_imbalance(
+            power_error = find_power_imbalance(
                 layout, recovery.states, recovery.loads, joints, recovery.couplings, self.span
             )
             self.imbalance = take_larger(self.imbalance, power_error)
@@ -101,7 +101,7 @@ class Balance:
                 + impulse_energy
             )
             if self.span is not None:
-                lift += work_scale(mechanism, self.loads, size, self.span)
+                lift += find_work_scale(mechanism, self.loads, size, self.span)
             change = self.change if self.span is None else self.imbalance
             found["energy_drift"] = energy_drift(change, max(kinetic, self.kinetic), lift)
         return found | {"constraint_gap": self.gap, "balance_residual": self.residual}

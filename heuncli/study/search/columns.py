@@ -132,7 +132,7 @@ class StudyColumns:
 
         None if they are not needed, or if it must be found at each instant.
         """
-        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):
+        if not self.reports & RANK_REPORTS or any(recovery.resolution is None for recovery in self.grid):
             # the scene is a tree, or needs no verdicts
             return None
         from heuncli.study.compose.unknown_numbers import (  # where there are closed chains
