@@ -299,16 +299,6 @@ def measure_rope(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Ro
     return RopeMotion(S, rate)
 
 
-def has_length_law(load: cython.pointer[Load]) -> cython.bint:
-    """Return whether the free length of a rope is a law in time."""
-    return load.y.count > 0
-
-
-def only_pulls(load: cython.pointer[Load]) -> cython.bint:
-    """Return whether a rope is slack where it is shorter than its free length."""
-    return load.in_body != 0
-
-
 def free_length(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Jet:
     """Return l0 with its rate."""
     if has_length_law(load):
