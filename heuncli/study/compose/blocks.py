@@ -112,22 +112,23 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
 
 
 def make_motion_blocks(recovery: Recovery) -> dict[str, Any]:
-    """Make the blocks of the report `motion`: bodies, momentum, coordinates and system vector."""
-    from heuncli.loads.kinetostatics.coordinates import (
+    """Make the blocks of the motion: bodies, their momenta, joint coordinates, Heun's system vector."""
+    from heuncli.loads.kinetostatics.coordinates import (  # tables do not show them
         find_body_quaternions,
         find_rodrigues_vectors,
-    )  # tables do not show them
+    )
 
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
     solutions, states = recovery.solutions, recovery.states
-    quaternions = find_body_quaternions(layout, solutions)
-    vectors = find_rodrigues_vectors(quaternions)
-    momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
+    attitude_quaternions = find_body_quaternions(layout, solutions)
+    vectors = find_rodrigues_vectors(attitude_quaternions)
+    body_momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
     return {
         "bodies": {
-            b.name: make_body_block(states, quaternions, vectors, momenta, i) for i, b in enumerate(mechanism.bodies)
+            b.name: make_body_block(states, attitude_quaternions, vectors, body_momenta, i)
+            for i, b in enumerate(mechanism.bodies)
         },
-        "momentum": momenta.sum_bodies(),
+        "momentum": body_momenta.sum_bodies(),
         "coordinates": evaluate_joint_coordinates(layout, solutions, states),
         "system_vector": system_vector(mechanism, states),
     }
