@@ -189,7 +189,7 @@ class FakeStudy:
             for blow in self.results.impulses
         ]
 
-    def with_whole_cuts(self, bent: bool) -> Any:
+    def with_whole_cuts(self, is_nonlinear: bool) -> Any:
         """What stands for the scene with its series of cuts as stretches."""
         return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
 

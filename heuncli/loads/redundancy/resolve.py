@@ -51,6 +51,8 @@ class Resolution:
     stress: the self-stresses that it chose from; None if there are none
     remaining_self_stress: those that it left indeterminate; None if there are none
     choices: the self-stresses that were added
+    added_multipliers: what the split adds to the multipliers of the closure rows, (n_t, rows)
+    found_self_stress: all self-stresses found before it, also where there are none; None if they were not looked for
     """
 
     joints: list[JointLoads]
@@ -58,8 +60,8 @@ class Resolution:
     stress: SelfStress | None = None
     remaining_self_stress: SelfStress | None = None
     choices: tuple[SelfStressChoice, ...] = ()
-    added_multipliers: Array | None = None  # what the split adds to the multipliers of the closure rows, (n_t, rows)
-    found_self_stress: SelfStress | None = None  # all self-stresses found, also where there are none
+    added_multipliers: Array | None = None
+    found_self_stress: SelfStress | None = None
 
     def apply_choices(self, joints: list[JointLoads], states: BodyStates) -> tuple[list[JointLoads], Array | None]:
         """Apply the same split to other loads of the joints, such as shares by cause; also return what it adds to
@@ -122,14 +124,10 @@ def resolve_redundancy(
         return Resolution(joints, found_self_stress=stress)
     chosen_split = split_self_stress(joints, states, stress, least_norm)
     return Resolution(
-        chosen_split.joints,
-        chosen_split.sentences,
-        chosen_split.initial_stress,
-        chosen_split.remaining_stress,
-        chosen_split.choices,
-        chosen_split.added_multipliers,
-        stress,
-    )
+        joints=chosen_split.joints, sentences=chosen_split.sentences, stress=chosen_split.initial_stress,
+        remaining_self_stress=chosen_split.remaining_stress, choices=chosen_split.choices,
+        added_multipliers=chosen_split.added_multipliers, found_self_stress=stress,
+    )  # fmt: skip
 
 
 def describe_singular_poses(count: Array, margins: RankMargins, times: Array, redundant: Array) -> list[str]:

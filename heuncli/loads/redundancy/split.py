@@ -147,7 +147,7 @@ class SelfStressSplit:
     """
 
     joints: list[JointLoads]
-    added_multipliers: Array | None  # what they add to the multipliers of the closure rows, (n_t, rows)
+    added_multipliers: Array | None
     initial_stress: SelfStress | None
     remaining_stress: SelfStress | None
     choices: tuple[SelfStressChoice, ...]

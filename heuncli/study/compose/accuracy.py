@@ -53,7 +53,7 @@ class Balance:
         Energy is checked only if it is requested.
         """
         self.setup, self.span = setup, span
-        self.of_energy = bool(ENERGY_REPORTS & setup.selection.reports)
+        self.checks_energy = bool(ENERGY_REPORTS & setup.selection.reports)
         self.gap = self.residual = 0.0
         self.start: float | None = None  # energy less work at the first instant [J]
         self.change = self.kinetic = self.imbalance = 0.0  # the largest [J]
@@ -62,7 +62,7 @@ class Balance:
     def add(self, recovery: Recovery) -> Balance:
         """Add instants; returns itself."""
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
-        if self.of_energy:
+        if self.checks_energy:
             self.add_energy(recovery)
         self.gap = take_larger(self.gap, float(recovery.solutions.gap.max(initial=0.0)))
         residual = balance_residual(mechanism, recovery.states, recovery.inertia, recovery.actions, size)
@@ -95,7 +95,7 @@ class Balance:
         impulse_energy: the energy that the given impulses would bring to free bodies [J]
         """
         found, mechanism, size = Accuracy(), self.setup.scene.mechanism, self.setup.scene.layout.size
-        if self.of_energy:
+        if self.checks_energy:
             lift = (
                 sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
                 + impulse_energy
@@ -108,7 +108,7 @@ class Balance:
 
 
 def take_larger(so_far: float, value: float) -> float:
-    """Return the take_larger of the two; nan stays nan."""
+    """Return the larger of the two; nan stays nan."""
     return float(np.maximum(so_far, value))
 
 

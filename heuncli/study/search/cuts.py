@@ -31,11 +31,12 @@ SIGN_CHANGE_HALVINGS = (
 )
 
 
-def replace_series_by_stretches(setup: Setup, bent: bool) -> Setup:
-    """Return the setup with its series of cuts replaced by stretches; bent: for quantities that are no polynomial of
-    loads.
+def replace_series_by_stretches(setup: Setup, is_nonlinear: bool) -> Setup:
+    """Return the setup with its series of cuts replaced by stretches.
+
+    is_nonlinear: whether they are for quantities that are no polynomial of the loads
     """
-    mechanism, halved = setup.scene.mechanism, SIGN_CHANGE_HALVINGS if bent else 0
+    mechanism, halved = setup.scene.mechanism, SIGN_CHANGE_HALVINGS if is_nonlinear else 0
 
     def make_whole(cuts: Cuts) -> PlaceableCuts:
         """Return a series of cuts through shapes as a stretch, all others as they are."""
