@@ -10,7 +10,7 @@ import pytest
 from heuncli.analyses.lagrange.coordinate_rates import compute_accelerations
 from heuncli.analyses.lagrange.coordinates import choose_coordinates
 from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
-from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange, compute_results
+from heuncli.analyses.lagrange.study import LagrangeOptions, compute_results, solve_lagrange
 from heuncli.base.errors import SolveError
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.displacements import displace
