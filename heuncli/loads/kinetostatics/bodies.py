@@ -61,9 +61,11 @@ class BodyStates:
 
     @cached_property
     def _rows(self) -> dict[str, Array]:
+        """The fields by component that were already computed."""
         return {}
 
     def _compute_rows(self, name: str) -> Array:
+        """Compute a field by component."""
         return instants_last(getattr(self, name))
 
     @cached_property
@@ -172,6 +174,7 @@ class KernelBodyStates(BodyStates):
         return values
 
     def _compute_rows(self, name: str) -> Array:
+        """Compute a field by component: from the kernel's value at the joint point, and the arm from there."""
         if name in self.__dict__:
             return super()._compute_rows(name)
         if name in KERNEL_FIELDS:
