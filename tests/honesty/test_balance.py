@@ -10,7 +10,7 @@ import pytest
 
 from heuncli.base import tolerances
 from heuncli.base.records import replace
-from heuncli.loads.kinetostatics.balance import balance_residual
+from heuncli.loads.kinetostatics.balance import find_balance_residual
 from tests.shared.scenes import study
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -84,7 +84,7 @@ def test_a_small_load_that_is_missing_is_seen_down_to_rounding_of_the_largest(pa
         replace(action, force=0 * action.force, moment=0 * action.moment) if action.name == "link" else action
         for action in recovery.actions
     ]
-    residual = balance_residual(
+    residual = find_balance_residual(
         recovery.setup.scene.mechanism, recovery.states, recovery.inertia, actions, recovery.setup.scene.layout.size
     )
     assert (residual > tolerances.UNBALANCED) == alarm

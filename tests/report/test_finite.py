@@ -175,13 +175,13 @@ def test_what_is_open_is_null_and_nothing_else_is() -> None:
     ("check", "swinging.yaml"),
 ])  # fmt: skip
 def test_every_command_refuses_it(heun: Heun, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
-    energy = recovery.energy_block
+    energy = recovery.make_energy_block
 
     def broken(*given: Any) -> Any:
         block = energy(*given)
         return block | {"kinetic": block["kinetic"] + np.where(np.arange(len(block["kinetic"])) == 3, np.inf, 0.0)}
 
-    monkeypatch.setattr(recovery, "energy_block", broken)
+    monkeypatch.setattr(recovery, "make_energy_block", broken)
     with Path("swinging.yaml").open("a") as spec:
         spec.write("expect: [{of: energy.kinetic, peak: max, is: 1}]\n")
     done = heun(*words)

@@ -22,7 +22,7 @@ from heuncli.results.stored_arrays import ArrayStore
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose import recovery, results
-from heuncli.study.model import options
+from heuncli.study.model import memory
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
@@ -55,7 +55,7 @@ def swinging(samples: int, cuts: int = 3) -> Spec:
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of eight instants, and texts of a few numbers."""
     for module, name, value in (
-        (options, "FEW", 0), (results, "AT_ONCE", 1), (export, "AT_ONCE", 11), (as_data, "AT_ONCE", 11),
+        (memory, "FEW", 0), (results, "AT_ONCE", 1), (export, "AT_ONCE", 11), (as_data, "AT_ONCE", 11),
         (export, "READ", 23),
         (stored_arrays, "TOGETHER", 5), (stored_arrays, "AT_ONCE", 7),
     ):  # fmt: skip
@@ -141,13 +141,13 @@ def test_causes_and_notes_are_those_of_the_whole_run(small: None) -> None:
 
 
 def test_what_is_not_finite_is_refused_in_the_same_words(small: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    energy = recovery.energy_block
+    energy = recovery.make_energy_block
 
     def broken(layout: Any, recovered: Any, *given: Any) -> Any:
         block = energy(layout, recovered, *given)
         return block | {"kinetic": np.where(recovered.times > 0.55, np.inf, block["kinetic"])}
 
-    monkeypatch.setattr(recovery, "energy_block", broken)
+    monkeypatch.setattr(recovery, "make_energy_block", broken)
     told = []
     for in_parts in (False, True):
         with pytest.raises(SolveError) as caught:
@@ -161,7 +161,7 @@ def test_a_command_writes_the_parts(heun: Heun, folder: Path, form: str, monkeyp
     (folder / "s.yaml").write_text(SWINGING.format(samples=31, cuts=4))
     words = ("run", "s.yaml", "--format", form, "--strict")
     whole = heun(*words)
-    monkeypatch.setattr(options, "FEW", 0)
+    monkeypatch.setattr(memory, "FEW", 0)
     monkeypatch.setattr(results, "AT_ONCE", 1000)
     stores: list[ArrayStore] = []
     made = ArrayStore.__init__
@@ -184,7 +184,7 @@ def without_times(text: str) -> list[str]:
 
 def test_a_disk_that_is_full_is_5(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is written then, and no half of anything is left."""
-    monkeypatch.setattr(options, "FEW", 0)
+    monkeypatch.setattr(memory, "FEW", 0)
 
     class Full(io.BytesIO):
         def write(self, _: Any) -> int:
@@ -244,7 +244,7 @@ def pieces(form: str, spec: Spec) -> Any:
 def little(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As little at a time as memory shows it: the parts themselves would hide how it grows."""
     for module, name, value in (
-        (options, "FEW", 0), (results, "AT_ONCE", 20_000), (export, "AT_ONCE", 2_000), (as_data, "AT_ONCE", 2_000),
+        (memory, "FEW", 0), (results, "AT_ONCE", 20_000), (export, "AT_ONCE", 2_000), (as_data, "AT_ONCE", 2_000),
         (export, "READ", 20_000),
         (load_errors, "CUTS_AT_ONCE", 2_000),
     ):  # fmt: skip

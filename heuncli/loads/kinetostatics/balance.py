@@ -38,7 +38,7 @@ from heuncli.results.results import Array, Block, Magnitudes
 from heuncli.scene.shapes.rotations import cross_components, cross_rows, instants_first, quadratic_form, squared_lengths
 
 
-def energy_block(layout: Layout, evaluation: Evaluation, states: BodyStates) -> Block:
+def make_energy_block(layout: Layout, evaluation: Evaluation, states: BodyStates) -> Block:
     """Return kinetic energy, potential energy (gravity from the world's origin, loads), work of all else, (n_t,)
     [J].
     """
@@ -54,7 +54,7 @@ def energy_block(layout: Layout, evaluation: Evaluation, states: BodyStates) -> 
     return {"kinetic": kinetic, "potential": potential, "work": work}
 
 
-def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
+def make_system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     """Return B = m x_s. x x_s.. + (sigma.I sigma) sigma + T_s (sigma x sigma.), T_s = tr(I)/2 - I; (44) of any body.
 
     Its second part is that of the energy, 2 E sigma, the third the deviation G, which vanishes where the axis of
@@ -145,7 +145,7 @@ def find_rope_power(states: BodyStates, rope: CouplingLoads) -> Array:
     return power
 
 
-def energy_drift(change: float, largest: float, lift: float) -> float:
+def compute_energy_drift(change: float, largest: float, lift: float) -> float:
     """Return the change of kinetic + potential - work since the start, relative to the largest kinetic energy; 0 at
     rest.
 
@@ -159,7 +159,7 @@ def energy_drift(change: float, largest: float, lift: float) -> float:
 CHUNK = 100_000  # instants times actions summed together
 
 
-def balance_residual(
+def find_balance_residual(
     mechanism: Mechanism, states: BodyStates, inertia: Array, actions: Sequence[Action], size: float
 ) -> float:
     """Return the largest residual of any body, relative to its largest load; moments are divided by `size` [m].

@@ -157,7 +157,7 @@ NUMBERS: dict[str, Callable[[CouplingLoads], list[CouplingNumber]]] = {
 # Cams
 
 
-def pressure_angle(loads: CouplingLoads, joints: Sequence[Joint], states: BodyStates) -> Array:
+def find_pressure_angle(loads: CouplingLoads, joints: Sequence[Joint], states: BodyStates) -> Array:
     """Return the angle between the load of a cam and the motion of the follower there, (n_t,) [rad]."""
     (load,) = loads.parts
     size = np.sqrt(np.sum(load.f * load.f, axis=1))
@@ -180,28 +180,28 @@ def find_follower_speed(part: CouplingPart, joint: Joint, place: Array, states: 
 # Drive element numbers
 
 
-def gear_numbers(gear: c.Gear, F: Array, is_impulse: bool) -> dict[str, Array]:
+def make_gear_numbers(gear: c.Gear, F: Array, is_impulse: bool) -> dict[str, Array]:
     """Return the components of a tooth force [N]."""
     radial = np.abs(F) * (math.tan(gear.pressure_angle) / math.cos(gear.helix))
     axial = np.abs(F) * abs(math.tan(gear.helix))
     return {"radial": radial, "axial": axial, "normal": np.sqrt(F * F + radial * radial + axial * axial)}
 
 
-def screw_numbers(screw: c.Screw, F: Array, is_impulse: bool) -> dict[str, Array]:
+def make_screw_numbers(screw: c.Screw, F: Array, is_impulse: bool) -> dict[str, Array]:
     """Return the torque that a thrust takes [N m]."""
     return {"torque": F * (screw.lead / math.tau)}
 
 
-def belt_numbers(belt: c.Belt, F: Array, is_impulse: bool) -> dict[str, Array]:
+def make_belt_numbers(belt: c.Belt, F: Array, is_impulse: bool) -> dict[str, Array]:
     """Return the pulls of both strands [N]."""
     pretension = 0.0 if is_impulse else belt.pretension
     return {"tight": pretension + 0.5 * np.abs(F), "slack": pretension - 0.5 * np.abs(F)}
 
 
 DRIVE_ELEMENT_NUMBERS: dict[str, Callable[..., dict[str, Array]]] = {
-    "gear": gear_numbers,
-    "screw": screw_numbers,
-    "belt": belt_numbers,
+    "gear": make_gear_numbers,
+    "screw": make_screw_numbers,
+    "belt": make_belt_numbers,
 }
 
 
@@ -216,7 +216,7 @@ def collect_by_quantity(loads: CouplingLoads, joints: Sequence[Joint], states: B
         for name, values in numbers.items():
             by_quantity.setdefault("moment" if name == "torque" else "force", []).append(values)
     if coupling.type == "cam":
-        by_quantity["angle"] = [pressure_angle(loads, joints, states)]
+        by_quantity["angle"] = [find_pressure_angle(loads, joints, states)]
     return by_quantity
 
 
@@ -237,7 +237,7 @@ def find_total_screw_load(loads: CouplingLoads) -> tuple[Array, Array]:
     return force + sense * axial_friction, torque + sense * friction_torque
 
 
-def efficiency(loads: CouplingLoads, zero_thrust: float) -> Array:
+def find_efficiency(loads: CouplingLoads, zero_thrust: float) -> Array:
     """Return output power over input power, (n_t,); 1 at rest, because nothing slides, and 0 without a load.
 
     zero_thrust: a thrust that counts as zero compared with the loads of the scene [N]

@@ -75,7 +75,7 @@ def sum_ground_loads(
     return force, moment
 
 
-def foundation_block(
+def make_foundation_block(
     mechanism: Mechanism,
     states: BodyStates,
     actions: Sequence[Action],
@@ -97,7 +97,7 @@ def foundation_block(
     if mechanism.planar:
         force, moment = project_to_plane(force, moment)
         _, orbital = project_to_plane(force, orbital)
-    largest = largest_force(mechanism, force, ma, actions, inner_forces)
+    largest = find_force_scale(mechanism, force, ma, actions, inner_forces)
     block: Block = {
         "about": reference, "force": force, "moment": moment,
         "axis": find_central_axis(force, moment, reference, largest),
@@ -173,13 +173,13 @@ def find_element_key(keys: ElementKeys, action: Action) -> str:
     return keys.get((block, action.name), action.name)
 
 
-def largest_force(
+def find_force_scale(
     mechanism: Mechanism, s: Array, ma: Array, actions: Sequence[Action], inner_forces: Sequence[Array] = ()
 ) -> float:
     """Return the largest force at any instant [N], of s and the forces that it is the sum of: the scale below which s
     is zero.
 
-    s (n_t, 3); ma: m x_s.. of every body, (n_t, n, 3); inner_forces: as of `foundation_block`.
+    s (n_t, 3); ma: m x_s.. of every body, (n_t, n, 3); inner_forces: as of `make_foundation_block`.
     """
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     acting = np.array([*(action.force for action in actions if action.kind != "drive"), *inner_forces])

@@ -14,7 +14,12 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
-from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, find_power_imbalance, find_work_scale
+from heuncli.loads.kinetostatics.balance import (
+    compute_energy_drift,
+    find_balance_residual,
+    find_power_imbalance,
+    find_work_scale,
+)
 from heuncli.motion.integration.contacts.impulses import compute_free_impulse_energy
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Accuracy, Array, Mask, Results
@@ -65,7 +70,7 @@ class Balance:
         if self.checks_energy:
             self.add_energy(recovery)
         self.gap = take_larger(self.gap, float(recovery.solutions.gap.max(initial=0.0)))
-        residual = balance_residual(mechanism, recovery.states, recovery.inertia, recovery.actions, size)
+        residual = find_balance_residual(mechanism, recovery.states, recovery.inertia, recovery.actions, size)
         self.residual = take_larger(self.residual, residual)
         return self
 
@@ -103,7 +108,7 @@ class Balance:
             if self.span is not None:
                 lift += find_work_scale(mechanism, self.loads, size, self.span)
             change = self.change if self.span is None else self.imbalance
-            found["energy_drift"] = energy_drift(change, max(kinetic, self.kinetic), lift)
+            found["energy_drift"] = compute_energy_drift(change, max(kinetic, self.kinetic), lift)
         return found | {"constraint_gap": self.gap, "balance_residual": self.residual}
 
 

@@ -40,17 +40,17 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.actions import Action, AppliedLoad
-from heuncli.loads.kinetostatics.balance import system_vector
+from heuncli.loads.kinetostatics.balance import make_system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, evaluate_point_motions
 from heuncli.loads.kinetostatics.coupling_numbers import (
     DRIVE_ELEMENT_NUMBERS,
-    efficiency,
+    find_efficiency,
+    find_pressure_angle,
     make_coupling_block,
-    pressure_angle,
 )
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
-from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, foundation_block, make_element_keys
+from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, make_element_keys, make_foundation_block
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_block
 from heuncli.multibody.mechanism.loads import GROUND, BushingLoad, JointLoad, PairLoad
 from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock
@@ -73,7 +73,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     solutions, states = recovery.solutions, recovery.states
     blocks_by_name: dict[str, Any] = {}
     if "foundation" in reports:
-        blocks_by_name["foundation"] = foundation_block(
+        blocks_by_name["foundation"] = make_foundation_block(
             mechanism, states, recovery.ground_actions, recovery.setup.moment_point, recovery.inner_forces
         )
     if "joints" in reports:
@@ -130,7 +130,7 @@ def make_motion_blocks(recovery: Recovery) -> dict[str, Any]:
         },
         "momentum": body_momenta.sum_bodies(),
         "coordinates": evaluate_joint_coordinates(layout, solutions, states),
-        "system_vector": system_vector(mechanism, states),
+        "system_vector": make_system_vector(mechanism, states),
     }
 
 
@@ -238,14 +238,14 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
             if k not in block
         }
     if coupling_loads.friction is not None:
-        found = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
+        found = find_efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
         own_load = next((own for own in recovery.loads if own.action is coupling_loads.friction), None)
         if own_load is not None and own_load.reserve is not None:
             found = np.where(own_load.reserve > 0.0, 0.0, found)
             block["reserve"] = own_load.reserve
         block["efficiency"] = found
     if spec_coupling.type == "cam":
-        block["pressure_angle"] = pressure_angle(coupling_loads, mechanism.joints, recovery.states)
+        block["pressure_angle"] = find_pressure_angle(coupling_loads, mechanism.joints, recovery.states)
     return block
 
 

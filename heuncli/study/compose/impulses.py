@@ -17,7 +17,7 @@ import numpy as np
 
 from heuncli.base.records import fields, record, replace
 from heuncli.loads.kinetostatics.actions import Action, ActionEnd
-from heuncli.loads.kinetostatics.balance import balance_residual, find_magnitudes
+from heuncli.loads.kinetostatics.balance import find_balance_residual, find_magnitudes
 from heuncli.motion.integration.check.run_comparison import match_impulses
 from heuncli.motion.integration.contacts.impulses import DRIVES, ImpulseEvent
 from heuncli.motion.integration.diagnosis.solvability import ErrorWording, require_solvable
@@ -143,7 +143,7 @@ class Impulses:
         """The residual of d'Alembert's principle, relative to the largest impulse."""
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
         own = self.recovery
-        return balance_residual(mechanism, own.states, own.inertia, own.actions, size)
+        return find_balance_residual(mechanism, own.states, own.inertia, own.actions, size)
 
     def make_blocks(self) -> list[Block]:
         """Make the blocks of all impulses."""

@@ -19,7 +19,12 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
-from heuncli.loads.kinetostatics.balance import energy_block, find_inertia_scale, find_load_magnitudes, find_magnitudes
+from heuncli.loads.kinetostatics.balance import (
+    find_inertia_scale,
+    find_load_magnitudes,
+    find_magnitudes,
+    make_energy_block,
+)
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.couplings import (
     CouplingLoads,
@@ -277,7 +282,7 @@ class Recovery:
     @cached_property
     def energy(self) -> Block:
         """Kinetic and potential energy, and work."""
-        return energy_block(self.setup.scene.layout, self.solutions, self.states)
+        return make_energy_block(self.setup.scene.layout, self.solutions, self.states)
 
     @cached_property
     def magnitudes(self) -> Magnitudes:

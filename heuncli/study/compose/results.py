@@ -28,7 +28,7 @@ import numpy as np
 from heuncli.base.errors import SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import KERNEL
-from heuncli.loads.kinetostatics.foundation import find_inertia_loads, is_zero_force, largest_force
+from heuncli.loads.kinetostatics.foundation import find_force_scale, find_inertia_loads, is_zero_force
 from heuncli.motion.integration.integrated_scene import note_fallback_to_integration
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Block, Results
@@ -310,7 +310,7 @@ def find_largest_force(recovery: Recovery, s: Array) -> float:
     """Return the largest force of a part that its foundation's s (n_t, 3) is compared with [N]."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
     ma, _ = find_inertia_loads(mechanism, states)
-    return largest_force(mechanism, s, ma, recovery.ground_actions, recovery.inner_forces)
+    return find_force_scale(mechanism, s, ma, recovery.ground_actions, recovery.inner_forces)
 
 
 def drop_axes(foundation: Mapping[str, Any], largest: float, parts: list[slice]) -> None:

@@ -57,8 +57,8 @@ def add_shares(
             carried = {number.name: number.values for number in list_numbers(coupled) if number.is_sum}
             blocks["couplings"][coupled.coupling.name]["shares"] = shares.to_blocks(carried)
     if "foundation" in blocks:
-        for keys, foundation_block in make_foundation_shares_blocks(mechanism, states, shares, moment_point).items():
-            find_block(blocks["foundation"], keys)["shares"] = foundation_block
+        for keys, block in make_foundation_shares_blocks(mechanism, states, shares, moment_point).items():
+            find_block(blocks["foundation"], keys)["shares"] = block
 
 
 def find_block(block: Block, keys: tuple[str, ...]) -> Block:

@@ -133,7 +133,7 @@ def _larger(so_far: float, values: Array) -> float:
     return max(so_far, largest) if np.isfinite(largest) else np.inf
 
 
-def relative_error(error: float, terms: float, *scales: float) -> float:
+def compute_relative_error(error: float, terms: float, *scales: float) -> float:
     """Divide an error by the first of the scales that exceeds the rounding of its terms; 0 if none does."""
     scale = next((x for x in scales if x > tolerances.NO_LOAD * terms), 0.0)
     if scale == 0.0:
@@ -325,8 +325,8 @@ class ErrorEstimates:
             *(max(m.largest, f.largest * size) for f, m in parts),
         ]
         return max(
-            relative_error(max(f.error for f, _ in parts), max(terms_F, terms_M / arm), *forces),
-            relative_error(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
+            compute_relative_error(max(f.error for f, _ in parts), max(terms_F, terms_M / arm), *forces),
+            compute_relative_error(max(m.error for _, m in parts), max(terms_M, terms_F * size), *moments),
         )
 
     def find_relative_energy_error(self) -> float:
@@ -338,7 +338,7 @@ class ErrorEstimates:
             return 0.0
         error = max(x.error for x in (kinetic, potential, work))
         shown_energy = max(kinetic.largest_requested, potential.range_or_largest, work.range_or_largest)
-        return relative_error(error, kinetic.largest, shown_energy, kinetic.largest)
+        return compute_relative_error(error, kinetic.largest, shown_energy, kinetic.largest)
 
     def find_largest_kinetic_energy(self) -> float:
         """Return the largest kinetic energy over the run [J]."""

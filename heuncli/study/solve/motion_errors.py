@@ -14,7 +14,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
-from heuncli.loads.kinetostatics.balance import energy_block, system_vector
+from heuncli.loads.kinetostatics.balance import make_energy_block, make_system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.loads.kinetostatics.foundation import find_momenta
@@ -95,7 +95,7 @@ class MotionErrors(ErrorEstimates):
 
     def add_energy(self, solutions: Evaluation, states: BodyStates) -> None:
         """Add kinetic and potential energy, and work."""
-        block = energy_block(self.setup.scene.layout, solutions, states)
+        block = make_energy_block(self.setup.scene.layout, solutions, states)
         m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
         speed = np.abs(states.v_centre).max(axis=(1, 2))
         lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
@@ -110,7 +110,7 @@ def iter_momentum_quantities(
     mechanism: Mechanism, states: BodyStates, moment_point: Array
 ) -> Iterator[tuple[str, Array, Array]]:
     """Yield by unit the values of the bodies and the sums over them (n_t, m, 3), and the rounding (n_t,)."""
-    body_momenta, vector = find_momenta(mechanism, states, moment_point), system_vector(mechanism, states)
+    body_momenta, vector = find_momenta(mechanism, states, moment_point), make_system_vector(mechanism, states)
     body_vectors = [np.stack([*own.values()], axis=1) for own in vector.values() if isinstance(own, dict)]
     for unit, parts, totals in (
         ("N·s", (body_momenta.linear,), ()),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.loads.kinetostatics.balance import energy_drift
+from heuncli.loads.kinetostatics.balance import compute_energy_drift
 from heuncli.loads.kinetostatics.foundation import find_central_axis
 from heuncli.study.compose.warnings import warn_unbalanced
 from tests.honesty.boundaries.part import Part, Row
@@ -42,7 +42,7 @@ def axis_of(x: float) -> str:
 
 
 def drift(x: float) -> str:
-    return "at rest" if energy_drift(x, x, 1.0) == 0.0 else "a drift"
+    return "at rest" if compute_energy_drift(x, x, 1.0) == 0.0 else "a drift"
 
 
 PART = Part(
