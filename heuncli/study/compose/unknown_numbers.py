@@ -54,7 +54,7 @@ class Leaf(NamedTuple):
     block: dict[str, Any]
     name: str
     kind: PathAndUnit
-    vectors: bool
+    is_vector: bool
 
 
 class LeafGroup(NamedTuple):
@@ -249,7 +249,7 @@ class Verdicts(NamedTuple):
 
     dependent (n_t,): number of dependent closure rows
     holding (n_t, contacts): which contacts are closed
-    ordinary (n_t,): whether the pose is not singular
+    is_regular (n_t,): whether the pose is not singular
     open: for each array over the instants the mask of its indeterminate components, None for none; empty if nothing is
     indeterminate
     """
@@ -257,7 +257,7 @@ class Verdicts(NamedTuple):
     times: Array
     dependent: Array
     holding: Array
-    ordinary: Mask
+    is_regular: Mask
     open: tuple[Mask | None, ...]
 
 
@@ -265,13 +265,13 @@ class VerdictsBetween:
     """Verdicts at instants, ascending, and what they imply for the instants between."""
 
     def __init__(self, parts: Sequence[Verdicts]) -> None:
-        times, dependent, holding, ordinary = (np.concatenate(x) for x in list(zip(*parts, strict=True))[:4])
+        times, dependent, holding, is_regular = (np.concatenate(x) for x in list(zip(*parts, strict=True))[:4])
         self.times, self.dependent, self.holding = times, dependent, holding
         lengths = [len(part.times) for part in parts]
         count = max((len(part.open) for part in parts), default=0)
         rows = (part.open or (None,) * count for part in parts)
         self.open = [concatenate_masks(masks, lengths) for masks in zip(*rows, strict=True)]
-        same = ordinary[1:] & ordinary[:-1] & (dependent[1:] == dependent[:-1])
+        same = is_regular[1:] & is_regular[:-1] & (dependent[1:] == dependent[:-1])
         same &= (holding[1:] == holding[:-1]).all(axis=1)
         for mask in self.open:
             if mask is not None:
@@ -298,7 +298,7 @@ class VerdictsBetween:
                 leaf.block[leaf.name] = mask_indeterminate(leaf.block[leaf.name], mask[k])
                 if "open" in leaf.block:  # it lists what is indeterminate at any instant or cut
                     leaf.block["open"] += list_indeterminate_names(
-                        {leaf.name: mask[k].reshape(-1, *[3] * leaf.vectors)}
+                        {leaf.name: mask[k].reshape(-1, *[3] * leaf.is_vector)}
                     )
 
     def _find_previous(self, times: Array) -> Indices:
@@ -320,7 +320,7 @@ def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | Non
     ):
         return None
     stress = resolution.found_self_stress
-    ordinary = (
+    is_regular = (
         np.ones(len(solutions.times), dtype=bool)
         if stress is None
         else stress.count <= recovery.generic_self_stress_count
@@ -334,7 +334,7 @@ def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | Non
             find_newly_open(own.block[own.name], other.block[other.name])
             for own, other in zip(iter_leaves(determinate_blocks), iter_leaves(blocks), strict=True)
         )
-    return Verdicts(solutions.times, solutions.dependent_count, solutions.holding, ordinary, found)
+    return Verdicts(solutions.times, solutions.dependent_count, solutions.holding, is_regular, found)
 
 
 def find_newly_open(determinate: Array, values: Array) -> Mask | None:

@@ -178,7 +178,7 @@ def select_sums(sums: Sequence[DeterminateSum], selection: Selection) -> list[De
     return [one for one in sums if any(term.startswith(begins) for term in one["terms"])]
 
 
-Ends = Mapping[str, Mapping[str, set[str]]]
+BodiesOfEntries = Mapping[str, Mapping[str, set[str]]]  # by block and name of the entry
 # blocks whose entries refer to bodies
 BODY_BLOCKS = ("joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "sensors")
 # reports that concern some bodies only, and their blocks; other reports concern all bodies
@@ -247,7 +247,7 @@ def find_bodies_of_name(name: str, spec: Spec) -> set[str]:
     return find_bodies(spec.joints[name], spec)
 
 
-def find_all_bodies(spec: Spec) -> Ends:
+def find_all_bodies(spec: Spec) -> BodiesOfEntries:
     """Return the bodies of every named entry, by block and name."""
     items: dict[str, Mapping[str, Any]] = {block: getattr(spec, block) for block in BODY_BLOCKS}
     return {block: {name: find_bodies(item, spec) for name, item in own.items()} for block, own in items.items()}
@@ -311,29 +311,35 @@ def restrict_spec(spec: Spec, selection: Selection, *, reduce: bool = True) -> S
     on.
     """
     needed_bodies = find_needed_bodies(spec, selection) if reduce else set(spec.bodies)
-    cut = (
-        set(spec.sections)
-        if selection.has_whole("sections") or IMPULSES in selection.reports
-        else selection.names_in("sections")
-    )
-    is_read = selection.names_in("sensors").__contains__ if "joints" in selection.partial else spec.sensors.__contains__
-    if "joints" in selection.reports:
-        cut |= {own.section for name, own in spec.sensors.items() if own.section is not None and is_read(name)}
-    readable = {name: own for name, own in spec.sensors.items() if own.section is None or own.section in cut}
+    needed_sections = find_needed_sections(spec, selection)
+    readable = {
+        name: own for name, own in spec.sensors.items() if own.section is None or own.section in needed_sections
+    }
     if len(needed_bodies) == len(spec.bodies):
-        if len(cut) == len(spec.sections):
+        if len(needed_sections) == len(spec.sections):
             return spec
-        return spec._replace(sections=select_items(spec.sections, cut), sensors=readable)
+        return spec._replace(sections=select_items(spec.sections, needed_sections), sensors=readable)
     spec = spec._replace(sensors=readable)
     entries: dict[str, Any] = {
         "bodies": select_items(spec.bodies, needed_bodies),
-        "sections": select_items(spec.sections, cut),
+        "sections": select_items(spec.sections, needed_sections),
     }
     for block, bodies_by_name in find_all_bodies(spec).items():
         entries[block] = select_items(
             getattr(spec, block), {name for name, bodies in bodies_by_name.items() if bodies <= needed_bodies}
         )
     return spec._replace(**entries)
+
+
+def find_needed_sections(spec: Spec, selection: Selection) -> set[str]:
+    """Return the sections that the requested results show, or that requested sensors read."""
+    if selection.has_whole("sections") or IMPULSES in selection.reports:
+        return set(spec.sections)
+    needed = selection.names_in("sections")
+    if "joints" in selection.reports:
+        sensors = selection.names_in("sensors") if "joints" in selection.partial else spec.sensors
+        needed |= {own.section for name, own in spec.sensors.items() if own.section is not None and name in sensors}
+    return needed
 
 
 def select_items(items: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:

@@ -60,6 +60,17 @@ class MeasureRequest(NamedTuple):
     time: float | None = None
 
 
+class Peak(NamedTuple):
+    """An extreme with its time, and along a series of cuts its place; open_at: an instant at which the number is
+    indeterminate, if any.
+    """
+
+    value: float
+    time: float | None
+    place: CutPosition | None = None
+    open_at: float | None = None
+
+
 def find_reports(path: str) -> frozenset[str] | None:
     """Return the reports that a path needs; None if its first word does not say."""
     words = path.split(".")
@@ -166,17 +177,6 @@ def measure_impulse_along_cuts(request: MeasureRequest, numbers: PathValues, stu
 def find_impulse_time(results: Results, numbers: PathValues) -> float:
     """Return the time of the impulse whose number it is [s]."""
     return float(results.impulses[int(numbers.keys[1])]["time"])
-
-
-class Peak(NamedTuple):
-    """An extreme with its time, and along a series of cuts its place; open_at: an instant at which the number is
-    indeterminate, if any.
-    """
-
-    value: float
-    time: float | None
-    place: CutPosition | None = None
-    open_at: float | None = None
 
 
 SIDES = {"min": (-1.0,), "max": (1.0,), "abs": BOTH_SIDES}
