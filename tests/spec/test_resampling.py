@@ -11,7 +11,7 @@ import pytest
 from heuncli.base.errors import SpecError
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format.load import load
-from heuncli.scene.file_format.resampling import evaluate_points
+from heuncli.scene.file_format.table_signals import evaluate_points
 from tests.shared.scenes import near
 
 RNG = np.random.default_rng(5)

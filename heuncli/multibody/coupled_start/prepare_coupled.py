@@ -1,6 +1,7 @@
 """Prepare a mechanism to run with its couplings satisfied: multibody/tree/prepare.py, extended by couplings.
 
-Cams that cover only part of a turn must be on their lift at the start, and no wheel may lie flat on its plane."""
+Cams that cover only part of a turn must be on their lift at the start, and no wheel may lie flat on its plane.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +17,6 @@ from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, prepare
 from heuncli.multibody.tree.starts import body_state
-
-# Prepare coupled
 
 
 def prepare_coupled(mechanism: Mechanism, t0: float = 0.0, stages: Stages = NO_CACHE) -> PreparedScene:
@@ -40,9 +39,6 @@ def prepare_coupled(mechanism: Mechanism, t0: float = 0.0, stages: Stages = NO_C
     return prepare(mechanism, t0, stages, with_couplings)
 
 
-# Lifts
-
-
 def require_lifts(layout: Layout, t: float) -> None:
     """Raise SolveError [path-ends] for every cam whose disc is off its lift."""
     problems = list(iter_lift_problems(layout, t))
@@ -51,7 +47,7 @@ def require_lifts(layout: Layout, t: float) -> None:
 
 
 def iter_lift_problems(layout: Layout, t: float) -> Iterator[Problem]:
-    """Yield the problems of such cams; a driven disc is where its drive puts it."""
+    """Yield a problem for every cam whose disc is off its lift; a driven disc is where its drive puts it."""
     for coupling in layout.mechanism.couplings:
         part = coupling.rows[0].parts[0] if coupling.rows else None
         if part is None or part.cam is None or part.cam.lift.period:
@@ -66,9 +62,6 @@ def iter_lift_problems(layout: Layout, t: float) -> Iterator[Problem]:
         message += f"its lift, which covers {first:.6g} to {last:.6g} deg"
         hint = "start it within the lift (initial, or the drive), or give the lift a period"
         yield Problem("path-ends", message, hint=hint, entry_path=f"couplings.{coupling.name}")
-
-
-# Upright
 
 
 def require_upright(mechanism: Mechanism, start: Assembly) -> None:

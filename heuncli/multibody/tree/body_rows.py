@@ -28,7 +28,7 @@ from heuncli.scene.expressions.paths import Path
 from heuncli.scene.shapes.rotations import cross_rows, quaternion_from_matrix
 
 IDENTITY = np.eye(3)
-Scalar = tuple[int, Array, str, float, float]  # of a freedom: kind, direction, quantity, coordinate, rate
+Scalar = tuple[int, Array, str, float, float]  # a freedom: kind, direction, quantity, coordinate, rate
 
 
 class TreeRows:

@@ -22,7 +22,7 @@ from heuncli.results.results import Array
 Table = np.ndarray[Any, np.dtype[np.void]]
 
 NUMBERS = {"int": np.dtype(np.intc), "float": np.dtype(np.float64)}
-Program = tuple[int, int]  # of a value in time: where it starts among the pack's, and how long it is
+Program = tuple[int, int]  # the program of a value in time: its start in the pack, its length
 NO_PROGRAM: Program = (0, 0)
 ZERO = (0.0, 0.0, 0.0)
 Vector = Array | Sequence[float]
@@ -93,7 +93,8 @@ SOLUTION_PARTS = {
     "parts": _solution_dtype("f m Q on_a on_b", "gap"),
     "whole": _solution_dtype("", "gap idle pivot residual"),
 }
-# Of one column: of loads, of a cause, or of a blow (jumps of velocities, impulses of the joints); multipliers follow.
+# The parts of one column: loads, one cause, or an impact (jumps of velocities, impulses of the joints); multipliers
+# follow.
 COLUMN_PARTS = {
     "bodies": _solution_dtype("alpha a joint_moment joint_force"),
     "freedoms": _solution_dtype("", "udot drive"),
@@ -127,7 +128,7 @@ def _limits(values: tuple[tuple[str, float], ...]) -> Table:
 
 # Flat
 
-TILTS = {"xz": 0.0, "yz": 0.0, "zx": 0.0, "zy": 0.0, "zz": 1.0}  # of an attitude that is a turn about z
+TILTS = {"xz": 0.0, "yz": 0.0, "zx": 0.0, "zy": 0.0, "zz": 1.0}  # the entries that all rotation matrices about z share
 
 
 def moves_in_plane(bodies: Table, freedoms: Table) -> bool:

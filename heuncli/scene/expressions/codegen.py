@@ -45,7 +45,7 @@ class Operation(NamedTuple):
 
 
 MAX_OLDER_ENTRIES = 7  # older calculations stored for one text, besides the latest
-NumberSource = float | str | Operation  # of a number: a literal, a parameter's name, or an operation
+NumberSource = float | str | Operation  # where a number comes from: a literal, a parameter's name, or an operation
 
 
 class Calculation(NamedTuple):
@@ -156,7 +156,7 @@ class CodeGenerator:
         self.held_branches: list[str] = []
         self.out_of_range: Finding | None = None  # a table at a constant outside its range: an error ...
         self.branches = False  # ... unless it may be in a branch that is not chosen
-        self.sources: list[NumberSource] | None = []  # of the constants; None: a choice depends on one of them
+        self.sources: list[NumberSource] | None = []  # sources of the constants; None: a choice depends on one of them
 
     def make_expression(self, text: str, part: Part) -> Expression:
         """Make the expression of a part. Raises Finding if it is constant and not finite."""

@@ -19,7 +19,7 @@ from heuncli.scene.expressions.programs import Expression, TableFunction
 
 # Curves
 
-COEFFICIENTS = 4  # of a cubic
+COEFFICIENTS = 4  # a cubic has four
 
 
 def interpolate_points(

@@ -37,7 +37,7 @@ class MeasuredDimension(NamedTuple):
 FREE = MeasuredDimension("free")
 FACTOR = MeasuredDimension("factor")
 WHOLE = MeasuredDimension("factor", literal=True)
-COORDINATES = {  # of joints, of points, of loads
+COORDINATES = {  # the coordinates that joints, points and loads have
     "angle": NUMBER, "rate": RATE, "travel": LENGTH, "speed": VELOCITY,
     "length": LENGTH, "deflection": LENGTH, "turn": NUMBER,  # coordinates of loads
     **dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("vx", "vy", "vz"), VELOCITY),

@@ -193,7 +193,7 @@ class SwitchSearch:
         self.expression, self.switch, self.grid = expression, switch, grid
         self.decide = _evaluate_program(expression, switch.decision)
         self.bound_decision = _enclose_program(expression, switch.decision)
-        margin = switch.margin or switch.decision[:-4]  # of a table, the argument
+        margin = switch.margin or switch.decision[:-4]  # a table's margin is its argument
         rises = switch.margin is None or switch.decision[-2] in MONOTONIC_OPERATIONS
         self.bound_margin = _enclose_program(expression, margin) if rises else None
         self.branch: dict[float, float] = {}

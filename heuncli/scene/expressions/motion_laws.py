@@ -69,7 +69,7 @@ Pieces = Sequence[tuple[float, Formula]]  # the end of each piece, and the value
 
 # Laws from 0 to 1
 
-MODSINE_DIVISOR = 4.0 + PI  # of the modified sine
+MODSINE_DIVISOR = 4.0 + PI  # divides the modified sine so that its rise is 1
 MODTRAP_ACCELERATION = 8.0 * PI / (2.0 + PI)  # largest acceleration of the modified trapezoid
 V1 = MODTRAP_ACCELERATION / (4.0 * PI)  # its velocity at x = 1/8
 S1 = MODTRAP_ACCELERATION / (4.0 * PI) * (0.125 - 0.25 / PI)  # its value there

@@ -37,7 +37,7 @@ SEGMENT_LAWS: dict[str, Pieces] = {
     "linear": [(1.0, lambda x: x)],
     "parabola": [(0.5, lambda x: 2.0 * x**2), (1.0, reflect(lambda x: 2.0 * x**2))],
     "harmonic": [(1.0, lambda x: 0.5 - 0.5 * cos(PI * x))],
-    "trapezoid": [  # of the rate: it rises, stays and falls for a third each
+    "trapezoid": [  # named by its rate, which rises, stays and falls for a third each
         (1.0 / 3.0, lambda x: 2.25 * x**2),
         (2.0 / 3.0, lambda x: 1.5 * x - 0.25),
         (1.0, reflect(lambda x: 2.25 * x**2)),

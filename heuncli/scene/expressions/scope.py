@@ -1,7 +1,7 @@
-"""The words of an expression: its tokens, the names it may use, and the errors of other names and of dimensions.
+"""The names that an expression may use, and the errors of other names and of dimensions.
 
-Tokens are numbers, names and marks. For names of other programs and of results, others are proposed. A point of a body
-is named points.BODY.POINT.x, or points.POINT.x if only one body has it.
+For the names that other programs and heun's results use, the accepted ones are proposed. A point of a body is named
+points.BODY.POINT.x, or points.POINT.x if only one body has it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping, Sequence
-from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -23,22 +22,6 @@ from heuncli.results.results_schema import ROWS, SHARED_BLOCKS
 from heuncli.scene.expressions.codegen import MAX_NODES, CalculationCache
 from heuncli.scene.expressions.motion_laws import ARGUMENTS
 from heuncli.scene.expressions.programs import POINTS, TableFunction
-
-# Tokens
-
-TOKEN = re.compile(
-    r"\s*+(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
-)
-MAX_CACHED_TEXTS = 1024  # size of the cache: variants of a spec parse the same texts again
-END_PADDING = ("",) * 4  # the parser looks ahead this far
-
-
-@lru_cache(maxsize=MAX_CACHED_TEXTS)
-def tokenize(text: str) -> tuple[tuple[tuple[str, str, int], ...], tuple[str, ...], tuple[str, ...]]:
-    """Split a text into tokens: kind, word and end of each; then kinds and words alone, padded after the last."""
-    found = tuple((one.lastgroup or "", one[one.lastgroup or 0], one.end()) for one in TOKEN.finditer(text))
-    return found, tuple(kind for kind, _, _ in found) + END_PADDING, tuple(word for _, word, _ in found) + END_PADDING
-
 
 # Names
 
@@ -80,7 +63,7 @@ GROUND = "ground"
 QUANTITIES = ("x", "y", "z", "vx", "vy", "vz")
 POINT_FORM_HINT = f"a point is {POINTS}.BODY.POINT.x, y, z [m] or .vx, .vy, .vz [m/s], world axes"
 
-Points = Mapping[str, Collection[str]]  # of each body and of the ground
+Points = Mapping[str, Collection[str]]  # names of the points of each body and of the ground
 
 
 def resolve_point(text: str, words: Sequence[str], points: Points) -> tuple[str, str, str]:

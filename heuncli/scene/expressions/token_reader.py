@@ -1,10 +1,29 @@
-"""The tokens of one text, read from left to right, and the errors of tokens that are not expected, with their hints."""
+"""Split the text of an expression into tokens, read them from left to right, and report those that are not expected.
+
+Tokens are numbers, names and marks; each error has a hint.
+"""
 
 from __future__ import annotations
 
+import re
+from functools import lru_cache
+
 from heuncli.base.errors import Finding
 from heuncli.base.units import unit_place_hint
-from heuncli.scene.expressions.scope import WORDS, Scope, tokenize
+from heuncli.scene.expressions.scope import WORDS, Scope
+
+TOKEN = re.compile(
+    r"\s*+(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
+)
+MAX_CACHED_TEXTS = 1024  # size of the cache: variants of a spec parse the same texts again
+END_PADDING = ("",) * 4  # the parser looks ahead this far
+
+
+@lru_cache(maxsize=MAX_CACHED_TEXTS)
+def tokenize(text: str) -> tuple[tuple[tuple[str, str, int], ...], tuple[str, ...], tuple[str, ...]]:
+    """Split a text into tokens: kind, word and end of each; then kinds and words alone, padded after the last."""
+    found = tuple((one.lastgroup or "", one[one.lastgroup or 0], one.end()) for one in TOKEN.finditer(text))
+    return found, tuple(kind for kind, _, _ in found) + END_PADDING, tuple(word for _, word, _ in found) + END_PADDING
 
 
 class TokenReader:

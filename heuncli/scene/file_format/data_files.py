@@ -74,7 +74,7 @@ def iter_workbook_rows(content: bytes | bytearray, sheet: str | None) -> Iterato
     openpyxl = import_extra("openpyxl")
     try:
         book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True, keep_links=False)
-    except Exception:  # of many kinds, by what is broken in the file
+    except Exception:  # its type depends on what is broken in the file
         raise Finding("table-file", "its workbook is damaged", CSV_HINT) from None
     names = [one.title for one in book.worksheets]
     if not names or (sheet is not None and sheet not in names):

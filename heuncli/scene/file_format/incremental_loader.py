@@ -59,7 +59,7 @@ WHOLE_FIELDS = (
     "cases",
     "labels",
     "warnings",
-)  # of a scene
+)  # fields of a scene that are reused as a whole or not at all
 
 
 class IncrementalLoader(SpecLoader):

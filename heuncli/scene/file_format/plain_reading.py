@@ -202,7 +202,7 @@ def make_model_reader(schema: CoreSchema) -> Reader:
     return read
 
 
-# Of each type of schema: what makes its reader, and the keys that this reads besides `type`.
+# For each type of schema: the function that makes its reader, and the keys of the schema that it uses besides `type`.
 MAKERS: dict[str, tuple[Callable[[CoreSchema], Reader], frozenset[str]]] = {
     kind: (maker, frozenset(keys.split()))
     for kind, maker, keys in (

@@ -250,7 +250,7 @@ def list_known_keys(path: Path_, model: type[Entry]) -> list[str]:
 # Missing types
 
 PLACE_KEYS = frozenset({"from", "to", "on", "joint", "of", "body", "at"})  # these alone do not tell a type
-NOUNS = {"friction": "friction", "distributed": "a distributed load"}  # of types that are not nouns with an article
+NOUNS = {"friction": "friction", "distributed": "a distributed load"}  # words for types whose name takes no article
 
 
 def missing_type_errors(

@@ -1,9 +1,13 @@
-"""Apply the keys of a table that treat its points as a measured signal: smooth, derivative, integral, drift.
+"""Apply the keys of a table that treat its points as a measured signal: smooth, derivative, integral, drift, resample.
 
 The points (x, y) are smoothed by a spline with a cut-off, then differentiated or integrated; the table interpolates
 the result. Smoothing and differentiation are approximations: notes state the cut-off, what smoothing removed, and an
 estimate of the derivative's error. The integral is that of the interpolating curve, exact at the points; points are
 added until the new table is right between them, too. The mathematics stands in expressions/measured_signals.py.
+
+The table is resampled last, at even steps. Steps that are longer than half of the period at the cut-off would not show
+what the low pass keeps (sampling theorem), and are refused. Without a low pass, a note says how far the points that are
+left out are from the resampled curve.
 """
 
 from __future__ import annotations
@@ -32,7 +36,7 @@ from heuncli.scene.expressions.measured_signals import (
 from heuncli.scene.expressions.programs import TableFunction
 from heuncli.scene.file_format.format import TableEntry
 
-INTEGRAL_ERROR = 1e-9  # of the range of an integral, between its points
+INTEGRAL_ERROR = 1e-9  # largest error between the points, as a part of the integral's range
 MAX_ADDED_PIECES = 20_000  # pieces between points at which an integral is compared; larger tables are fine enough
 MAX_CUT_OFF_STEPS = 1e5  # median steps of x; beyond, the smoothed values lose more than eight digits to rounding
 ORDER_WORDS = {1: "once", 2: "twice"}
@@ -219,3 +223,59 @@ def format_amount(value: float, dimension: Dimension | None) -> str:
     """Format a number in SI with its unit, or without one if the dimension is unknown."""
     unit = si_unit(dimension) if dimension is not None and any(dimension) else ""
     return f"{value:.3g} {unit}".strip()
+
+
+# Resampling
+
+RESAMPLE_KEY = "resample"
+MIN_RESAMPLED_STEPS, MAX_RESAMPLED_STEPS = 4, 1_000_000
+PIECE_COEFFICIENTS = 4  # a piece of a table is a cubic
+
+
+def resample_table(table: TableFunction, entry: TableEntry) -> TableFunction:
+    """Return a table through points at even steps, about as long as its entry says. Raises SignalKeyError."""
+    assert entry.resample is not None and entry.resample.constant is not None
+    asked, own, expected = entry.resample.constant, entry.resample.dimension, table.dimensions[0]
+    if own is not None and expected is not None and own != expected:
+        hint = "give the step in the unit of x" + (", or the rate in Hz" * (expected == TIME))
+        raise SignalKeyError(
+            RESAMPLE_KEY, f"the step is {describe(own)}, but x is {describe(expected)}", hint, "dimension"
+        )
+    x = np.frombuffer(table.x)
+    span = float(x[-1] - x[0])
+    if asked <= 0.0:
+        raise SignalKeyError(RESAMPLE_KEY, f"the step is {asked:g}", "give a step above 0, or a rate in Hz")
+    count = max(round(span / asked), 1)
+    if not MIN_RESAMPLED_STEPS <= count <= MAX_RESAMPLED_STEPS:
+        message = f"the table of length {format_amount(span, expected)} takes {count:,} steps"
+        raise SignalKeyError(
+            RESAMPLE_KEY, message, f"choose a step that gives {MIN_RESAMPLED_STEPS} to {MAX_RESAMPLED_STEPS:,} of them"
+        )
+    step = span / count
+    cut_off = None if entry.smooth is None else entry.smooth.constant
+    if cut_off is not None and step > 0.5 * cut_off:
+        message = f"steps of {format_amount(step, expected)} lose what smooth keeps"
+        raise SignalKeyError(
+            RESAMPLE_KEY, message, f"give at most {format_amount(0.5 * cut_off, expected)}, or a longer smooth"
+        )
+    places = np.linspace(x[0], x[-1], count + 1)
+    y = evaluate_points(table, places)
+    if entry.period is not None:
+        y[-1] = y[0]
+    columns = array("d", places.tobytes()), array("d", y.tobytes())
+    made = interpolate_points(table.name, *columns, table.interpolation, entry.outside, entry.period)
+    rows = evaluate_points(made, x) - np.frombuffer(table.y)
+    deviation, rms = (format_amount(float(size), table.dimensions[1])
+                      for size in (np.abs(rows).max(), np.sqrt(np.mean(rows**2))))  # fmt: skip
+    steps = f"{count:,} steps of {format_amount(step, expected)}"
+    note = f"table {table.name}: resampled, {steps}; its {len(x):,} points deviate by up to {deviation}, {rms} (rms)"
+    return replace(made, dimensions=table.dimensions, notes=(*table.notes, note))
+
+
+def evaluate_points(table: TableFunction, places: Array) -> Array:
+    """Return the values of a table at places within its range."""
+    numbers, count = np.frombuffer(table.numbers), table.pieces
+    knots = numbers[1 : count + 2]
+    pieces = np.clip(np.searchsorted(knots, places, side="right") - 1, 0, count - 1)
+    coefficients = numbers[count + 2 :].reshape(-1, PIECE_COEFFICIENTS)[pieces]
+    return np.asarray(np.polynomial.polynomial.polyval(places - knots[pieces], coefficients.T, tensor=False))

@@ -29,8 +29,13 @@ from heuncli.scene.file_format.format import TableEntry
 from heuncli.scene.file_format.headings import find_heading_unit
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.quantity import Scope, read_number
-from heuncli.scene.file_format.resampling import resample_table
-from heuncli.scene.file_format.table_signals import SignalKeyError, check_signal_keys, has_signal_keys, prepare_signal
+from heuncli.scene.file_format.table_signals import (
+    SignalKeyError,
+    check_signal_keys,
+    has_signal_keys,
+    prepare_signal,
+    resample_table,
+)
 
 # hints
 SLOPES_HINT = "keep x and y within about ten powers of ten; x_unit and y_unit set their units"

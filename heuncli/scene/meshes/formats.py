@@ -99,7 +99,7 @@ def _find_first_invalid(kind: type[float], words: Sequence[bytes]) -> int:
 
 # Polygons
 
-MAX_CORNERS = 10_000  # of one face
+MAX_CORNERS = 10_000  # largest number of corners of a face
 
 
 def triangulate_words(rows: Sequence[Sequence[bytes]]) -> IndexArray:

@@ -17,7 +17,6 @@ from heuncli.scene.file_format.rules import (  # noqa: F401 (each registers its 
     rolling,
     sections,
     segments,
-    sensors,
     stops,
 )
 from heuncli.scene.file_format.rules.registry import RULES, DraftDocument, Rule, Violation, iter_violations

@@ -1,4 +1,5 @@
-"""Rules about joints and drives: between two bodies, along valid directions, driven without contradiction.
+"""Rules about joints and drives: between two bodies, along valid directions, with possible bearings, driven
+without contradiction.
 
 Rules about motors: given by a curve or by two consistent numbers; their rotors have names of their own.
 """
@@ -99,6 +100,26 @@ def check_same_point(draft: DraftDocument) -> Iterator[Violation]:
 
 def make_end_key(end: EndEntry) -> tuple[str, object]:
     return end.body, end.at
+
+
+@rule("bearings-form")
+def check_bearing_pairs(draft: DraftDocument) -> Iterator[Violation]:
+    """Two bearings are apart, on a joint that holds its axis; one of them carries the axial load if the joint does."""
+    for name, joint in draft.document.joints.items():
+        pair, kind, path = joint.bearings, TYPES[joint.type], ("joints", name, "bearings")
+        if pair is None:
+            continue
+        first, second = pair.at
+        if not kind.carries_tilting:
+            known = format_kind_names([kind for kind in TYPES.values() if kind.carries_tilting], "or")
+            message = f"a {joint.type} carries no tilting moment about an axis, so it cannot stand for two bearings"
+            yield Violation(path, message, f"two bearings make a {known}", key=True)
+        elif pair.axial is not None and kind.shifts:
+            message = f"a {joint.type} slides along its axis, so no bearing carries an axial load"
+            yield Violation((*path, "axial"), message, "leave it out", key=True)
+        if abs(second - first) <= tolerances.SAME_VALUE * max(abs(first), abs(second)):
+            message = f"both bearings are at {first:g} m, where they cannot carry a tilting moment"
+            yield Violation((*path, "at"), message, "give two places along the axis, from the `to` point")
 
 
 @rule("duplicate-joint", is_warning=True)

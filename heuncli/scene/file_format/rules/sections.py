@@ -1,5 +1,7 @@
 """Rules about sections: one cut or a series of cuts, in a body with known mass distribution, with properties in one
 form.
+
+A rule about sensors: each reads the load of a cut, or the reaction of a joint.
 """
 
 from __future__ import annotations
@@ -7,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.base import tolerances
+from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format as f
 from heuncli.scene.file_format.rotations import are_parallel
 from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
@@ -212,3 +215,26 @@ def check_deflection_form(draft: DraftDocument) -> Iterator[Violation]:
         for key, hint in (("properties", "add properties: auto"), ("modulus", "add modulus: 210 GPa, for steel")):
             if getattr(section, key) is None:
                 yield Violation((*path, "deflection"), f"a deflection needs {key}", hint, key=True)
+
+
+# Sensors
+
+
+@rule("sensor-of")
+def check_sensor_source(draft: DraftDocument) -> Iterator[Violation]:
+    """A sensor reads the reaction of a joint, or the load of a single cut."""
+    entries = draft.names.entries
+    for name, sensor in draft.document.sensors.items():
+        path = ("sensors", name, "of")
+        block, _, source = sensor.of.partition(".")
+        if block not in ("joints", "sections") or not source:
+            owner = next((own for own in ("joints", "sections") if sensor.of in entries[own]), None)
+            hint = f"write {owner}.{sensor.of}" if owner else "write joints.NAME or sections.NAME"
+            yield Violation(path, f"'{sensor.of}' is not a reaction", hint)
+        elif source not in entries[block]:
+            yield Violation(path, f"'{source}' is not a {block[:-1]}", suggest(source, entries[block], block) or "")
+        elif (
+            block == "sections" and source in draft.document.sections and is_cut_series(draft.document.sections[source])
+        ):
+            hint = "give the section one cut: at and normal"
+            yield Violation(path, f"'{source}' is a series of cuts, and a sensor has one place", hint)

@@ -37,7 +37,7 @@ from heuncli.scene.importers.spec_text import format_decimal
 from heuncli.scene.shapes.rotations import quaternion_from_matrix, vector_from_quaternion
 
 ROTATION_TOLERANCE = 1e-6  # deviation of a rotation matrix: people write quaternions to about six digits
-STRAIGHT_TENDON_SITES = 2  # of a tendon that runs straight
+STRAIGHT_TENDON_SITES = 2  # a tendon through two sites runs straight
 
 AssignName = Callable[[str], str]
 

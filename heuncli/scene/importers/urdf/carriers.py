@@ -196,7 +196,7 @@ class RobotPoints:
 # Links
 
 TYPES = {"revolute": "pin", "continuous": "pin", "prismatic": "slide"}
-BALL = "ball"  # of SDF
+BALL = "ball"  # a type of joint that only SDF has
 UNIT_LENGTH_TOLERANCE = 1e-6  # deviation from length 1 of an axis typed with seven digits
 
 
