@@ -22,11 +22,18 @@ from heuncli.base.tolerances import EPS
 DerivativeKind = Literal["", "nothing", "one-sided", "kink", "refused"]
 
 
+class BoundedValue(NamedTuple):
+    """A number and its error."""
+
+    value: float
+    error: float
+
+
 class NoisyDerivative(NamedTuple):
     """dm/dp within an error, in units of m and p.
 
-    kind: "nothing" if m does not depend on p; "one-sided"; "kink", with the derivatives `left` and `right` of it and
-    their errors; "refused", with the reason in `why`
+    kind: empty for an ordinary derivative; "nothing" if m does not depend on p; "one-sided" if m exists on one side
+    only; "kink", with the derivatives on both sides in `left` and `right`; "refused", with the reason in `why`
     step: half the distance of the variants used; at a kink, how far from the number it may be
     """
 
@@ -34,57 +41,19 @@ class NoisyDerivative(NamedTuple):
     error: float = 0.0
     kind: DerivativeKind = ""
     why: Reason = Reason()
-    left: tuple[float, float] | None = None
-    right: tuple[float, float] | None = None
+    left: BoundedValue | None = None
+    right: BoundedValue | None = None
     step: float = 0.0
 
 
-class Contribution(NamedTuple):
-    """Effect of one number's tolerance on a measure: by the derivative, and by the variants within it.
-
-    size: largest known change, within an error; None if unknown
-    linear: change predicted by the derivative; below, above: changes at the ends, None if unsolved
-    bent: the variants do not lie on the derivative's line; the tolerance was then searched with `variants` variants,
-    `least` and `greatest` give distance and change of the extremes
-    why: the reason if a part of the tolerance range cannot be solved
-    """
-
-    name: str
-    spread: float
-    unit: str
-    size: float | None
-    error: float
-    linear: float | None
-    below: float | None
-    above: float | None
-    bent: bool = False
-    least: tuple[float, float] | None = None
-    greatest: tuple[float, float] | None = None
-    variants: int = 0
-    why: Reason = Reason()
-
-
-class SpreadSum(NamedTuple):
-    """Combined effect of all tolerances on a measure, each way: worst case and root sum of squares, with errors; None
-    if unknown.
-
-    corners: the measure with every number where it lowers it most, and where it raises it most
-    by_variant: the worst case comes from a variant, as that exceeds the sum
-    largest: the largest change of a variant of several numbers, with its error
-    """
-
-    contributions: tuple[Contribution, ...]
-    worst: tuple[float, float] | None
-    square: tuple[float, float] | None
-    corners: tuple[NoisyValue, NoisyValue]
-    by_variant: bool = False
-    largest: tuple[float, float] | None = None
-
-
+BELOW, ABOVE = -1, 1  # the side of the number; the numbers are signs of the distance
 FIRST_STEP, MAX_STEP, MIN_STEP = 2.0**-8, 2.0**-4, 2.0**-24  # steps, relative to the number's size
+MIN_FIRST_STEP = 2.0**-12  # the first step is no smaller, however large the run's error
 SUFFICIENT_ERROR = 1e-6  # error relative to the derivative, small enough to keep the step
 IMBALANCE = 4.0  # ratio of noise and difference of two steps above which the step is changed
+STEP_CHANGE = 4.0  # factor by which it is changed
 MAX_STEP_CHANGES = 5
+EDGE_REDUCTION = 64.0  # factor by which the step shrinks once, if no side has values at the first one
 KINK_RATIO = 0.75  # K(h/2) / K(h) of a kink, at least: 1/2 where m is smooth, 1 at a kink
 JUMP_RATIO = 1.5  # K(h/2) / K(h) of a jump, at least: 1 at a kink, 2 at a jump
 # difference of two steps relative to a one-sided derivative: above it, and far above the noise, there is no derivative
@@ -103,11 +72,12 @@ NOT_SMOOTH_CODE = "not-smooth"
 
 
 class StepPair(NamedTuple):
-    """Differences at a step and its half: the derivative, and what its error consists of.
+    """Differences over a step and its half: the derivative, and the parts of its error.
 
     value: derivative extrapolated from both
-    difference: that of the two; excess: see above, 0 on one side
+    difference: |D(h/2) - D(h)|
     noise: effect of the errors of the measure
+    excess: |K(h/2) - K(h)/2|; 0 on one side, where it is unknown
     """
 
     step: float
@@ -125,7 +95,9 @@ class StepPair(NamedTuple):
 class Differences:
     """Finite differences of a measure about a number.
 
-    evaluate: function that gives the measure at a distance from the number
+    evaluate: gives the measure at a distance from the number
+    rounding: by how much a distance differs from the requested one, because the number is rounded
+    base: the measure at the number itself
     """
 
     def __init__(self, evaluate: Callable[[float], NoisyValue], number: float) -> None:
@@ -136,6 +108,14 @@ class Differences:
     def has_values(self, *distances: float) -> bool:
         """Return whether the measure exists at all these distances."""
         return all(self.evaluate(distance).value is not None for distance in distances)
+
+    def has_central_values(self, step: float) -> bool:
+        """Return whether the measure exists on both sides at a step and its half."""
+        return self.has_values(step, -step, 0.5 * step, -0.5 * step)
+
+    def has_side_values(self, step: float, side: int) -> bool:
+        """Return whether the measure exists on one side at a step, its half and its quarter."""
+        return self.has_values(*(0.25 * step * side * k for k in (1, 2, 4)))
 
     def get_value(self, distance: float) -> float:
         """Return the measure at a distance; it must exist."""
@@ -172,19 +152,20 @@ class Differences:
         deviation = abs(self.compute_central_difference(third_step) - expected)
         return deviation <= MAX_DEVIATION * pair.difference + pair.excess + pair.noise
 
-    def compute_side_pair(self, step: float, sign: int, start: float = 0.0) -> StepPair:
-        """Return one-sided differences, extrapolated from a start distance to the number: at a step, its half, its
-        quarter.
+    def compute_side_pair(self, step: float, side: int, start: float = 0.0) -> StepPair:
+        """Return the differences on one side over a step, its half and its quarter, extrapolated to the number.
+
+        start: distance from the number at which the steps begin
         """
-        base, lengths = self.get_value(sign * start), (step, 0.5 * step, 0.25 * step)
-        ends = [sign * (start + length) for length in lengths]
+        base, lengths = self.get_value(side * start), (step, 0.5 * step, 0.25 * step)
+        ends = [side * (start + length) for length in lengths]
         first, second, third = (
-            (self.get_value(end) - base) / (sign * length) for end, length in zip(ends, lengths, strict=True)
+            (self.get_value(end) - base) / (side * length) for end, length in zip(ends, lengths, strict=True)
         )
         value, coarser = 2.0 * third - second, 2.0 * second - first
-        error = self.get_largest_error(sign * start, *ends)
+        error = self.get_largest_error(side * start, *ends)
         noise = SIDE_NOISE_FACTOR * error / step + 4.0 * abs(value) * self.rounding / step
-        shift = start * 8.0 * abs(third - second) / step  # the second derivative, over the distance
+        shift = start * 8.0 * abs(third - second) / step  # by the second derivative, over the start distance
         return StepPair(step, value, abs(value - coarser) + shift, noise)
 
     def measure_slope_change(self, step: float) -> tuple[float, float]:
@@ -197,7 +178,7 @@ def compute_derivative(evaluate: Callable[[float], NoisyValue], number: float, s
     """Compute dm/dp at a number.
 
     evaluate: function that gives m at a distance from the number
-    size: range over which the number is expected to matter; all steps are relative to it
+    size: range over which the number is expected to change the measure; all steps are relative to it
     """
     differences = Differences(evaluate, number)
     if differences.base.value is None:
@@ -207,21 +188,18 @@ def compute_derivative(evaluate: Callable[[float], NoisyValue], number: float, s
         has_below, has_above = differences.has_values(-step, -0.5 * step), differences.has_values(step, 0.5 * step)
         if has_below and has_above:
             return compute_central(differences, step, size)
-        if (has_below or has_above) and differences.has_values(
-            *(0.25 * step * (1 if has_above else -1) * k for k in (1, 2, 4))
-        ):
-            return compute_one_sided(differences, step, 1 if has_above else -1, size)
-        step /= 64.0
-    return NoisyDerivative(None, kind="refused", why=evaluate(64.0 * step).why)
+        side = ABOVE if has_above else BELOW
+        if (has_below or has_above) and differences.has_side_values(step, side):
+            return compute_one_sided(differences, step, side, size)
+        step /= EDGE_REDUCTION
+    return NoisyDerivative(None, kind="refused", why=evaluate(EDGE_REDUCTION * step).why)
 
 
 def choose_first_step(base: NoisyValue, size: float) -> float:
-    """Return the step, `size` times a power of two, at which the run's error balances a third derivative of the
-    measure's own size.
-    """
+    """Return `size` times the power of two at which the run's error balances a third derivative of its own size."""
     relative = base.error / abs(base.value) if base.value else 0.0
     step = FIRST_STEP
-    while step**3 > 8.0 * NOISE_FACTOR * relative and step > 2.0**-12:
+    while step**3 > 8.0 * NOISE_FACTOR * relative and step > MIN_FIRST_STEP:
         step *= 0.5
     return step * size
 
@@ -230,9 +208,7 @@ def compute_central(differences: Differences, step: float, size: float) -> Noisy
     """Compute the derivative by differences on both sides."""
     if all(differences.get_value(x) == differences.get_value(0.0) for x in (step, -step, 0.5 * step, -0.5 * step)):
         return NoisyDerivative(0.0, kind="nothing", step=step)
-    pairs = [
-        find_best_pair(differences.compute_pair, lambda x: differences.has_values(x, -x, 0.5 * x, -0.5 * x), step, size)
-    ]
+    pairs = [find_best_pair(differences.compute_pair, differences.has_central_values, step, size)]
     quadratic = [each for each in pairs if differences.is_quadratic(each)]
     if (
         not quadratic
@@ -260,7 +236,7 @@ def compute_smaller_steps(differences: Differences, first_pair: StepPair, size: 
     """Compute differences at smaller steps, until the noise exceeds all else."""
     pairs: list[StepPair] = []
     step = STEP_REDUCTION * first_pair.step
-    while step >= MIN_STEP * size and differences.has_values(step, -step, 0.5 * step, -0.5 * step):
+    while step >= MIN_STEP * size and differences.has_central_values(step):
         pairs.append(differences.compute_pair(step))
         if pairs[-1].noise > max(pairs[-1].difference, pairs[-1].excess):
             break
@@ -268,7 +244,7 @@ def compute_smaller_steps(differences: Differences, first_pair: StepPair, size: 
     return pairs
 
 
-def compute_one_sided(differences: Differences, step: float, sign: int, size: float) -> NoisyDerivative:
+def compute_one_sided(differences: Differences, step: float, side: int, size: float) -> NoisyDerivative:
     """Compute the derivative on the side that has values, at smaller steps if these give another derivative.
 
     From one side, a kink at c does not show at steps much larger than c: they give the derivative beyond it. So smaller
@@ -276,13 +252,13 @@ def compute_one_sided(differences: Differences, step: float, sign: int, size: fl
     """
 
     def has_step(x: float) -> bool:
-        """Return whether the measure is known at a step, its half and its quarter."""
-        return differences.has_values(*(0.25 * x * sign * k for k in (1, 2, 4)))
+        """Return whether the side has values at a step."""
+        return differences.has_side_values(x, side)
 
-    best = find_best_pair(lambda x: differences.compute_side_pair(x, sign), has_step, step, size)
-    largest, disagreement, step = abs(best.value), 0.0, 0.25 * best.step
+    best = find_best_pair(lambda x: differences.compute_side_pair(x, side), has_step, step, size)
+    largest, disagreement, step = abs(best.value), 0.0, best.step / STEP_CHANGE
     while step >= MIN_STEP * size and has_step(step):
-        pair = differences.compute_side_pair(step, sign)
+        pair = differences.compute_side_pair(step, side)
         largest = max(largest, abs(pair.value))
         if pair.noise > largest:
             break
@@ -291,8 +267,8 @@ def compute_one_sided(differences: Differences, step: float, sign: int, size: fl
             best, disagreement = pair, 0.0
         elif pair.error <= IMBALANCE * best.error:
             disagreement = max(disagreement, difference)
-        step *= 0.25
-    why = differences.evaluate(-sign * best.step).why
+        step /= STEP_CHANGE
+    why = differences.evaluate(-side * best.step).why
     if best.difference > SIGNIFICANCE * best.noise and best.difference > MAX_DISAGREEMENT * abs(best.value):
         return NoisyDerivative(None, kind="refused", why=why, step=best.step)
     return NoisyDerivative(best.value, best.error + disagreement, "one-sided", why, step=best.step)
@@ -307,9 +283,9 @@ def find_best_pair(
         if best.error <= SUFFICIENT_ERROR * abs(best.value):
             break
         if best.difference + best.excess > IMBALANCE * best.noise:
-            step *= 0.25
+            step /= STEP_CHANGE
         elif best.noise > IMBALANCE * best.difference:
-            step *= 4.0
+            step *= STEP_CHANGE
         else:
             break
         if not MIN_STEP * size <= step <= MAX_STEP * size or not has_step(step):
@@ -329,9 +305,9 @@ def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size:
     (full_change, _), (half_change, _) = (differences.measure_slope_change(x) for x in (step, distance))
     if kinked and half_change > JUMP_RATIO * full_change:
         return make_refusal(f"jump of {half_change * distance:.3g} within {distance:.2g} of the value", step)
-    sides = [compute_outside(differences, sign, distance, pairs[0].step, size) for sign in (-1, 1)]
+    sides = [compute_outside(differences, side, distance, pairs[0].step, size) for side in (BELOW, ABOVE)]
     largest = max((abs(each.value) for each in sides if each), default=0.0)
-    side_derivatives = [(each.value, each.error) for each in sides if each and is_determined(each, largest)]
+    side_derivatives = [BoundedValue(each.value, each.error) for each in sides if each and is_determined(each, largest)]
     if not kinked or len(side_derivatives) < 2:
         difference_text = f"two step sizes differ by {pairs[0].difference:.2g} of {pairs[0].value:.3g}"
         return make_refusal(f"{difference_text}: jump, kink or oscillation within {step:.2g} of the value", step)
@@ -346,17 +322,15 @@ def describe_kink_or_jump(differences: Differences, pairs: list[StepPair], size:
     )
 
 
-def compute_outside(differences: Differences, sign: int, distance: float, step: float, size: float) -> StepPair | None:
-    """Return the derivative on one side, outside of a distance within which the measure has a kink; None if it has no
-    values there.
-    """
+def compute_outside(differences: Differences, side: int, distance: float, step: float, size: float) -> StepPair | None:
+    """Return the derivative on one side, beyond a distance within which the measure has a kink; None without values."""
 
     def has_step(x: float) -> bool:
         """Return whether the measure is known at all places of a step."""
-        return differences.has_values(*(sign * (distance + x * part) for part in (0.0, 0.25, 0.5, 1.0)))
+        return differences.has_values(*(side * (distance + x * part) for part in (0.0, 0.25, 0.5, 1.0)))
 
     return (
-        find_best_pair(lambda x: differences.compute_side_pair(x, sign, distance), has_step, step, size)
+        find_best_pair(lambda x: differences.compute_side_pair(x, side, distance), has_step, step, size)
         if has_step(step)
         else None
     )

@@ -14,8 +14,8 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
-from heuncli.analyses.variants.evaluation import Values
 from heuncli.analyses.variants.measures import MISSING_KINDS, MeasureLabel, VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
@@ -139,8 +139,9 @@ def find_missing_words(reason: str, measures: Sequence[str]) -> dict[str, str]:
     }
 
 
-NOISE = 4.0  # times the errors of two values: their difference that is no jump
-WINDOW = 6  # samples, of which those in the middle are judged
+NOISE = 4.0  # ratio of a difference of two values to their errors up to which it is no jump
+WINDOW = 6  # samples that are in memory, of which the interval in the middle is judged
+LATER_SAMPLES, LAST_SAMPLES = 3, 2  # samples after the beginning of a judged interval; fewer where the course ends
 
 
 def is_jump(change: float, smooth_change: float, errors: float) -> bool:
@@ -173,7 +174,7 @@ class JumpFinder:
 
     def __init__(self, plan: Plan, measure_count: int) -> None:
         """measure_count: number of measures of each variant"""
-        self._axis = plan.axes[-1] if _has_course(plan) else None
+        self._axis = plan.course_axis
         self._course = -1
         self._windows: list[deque[SweptSample]] = [deque(maxlen=WINDOW) for _ in range(measure_count)]
         self.jumps: list[SweptJump] = []
@@ -201,26 +202,21 @@ class JumpFinder:
             value = math.nan if measured is None or measured.value is None else measured.value
             error = 0.0 if measured is None or measured.error is None else measured.error
             window.append(SweptSample(row.number, x, value, error))
-        self._judge(from_end=3)
+        self._judge(LATER_SAMPLES)
 
     def _end_course(self) -> None:
         """Judge what lacks the second neighbour behind it, and forget the course."""
-        self._judge(from_end=2)
+        self._judge(LAST_SAMPLES)
         for window in self._windows:
             window.clear()
 
-    def _judge(self, from_end: int) -> None:
-        """Judge the interval that begins so many samples before the last one."""
+    def _judge(self, later_count: int) -> None:
+        """Judge the interval that begins so many samples before the last one, by two intervals before it."""
         for k, window in enumerate(self._windows):
-            samples = list(window) if from_end == 3 else list(window)[-5:]
-            place = len(samples) - 1 - from_end
+            samples = list(window)[-(later_count + 3) :]
+            place = len(samples) - 1 - later_count
             if place >= 1 and is_swept_jump(samples, place):
                 self.jumps.append(SweptJump(k, samples[place], samples[place + 1]))
-
-
-def _has_course(plan: Plan) -> bool:
-    """Return whether the last axis varies alone, over numbers."""
-    return plan.draws is None and bool(plan.axes) and (not plan.together or len(plan.axes) == 1)
 
 
 def is_swept_jump(samples: Sequence[SweptSample], place: int) -> bool:

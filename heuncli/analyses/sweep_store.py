@@ -36,8 +36,8 @@ from heuncli.analyses.sweep_store_file import (
     require_store,
     write_head,
 )
-from heuncli.analyses.variants.evaluation import Values
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, WORKER_DIED, MeasureValue, VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.analyses.variants.plans import Plan
 from heuncli.base.errors import Problem, UsageError
 from heuncli.base.files import find_target
@@ -102,7 +102,7 @@ class Store:
         return int(found[0])
 
     def has_result(self, key: bytes) -> bool:
-        """Whether there is a result for the key."""
+        """Return whether there is a result for the key."""
         with convert_errors(self.name):
             return self.connection.execute("SELECT 1 FROM answers WHERE key = ?", (key,)).fetchone() is not None
 

@@ -21,7 +21,7 @@ from heuncli.base.errors import OutputError, Problem, UsageError
 from heuncli.version import VERSION
 
 APPLICATION_ID = 0x6865756E  # "heun": the application id in SQLite's header
-FORMAT_VERSION = 2  # of the tables and of the JSON in them; 1: values of parameters as texts
+FORMAT_VERSION = 2  # version of the tables and of the JSON in them; 1 had values of parameters as texts
 TABLES = (
     "CREATE TABLE heun (version TEXT NOT NULL)",
     "CREATE TABLE sweeps (number INTEGER PRIMARY KEY, identity BLOB NOT NULL UNIQUE, head TEXT NOT NULL, draws BLOB,"
@@ -31,10 +31,9 @@ TABLES = (
     "CREATE TABLE answers (key BLOB PRIMARY KEY, measures TEXT NOT NULL, code TEXT NOT NULL, reason TEXT NOT NULL,"
     " warnings TEXT NOT NULL) WITHOUT ROWID",
 )
-MAX_JOURNAL_PAGES = (
-    8000  # pages of the journal, 32 MB, after which it is written into the tables: each time waits for the disk
-)
-MAX_ATTEMPTS = 200  # to change the journal mode while another process does so: SQLite does not wait for that
+# pages of the journal, 32 MB, after which it is written into the tables; each time waits for the disk
+MAX_JOURNAL_PAGES = 8000
+MAX_ATTEMPTS = 200  # attempts to change the journal mode: SQLite does not wait for another process that does so
 RETRY_PAUSE = 0.05  # seconds
 NOT_A_STORE = "not-a-store"
 OTHER_FILE_HINT = "give another file; a new one is created"
@@ -116,7 +115,7 @@ def require_store(connection: sqlite3.Connection, name: str, may_be_empty: bool 
 
 
 def _is_empty(connection: sqlite3.Connection) -> bool:
-    """Whether there are no tables."""
+    """Return whether there are no tables."""
     return bool(connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0)
 
 

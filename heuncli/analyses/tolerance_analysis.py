@@ -1,13 +1,18 @@
-"""Combined effect on a measure of the tolerances of several numbers, as given by `--spread`."""
+"""Combine the effects of the tolerances of several numbers on a measure, as given by `--spread`.
+
+A number whose variants lie on the line of its derivative contributes derivative times tolerance. Otherwise the extremes
+within its tolerance are searched. The contributions add up to the worst case, and by their squares; variants with
+several numbers at once check the sum.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.sensitivity import BoundedValue, NoisyDerivative
 from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError
-from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
+from heuncli.analyses.variants.course_extremes import GREATEST, LEAST, find_extreme, refine_extreme
 from heuncli.analyses.variants.measures import NoisyValue, Reason
 from heuncli.analyses.variants.parameters import AxisError, split_at_commas, split_name
 from heuncli.analyses.variants.samples import Sample, make_sample
@@ -17,10 +22,10 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.units import describe, parse_unit
 from heuncli.scene.file_format.quantity import parse_number_with_unit
 
-LINEARITY_TOLERANCE = 0.05  # of the change predicted by the derivative
-INNER_FRACTION = 0.61  # of a tolerance: inner places between its ends and the value
+LINEARITY_TOLERANCE = 0.05  # relative difference from the change that the derivative predicts
+INNER_FRACTION = 0.61  # share of a tolerance: inner places between its ends and the value
 SCAN_COUNT, MAX_VARIANTS = 9, 60  # variants over a tolerance range that is searched: at first, and in all
-EXTREME_TOLERANCE = 1e-3  # of the range of the measure: error of its extremes
+EXTREME_TOLERANCE = 1e-3  # share of the range of the measure: error of its extremes
 MAX_STEPS = 30  # towards one extreme
 MAX_ROUNDS = 3  # through all numbers, one by one
 
@@ -30,6 +35,54 @@ class NumberSpread(NamedTuple):
 
     number: SpecNumber
     size: float
+
+
+class ChangeAt(NamedTuple):
+    """The change of a measure at a distance of a number from its value."""
+
+    distance: float
+    change: float
+
+
+class Contribution(NamedTuple):
+    """Effect of one number's tolerance on a measure: by the derivative, and by the variants within it.
+
+    size: largest known change, within an error; None if unknown
+    linear: change predicted by the derivative; below, above: changes at the ends, None if unsolved
+    is_nonlinear: the variants do not lie on the derivative's line; the tolerance was then searched with `variants`
+    variants for `least` and `greatest`, the extremes
+    why: the reason if a part of the tolerance range cannot be solved
+    """
+
+    name: str
+    spread: float
+    unit: str
+    size: float | None
+    error: float
+    linear: float | None
+    below: float | None
+    above: float | None
+    is_nonlinear: bool = False
+    least: ChangeAt | None = None
+    greatest: ChangeAt | None = None
+    variants: int = 0
+    why: Reason = Reason()
+
+
+class SpreadSum(NamedTuple):
+    """Combined effect of all tolerances on a measure, each way: worst case and root sum of squares; None if unknown.
+
+    corners: the measure with every number where it lowers it most, and where it raises it most
+    by_variant: the worst case comes from a variant, as that exceeds the sum
+    largest: the largest change of a variant of several numbers
+    """
+
+    contributions: tuple[Contribution, ...]
+    worst: BoundedValue | None
+    square: BoundedValue | None
+    corners: tuple[NoisyValue, NoisyValue]
+    by_variant: bool = False
+    largest: BoundedValue | None = None
 
 
 class SpreadExtremes(NamedTuple):
@@ -46,33 +99,35 @@ Evaluate = Callable[[Mapping[str, float]], NoisyValue]  # the measure, for given
 def combine_tolerances(
     evaluate: Evaluate, spreads: Sequence[NumberSpread], slopes: Mapping[str, NoisyDerivative]
 ) -> SpreadSum:
-    """Combine the tolerances of several numbers; slopes: dm/dp by name."""
+    """Combine the tolerances of several numbers.
+
+    evaluate: the measure with numbers at given distances from their values, by name
+    slopes: dm/dp by name
+    """
     base = evaluate({})
     extremes = [find_tolerance_extremes(evaluate, base, spread, slopes[spread.number.name]) for spread in spreads]
     contributions = tuple(entry.contribution for entry in extremes)
     lowest = {entry.contribution.name: entry.lowest_at for entry in extremes}
     highest = {entry.contribution.name: entry.highest_at for entry in extremes}
     corners = evaluate(lowest), evaluate(highest)
-    largest = max(
-        (change for end in corners if (change := compute_change(end, base))), key=_get_magnitude, default=None
-    )
-    nonlinear = [entry for entry in contributions if entry.bent or entry.why[0]]
-    if nonlinear and len(contributions) > 1:
-        for sign, start in ((-1.0, lowest), (1.0, highest)):
-            climbed_change = climb_from_corner(evaluate, base, spreads, start, sign)
-            largest = max(
-                (entry for entry in (largest, climbed_change) if entry is not None), key=_get_magnitude, default=None
-            )
-    sizes = [(entry.size, entry.error) for entry in contributions if entry.size is not None]
+    changes = [compute_change(corner, base) for corner in corners]
+    is_nonlinear = any(entry.is_nonlinear or entry.why.code for entry in contributions)
+    if is_nonlinear and len(contributions) > 1:
+        changes += [
+            climb_from_corner(evaluate, base, spreads, start, sign) for start, sign in ((lowest, -1.0), (highest, 1.0))
+        ]
+    largest = max((change for change in changes if change is not None), key=lambda each: abs(each.value), default=None)
+    sizes = [BoundedValue(entry.size, entry.error) for entry in contributions if entry.size is not None]
     if len(sizes) < len(contributions):
         return SpreadSum(contributions, None, None, corners)
-    worst = sum(size for size, _ in sizes), sum(error for _, error in sizes)
-    by_variant = largest is not None and abs(largest[0]) > worst[0]
+    worst = BoundedValue(sum(each.value for each in sizes), sum(each.error for each in sizes))
+    root = math.sqrt(sum(each.value * each.value for each in sizes))
+    root_error = sum(each.value * each.error for each in sizes) / root if root else None
+    by_variant = largest is not None and abs(largest.value) > worst.value
     if by_variant and largest is not None:
-        worst = abs(largest[0]), largest[1] + worst[1] + abs(largest[0]) - worst[0]
-    root = math.sqrt(sum(size * size for size, _ in sizes))
-    error = sum(size * error for size, error in sizes) / root if root else worst[1]
-    return SpreadSum(contributions, worst, (root, error), corners, by_variant, largest)
+        worst = BoundedValue(abs(largest.value), largest.error + worst.error + abs(largest.value) - worst.value)
+    square = BoundedValue(root, worst.error if root_error is None else root_error)
+    return SpreadSum(contributions, worst, square, corners, by_variant, largest)
 
 
 def find_tolerance_extremes(
@@ -85,7 +140,7 @@ def find_tolerance_extremes(
         x: evaluate({name: x}) for x in (-t, -INNER_FRACTION * t, INNER_FRACTION * t, t)
     }
     changes = {x: change for x, variant in variants.items() if (change := compute_change(variant, base)) is not None}
-    below, above = (changes[x][0] if x in changes else None for x in (-t, t))
+    below, above = (changes[x].value if x in changes else None for x in (-t, t))
     why = next((variant.why for variant in variants.values() if variant.value is None), Reason())
     labels = name, t, spread.number.unit
     if (
@@ -100,33 +155,41 @@ def find_tolerance_extremes(
         return SpreadExtremes(Contribution(*labels, size, error, linear, below, above), -upper, upper)
     if base.value is None or not changes:
         return SpreadExtremes(Contribution(*labels, None, 0.0, linear, below, above, True, why=why), -t, t)
-    low, high, missing, runs = search_extremes(evaluate, base, name, t)
-    error = max(low.error, high.error) + base.error + missing
-    size = max(-low.gap_or_zero, high.gap_or_zero)
+    found = search_extremes(evaluate, base, name, t)
+    low, high = found.lowest, found.highest
     contribution = Contribution(
         *labels,
-        size,
-        error,
-        linear,
-        below,
-        above,
-        True,
-        (low.x, low.gap_or_zero),
-        (high.x, high.gap_or_zero),
-        runs,
-        why,
+        size=max(-low.gap_or_zero, high.gap_or_zero),
+        error=max(low.error, high.error) + base.error + found.missing,
+        linear=linear,
+        below=below,
+        above=above,
+        is_nonlinear=True,
+        least=ChangeAt(low.x, low.gap_or_zero),
+        greatest=ChangeAt(high.x, high.gap_or_zero),
+        variants=found.variants,
+        why=why,
     )
     return SpreadExtremes(contribution, low.x, high.x)
 
 
-def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -> tuple[Sample, Sample, float, int]:
-    """Search the smallest and the largest change within a tolerance.
+class SearchedExtremes(NamedTuple):
+    """The variants with the smallest and the largest change within a tolerance.
 
-    Returns both samples, by how much the search may have missed the true extremes (inf if it was cut short), and the
-    number of variants.
+    missing: by how much the search may have missed the true extremes; infinite if it was cut short
+    variants: how many were solved
     """
 
-    value = base.value or 0.0  # it is known where the tolerance is searched
+    lowest: Sample
+    highest: Sample
+    missing: float
+    variants: int
+
+
+def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -> SearchedExtremes:
+    """Search the smallest and the largest change within a tolerance t of a number."""
+    assert base.value is not None  # the tolerance is only searched around a solved variant
+    value = base.value
 
     def evaluate_sample(x: float) -> Sample:
         """Sample the measure at a distance from the number's value."""
@@ -139,18 +202,19 @@ def search_extremes(evaluate: Evaluate, base: NoisyValue, name: str, t: float) -
         for x in (0.0, -INNER_FRACTION * t, INNER_FRACTION * t):
             course.sample_at(x)
         missing = max(
-            max(refine_extreme(course, sign, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0) for sign in (-1, 1)
+            max(refine_extreme(course, sign, share=EXTREME_TOLERANCE, max_steps=MAX_STEPS), 0.0)
+            for sign in (LEAST, GREATEST)
         )
     except SampleLimitError:
         pass
-    low, high = find_extreme(course, -1), find_extreme(course, 1)
+    low, high = find_extreme(course, LEAST), find_extreme(course, GREATEST)
     assert low is not None and high is not None  # the value itself is solved
-    return low, high, missing, len(course.samples)
+    return SearchedExtremes(low, high, missing, len(course.samples))
 
 
 def climb_from_corner(
     evaluate: Evaluate, base: NoisyValue, spreads: Sequence[NumberSpread], start: Mapping[str, float], sign: float
-) -> tuple[float, float] | None:
+) -> BoundedValue | None:
     """Return the largest change in one direction that varying one number after the other reaches from a corner."""
     distances = dict(start)
     best = compute_change(evaluate(distances), base)
@@ -160,29 +224,25 @@ def climb_from_corner(
             name, t = spread.number.name, spread.size
             for x in (-t, -INNER_FRACTION * t, 0.0, INNER_FRACTION * t, t):
                 change = compute_change(evaluate(distances | {name: x}), base)
-                if change is not None and (best is None or sign * change[0] > sign * best[0]):
+                if change is not None and (best is None or sign * change.value > sign * best.value):
                     best, distances = change, distances | {name: x}
         if best == previous:
             break
     return best
 
 
-def matches_derivative(slope: NoisyDerivative, distance: float, change: tuple[float, float]) -> bool:
+def matches_derivative(slope: NoisyDerivative, distance: float, change: BoundedValue) -> bool:
     """Return whether the change at a distance agrees with the derivative."""
     predicted = (slope.value or 0.0) * distance
-    return abs(change[0] - predicted) <= LINEARITY_TOLERANCE * abs(predicted) + slope.error * abs(distance) + change[1]
+    allowed = LINEARITY_TOLERANCE * abs(predicted) + slope.error * abs(distance) + change.error
+    return abs(change.value - predicted) <= allowed
 
 
-def compute_change(variant: NoisyValue, base: NoisyValue) -> tuple[float, float] | None:
+def compute_change(variant: NoisyValue, base: NoisyValue) -> BoundedValue | None:
     """Return the change of a measure and its error; None if unknown."""
     if variant.value is None or base.value is None:
         return None
-    return variant.value - base.value, variant.error + base.error
-
-
-def _get_magnitude(change: tuple[float, float]) -> float:
-    """Return the magnitude of a change."""
-    return abs(change[0])
+    return BoundedValue(variant.value - base.value, variant.error + base.error)
 
 
 FORM = "expected NAME=VALUE,..., the tolerance of each parameter"

@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from heuncli.base.errors import Problem, SpecError, UsageError
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.base.spelling import find_similar
@@ -36,6 +37,18 @@ from heuncli.study.workflow import solve as solve_study
 if TYPE_CHECKING:
     from heuncli.app.python.arguments import ArgumentKind, SpecSource
     from heuncli.app.python.solved_scene import Solved
+
+
+class SolverArguments(NamedTuple):
+    """The arguments of the solver in a Python call, as they are given: not checked yet."""
+
+    tolerance: float | None
+    method: str | None
+    step: float | None
+    least_norm: bool
+    reduce: bool
+    time_limit: float | None
+    axes: str = "world"
 
 
 def read(
@@ -101,14 +114,12 @@ def solve(
     """
     from heuncli.app.python.arguments import TEXT, check_arguments, make_settings, resolve_source
 
-    check_arguments(
-        ("case", case, TEXT), *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes),
-        *_list_captions(title, labels),
-    )  # fmt: skip
+    solver = SolverArguments(tolerance, method, step, least_norm, reduce, time_limit, axes)
+    check_arguments(("case", case, TEXT), *_list_arguments(text, set, only, at, solver), *_list_captions(title, labels))
     _check_booleans(least_norm=least_norm, reduce=reduce, by_cause=by_cause)
     name, source = resolve_source(spec, text)
     _require_single_case(case)
-    options = _make_options(tolerance, method, step, least_norm, reduce, axes)
+    options = _make_options(solver)
     selection = _parse_only(only)
     start = time.perf_counter()
     with _suggest_options(parameters, solve):
@@ -145,12 +156,11 @@ def solve_cases(
     """
     from heuncli.app.python.arguments import check_arguments, make_settings, resolve_source
 
-    check_arguments(
-        *_list_arguments(text, set, only, at, tolerance, method, step, time_limit, axes), *_list_captions(title, labels)
-    )
+    solver = SolverArguments(tolerance, method, step, least_norm, reduce, time_limit, axes)
+    check_arguments(*_list_arguments(text, set, only, at, solver), *_list_captions(title, labels))
     _check_booleans(least_norm=least_norm, reduce=reduce, by_cause=by_cause)
     name, source = resolve_source(spec, text)
-    options = _make_options(tolerance, method, step, least_norm, reduce, axes)
+    options = _make_options(solver)
     options = replace(options, time_limit=_check_time_limit(time_limit))
     selection = _parse_only(only)
     with _suggest_options(parameters, solve_cases):
@@ -190,14 +200,15 @@ def report(
     imprint = {
         "company": company, "project": project, "part": part, "revision": revision, "author": author, "date": date,
     }  # fmt: skip
+    solver = SolverArguments(tolerance, method, step, least_norm, reduce, time_limit)
     check_arguments(("output", output, FILE), ("paper", paper, TEXT), optional=False)
     check_arguments(
-        *_list_arguments(text, set, None, None, tolerance, method, step, time_limit, None),
+        *_list_arguments(text, set, None, None, solver),
         *_list_captions(title, labels), ("format", format, TEXT), ("case", case, TEXTS), ("units", units, TEXT),
         ("chapters", chapters, TEXTS), ("logo", logo, FILE), *((key, word, TEXT) for key, word in imprint.items()),
     )  # fmt: skip
     _check_booleans(landscape=landscape, decimal_comma=decimal_comma, least_norm=least_norm, reduce=reduce)
-    options = _make_options(tolerance, method, step, least_norm, reduce, "world")
+    options = _make_options(solver)
     call = ReportCall(
         spec=spec, text=text, output=os.fspath(output), format=format, case=case, units=units, chapters=chapters,
         settings=make_settings(set or {}, parameters), paper=paper, landscape=landscape, decimal_comma=decimal_comma,
@@ -242,16 +253,15 @@ def _solve_selected(
 
 
 def _list_arguments(
-    text: object, settings: object, only: object, instants: object, tolerance: object, method: object, step: object,
-    time_limit: object, axes: object,
-) -> list[tuple[str, object, ArgumentKind]]:  # fmt: skip
-    """Return the arguments that `solve` and `solve_cases` share, as (name, value, kind)."""
+    text: object, settings: object, only: object, instants: object, solver: SolverArguments
+) -> list[tuple[str, object, ArgumentKind]]:
+    """Return the arguments that several functions share, but for the booleans, as (name, value, kind)."""
     from heuncli.app.python.arguments import MAPPING, NUMBER, NUMBERS, TEXT, TEXTS
 
     return [
         ("text", text, TEXT), ("set", settings, MAPPING), ("only", only, TEXTS), ("at", instants, NUMBERS),
-        ("tolerance", tolerance, NUMBER), ("method", method, TEXT), ("step", step, NUMBER),
-        ("time_limit", time_limit, NUMBER), ("axes", axes, TEXT),
+        ("tolerance", solver.tolerance, NUMBER), ("method", solver.method, TEXT), ("step", solver.step, NUMBER),
+        ("time_limit", solver.time_limit, NUMBER), ("axes", solver.axes, TEXT),
     ]  # fmt: skip
 
 
@@ -269,17 +279,15 @@ def _check_booleans(**arguments: object) -> None:
     check_arguments(*((name, value, BOOLEAN) for name, value in arguments.items()), optional=False)
 
 
-def _make_options(
-    error_tolerance: float | None, method: str | None, step: float | None, least_norm: bool, reduce: bool, axes: str
-) -> Options:
-    """Check the solver's arguments, and make its options of them. Raises UsageError."""
+def _make_options(solver: SolverArguments) -> Options:
+    """Check the values of the solver's arguments, but for the time limit, and make its options. Raises UsageError."""
     return Options(
-        tolerance=require_tolerance(error_tolerance, ""),
-        method=method,
-        step=require_positive("step", step),
-        least_norm=least_norm,
-        reduce=reduce,
-        axes=require_choice("axes", axes, JOINT_AXES),
+        tolerance=require_tolerance(solver.tolerance, ""),
+        method=solver.method,
+        step=require_positive("step", solver.step),
+        least_norm=solver.least_norm,
+        reduce=solver.reduce,
+        axes=require_choice("axes", solver.axes, JOINT_AXES),
     )
 
 

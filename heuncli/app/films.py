@@ -14,7 +14,7 @@ from pathlib import Path, PurePath
 from heuncli.app.cli import timeout
 from heuncli.base.errors import OutputError, Problem
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.process import BROWSERS, find_program, list_browser_options, run_program
+from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.output.web_page.moving_page import Film
 
 MAX_SECONDS = 300.0  # of a program, unless --time-limit leaves less
@@ -43,7 +43,7 @@ class FilmFormat(NamedTuple):
     scale: int = 1
 
 
-FORMATS = {
+FILM_FORMATS = {
     ".png": FilmFormat("png", 1.0, is_encoded=False, scale=2),
     ".gif": FilmFormat("gif", 20.0, is_encoded=False, width=800, height=560),
     ".mp4": FilmFormat("frames", 25.0, is_encoded=True),
@@ -59,7 +59,7 @@ class FilmPrograms(NamedTuple):
 
 def find_format(output: str | None) -> FilmFormat | None:
     """Return the format of a picture or film by the file's ending, None of a page."""
-    return FORMATS.get(PurePath(output or "").suffix.lower())
+    return FILM_FORMATS.get(PurePath(output or "").suffix.lower())
 
 
 def find_programs(form: FilmFormat) -> FilmPrograms:

@@ -12,10 +12,12 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from heuncli.app.cli.options import REPORT_FORMATS
+from heuncli.app.cli.target import find_ending
 from heuncli.base.errors import Finding, HeunError, OutputError, Problem, UsageError
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.process import BROWSERS, find_program, list_browser_options, result_memory, run_program
+from heuncli.base.process import result_memory
+from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.base.records import replace
 from heuncli.base.spelling import suggest
 from heuncli.output.client_report.report_data import (
@@ -102,7 +104,7 @@ def choose_form(output: str, requested: str | None) -> str:
         if form == "pdf" and output == STDOUT:
             raise UsageError(Problem("bad-option", "-o -: a PDF needs a file", hint="for example -o report.pdf"))
         return form
-    ending = output[output.rfind(".") :].lower() if "." in output.rpartition("/")[2] else ""
+    ending = find_ending(output)
     if output == STDOUT or ending in ENDINGS:
         return ENDINGS.get(ending, REPORT_FORMATS[0])
     hint = f"accepted: {', '.join(ENDINGS)}; with --format {'|'.join(REPORT_FORMATS)} any name is accepted"

@@ -23,6 +23,7 @@ from heuncli.base.signals import CleanupOnSignal
 if TYPE_CHECKING:
     from pathlib import Path
 
+PACKAGE_FOLDER = os.path.dirname(os.path.dirname(__file__))  # noqa: PTH120 - of heuncli; pathlib takes 3 ms
 STDOUT = "-"  # what stands for standard output where a file is named
 MAX_LINKS = 40  # that lead to one file; the system follows no more
 HINTS = {

@@ -340,6 +340,18 @@ def kinds_accepting_load(load: str) -> list[JointKind]:
     return [kind for kind in TYPES.values() if kind.accepts_load(load)]
 
 
+PINS_IN_PLACE = {"ball": "three pins", "universal": "two pins"}  # kinds that turn about several axes, as pins in a row
+
+
+def propose_pins(kind: JointKind, hint: str) -> str:
+    """Return a hint, or for a joint of several rotations the pins in a row that have an angle each."""
+    pins = PINS_IN_PLACE.get(kind.name)
+    if pins is None:
+        return hint
+    where = "heun explain howto, Ball with angles"
+    return f"replace the {kind.name} by {pins} in a row, with bodies of mass: 0 between: {where}"
+
+
 def format_kind_names(kinds: list[JointKind], last: str) -> str:
     """Return the names of kinds as words, "pin, slide and cylinder"; last: "and" or "or"."""
     names = [kind.name for kind in kinds]

@@ -12,8 +12,11 @@ from heuncli.base.named_tuples import NamedTuple
 
 
 class MethodRow(NamedTuple):
-    """A method: name, order, family, step control, how it represents attitudes within a step, and its purpose.
+    """An integration method.
 
+    kind: the family of its code; steps: whether it controls its step by its error
+    attitude: how rotations are integrated within a step
+    purpose: what it is for, in `heun methods`
     coefficients: the module in heuncli/motion/integration/methods, and the name in it
     """
 

@@ -136,3 +136,18 @@ def list_some(names: Sequence[str]) -> str:
     """List the first names, and how many more there are."""
     more = len(names) - MAX_NAMES
     return ", ".join(names[:MAX_NAMES]) + (f" and {more} more" if more > 0 else "")
+
+
+MAX_JOINED_NAMES = 6  # in a sentence
+
+
+def join_names(names: Sequence[str]) -> str:
+    """Join names as in a sentence, only the first of many."""
+    if len(names) > MAX_JOINED_NAMES:
+        return f"{', '.join(names[:MAX_JOINED_NAMES])} and {len(names) - MAX_JOINED_NAMES} more"
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+
+
+def choose_verb_form(names: Sequence[str], one: str, several: str) -> str:
+    """Return the form of a verb that fits so many names."""
+    return one if len(names) == 1 else several

@@ -165,6 +165,9 @@ AXISYMMETRIC = 16.0 * EPS
 SPINS_LIGHTLY = 1e-3
 # relative to the size: smallest radius of gyration of the artificial inertia of an idle spin (it cancels)
 ARTIFICIAL_RADIUS = 1e-3
+# relative to the inertia that a body carries: its artificial inertia is at least that, so that a dozen roundings of
+# what it carries are a tenth of KERNEL.own_share of it
+ARTIFICIAL_SHARE = 1e-2
 SLENDER = 1e-6  # determinant over the cube of the trace: above, no moment is NO_INERTIA of it; a rod 200 diameters long
 NO_MOMENT = 1e-9  # relative to the loads on a body: a smaller moment about its thin axis is what ON_AXIS admits
 
@@ -364,6 +367,9 @@ INERTIA_REFUSED = 1e-3  # relative to the largest moment of inertia: limit on a 
 # relative to the largest moment of inertia: moments typed with ten digits keep triangle inequality and symmetry this
 # well
 INERTIA_TYPED = 1e-9
+# of a bushing's matrix, scaled to 1 on its diagonal: matrices typed with ten digits are symmetric and semidefinite so
+# well
+STIFFNESS_TYPED = 1e-9
 # relative to mass * size^2 of a robot: smaller moments of inertia in its file are rounding of a CAD program, which
 # cancels lengths known to EPS: (1e-16)^2 is far below, and no part of a robot is 1e-10 of its size
 NO_IMPORTED_MOMENT = 1e-20

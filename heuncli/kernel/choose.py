@@ -13,10 +13,21 @@ from heuncli.kernel import scene, structs
 from heuncli.kernel.form import KERNEL
 
 if TYPE_CHECKING or KERNEL == "pure":
-    from heuncli.kernel import enclosure, expressions, integration, jets, steps, workspace
+    from heuncli.kernel import components, enclosure, expressions, integration, jets, steps, workspace
 else:
     from heuncli.kernel import compiled
 
-    enclosure = expressions = integration = jets = steps = workspace = compiled
+    components = enclosure = expressions = integration = jets = steps = workspace = compiled
 
-__all__ = ["KERNEL", "enclosure", "expressions", "integration", "jets", "scene", "steps", "structs", "workspace"]
+__all__ = [
+    "KERNEL",
+    "components",
+    "enclosure",
+    "expressions",
+    "integration",
+    "jets",
+    "scene",
+    "steps",
+    "structs",
+    "workspace",
+]

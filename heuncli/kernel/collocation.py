@@ -24,6 +24,7 @@ from heuncli.kernel.response import evaluate, project_state
 from heuncli.kernel.tangent import find_jacobian
 
 MAX_NEWTON_ITERATIONS = 25
+NO_SCALE = 1e300  # size of a correction of rates where there is no rate to compare it with
 
 
 # A step
@@ -32,7 +33,7 @@ MAX_NEWTON_ITERATIONS = 25
 def collocate(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
     """Compute the stages of a step and its solution z with its small parts. Returns what `evaluate` returns at the end.
 
-    Sets newton.solved to 0 if Newton's iteration does not converge.
+    Sets newton.has_stages to 0 if Newton's iteration does not converge.
     """
     i: cython.Py_ssize_t
     change: cython.double
@@ -316,7 +317,7 @@ def size_of_correction(formula: cython.pointer[Collocation], run: cython.pointer
                 )
                 rate_part = find_largest_weighted(run, newton.step[k], group.rates, group.end, rate_part)
     if rate_part > 0.0 or rate_part != rate_part:
-        rate_part = rate_part / newton.rate if newton.rate > 0.0 else 1e300
+        rate_part = rate_part / newton.rate if newton.rate > 0.0 else NO_SCALE
     coordinate_part = coordinate_part / newton.reach
     return coordinate_part if coordinate_part > rate_part else rate_part
 

@@ -11,16 +11,18 @@ from __future__ import annotations
 
 from math import fabs
 
-from heuncli.kernel.closures import measure_row
+from heuncli.kernel.closures import measure_row, size_of_row_gap
 from heuncli.kernel.declarations import *
 from heuncli.kernel.dense import clip_time, ensure_interpolant, interpolate
 from heuncli.kernel.kinematics import update_kinematics
 from heuncli.kernel.response import evaluate, project_state
-from heuncli.kernel.sticking import find_friction_threshold, measure_friction_margin
+from heuncli.kernel.sticking import UNREACHED, find_friction_threshold, measure_friction_margin
 
-# Halvings of a step, down to the rounding of its instants; points in which a part is checked; parts
-# checked before only rounding can be in doubt.
-HALVINGS, POINTS, MAX_MARGIN_PARTS = 46, 8, 400
+HALVINGS = 46  # of a step, down to the rounding of its instants
+POINTS = 8  # in which a part of a step is checked
+MAX_MARGIN_PARTS = 400  # of a step that are checked before only rounding can be in doubt
+# Which margins may pass their thresholds within a step; those of closed contacts need the loads.
+NO_MARGIN, GAPS_ONLY, FORCES_TOO = range(3)
 
 
 # Margins
@@ -92,25 +94,23 @@ def find_pushing_rope(scene: cython.pointer[Scene], run: cython.pointer[Run]) ->
     return most > 0.0
 
 
-def classify_contact_event(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
-    """Return what the contact found does: 1 an open one closes, 2 a closed one opens, 3 a rope that must not would
-    push.
-    """
+def find_contact_code(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
+    """Return what the contact found does: STRUCK, LET_GO, or ROPE_SLACK if a rope without restitution would push."""
     i: cython.Py_ssize_t
     for i in range(scene.contact_count):
         if scene.contacts[i].row + 1 == run.contact:
             if scene.closures[scene.contacts[i].row].mode == APART:
-                return 1
-            return 2 if scene.contacts[i].mode_index else 3
-    return 0
+                return STRUCK
+            return LET_GO if scene.contacts[i].mode_index else ROPE_SLACK
+    return LET_GO
 
 
 # A step tried
 
 
 def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
-    """Set the margins above which contacts close or open, from their rounding. Returns 0: none is in doubt, 1: open
-    ones, 2: closed ones.
+    """Set the margins above which contacts close or open, from their rounding. Returns NO_MARGIN, GAPS_ONLY or
+    FORCES_TOO.
 
     A gap that is open, or leaves with a rate, closes where it is zero again, to the rounding of its sum; one that
     touches at rest is known to the accuracy of the projection. If run.late is set, a gap that comes within that closes
@@ -118,7 +118,7 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
     that touches it.
     """
     i: cython.Py_ssize_t
-    doubt: cython.int = 0
+    doubt: cython.int = NO_MARGIN
     size: cython.double
     threshold: cython.double
     likely: cython.double
@@ -130,19 +130,19 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
-        contact.level = 1e300  # no doubt
+        contact.level = UNREACHED
         if contact.friction and may_change_state(scene, contact, run):
             contact.level = find_friction_threshold(scene, contact, fabs(run.end), run.late)
-            doubt = 2 if row.mode == CARRIES or doubt == 2 else 1
+            doubt = FORCES_TOO if row.mode == CARRIES or doubt == FORCES_TOO else GAPS_ONLY
         if contact.sense == 0:
             continue
         if row.mode == LEANS:
             threshold = scene.limits.reopened * scene.size / row.weight
             if contact.most + 0.5 * (contact.most - contact.least) > threshold or run.landing.contact_attempts:
                 contact.level = threshold
-                doubt = 1 if doubt == 0 else doubt
+                doubt = GAPS_ONLY if doubt == NO_MARGIN else doubt
             continue
-        size = (scene.size + norm(row.Q)) / row.weight + fabs(row.length)
+        size = size_of_row_gap(scene, row)
         threshold = scene.limits.touching * size
         early = row.mode == APART and run.late and closes_early(contact, threshold)
         likely = contact.most + 0.5 * (contact.most - contact.least)
@@ -150,7 +150,7 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
             continue
         if row.mode == CARRIES:
             contact.level = scene.limits.rounding * fabs(least)
-            doubt = 2
+            doubt = FORCES_TOO
         elif early:
             contact.level = -threshold
         else:
@@ -160,8 +160,8 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
             # a contact that opens does not close again where it opened
             if contact.start > 0.0 and contact.start_rate <= 0.0:
                 contact.level += contact.start
-        if row.mode == APART and doubt == 0:
-            doubt = 1
+        if row.mode == APART and doubt == NO_MARGIN:
+            doubt = GAPS_ONLY
     return doubt
 
 
@@ -186,11 +186,14 @@ def evaluate_within_step(
     x: cython.double,
     doubt: cython.int,
 ) -> cython.void:
-    """Evaluate the scene at x of the trial step from its dense output; with loads if closed contacts are in doubt."""
+    """Evaluate the scene at x of the trial step from its dense output.
+
+    doubt: GAPS_ONLY: positions and rates; FORCES_TOO: also loads
+    """
     t: cython.double = clip_time(run, run.t + x * run.h)
     interpolate(scene, method, run, x, run.stage)
     project_state(scene, t, run.stage)
-    if doubt == 2:
+    if doubt == FORCES_TOO:
         evaluate(scene, t, run.stage, run.fine)
         run.evaluations += 1
     else:
@@ -206,7 +209,7 @@ def find_contact_event(
     event_time: cython.double
     least_distance: cython.double = scene.limits.least_step * fabs(run.end)
     doubt: cython.int = set_contact_thresholds(scene, run)
-    if doubt == 0:
+    if doubt == NO_MARGIN:
         return NO_EVENT
     ensure_interpolant(scene, method, run)
     x = find_first_contact(scene, method, run, doubt)
@@ -238,7 +241,7 @@ def locate_closing(
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         if contact.row + 1 == run.contact and scene.closures[contact.row].mode == APART and not run.late:
-            evaluate_within_step(scene, method, run, x, 1)
+            evaluate_within_step(scene, method, run, x, GAPS_ONLY)
             rate = contact.sense * scene.closures[contact.row].rate * run.h
             back = contact_margin(scene, contact)
             # a flight that begins with a positive gap ends at that gap

@@ -14,7 +14,7 @@ from heuncli.kernel.events import hold_branches
 from heuncli.kernel.following import is_linear, prepare_step
 from heuncli.kernel.memory import Memory
 from heuncli.kernel.response import evaluate
-from heuncli.kernel.row_choice import choice_width
+from heuncli.kernel.selection import choice_width
 from heuncli.kernel.step_ends import restore_record
 from heuncli.kernel.steps import run_steps
 from heuncli.kernel.watches import MAX_PEAK_PARTS, reset_watches
@@ -26,26 +26,43 @@ def record_width(workspace: Workspace, n: cython.int) -> int:
     return 2 * n + choice_width(cython.address(workspace.scene))
 
 
-def interpolate_steps(courses: dict[str, Any], n: cython.int, times: Any, steps: Any, states: Any) -> None:
-    """Find states of n numbers at instants within steps whose polynomials were recorded, (instants, n).
+def interpolate_steps(courses: dict[str, Any], n: cython.int, times: Any, states: Any, flags: Any) -> None:
+    """Find states of n numbers at instants within steps whose polynomials were recorded, before their ends, (instants,
+    n).
 
-    courses: flat arrays `spans` and `courses` of some steps, as an integration writes them. All arrays are flat.
+    courses: flat arrays `ends`, `spans` and `courses` of some steps, as an integration writes them. All arrays are
+    flat; flags: 1 at these instants, 0 at the others, whose states stay as they are.
     """
     k: cython.Py_ssize_t
-    step: cython.Py_ssize_t
     memory: Memory = Memory()
-    count: cython.Py_ssize_t = len(courses["spans"]) // 3
+    count: cython.Py_ssize_t = len(courses["ends"])
     rows: cython.Py_ssize_t = len(courses["courses"]) // max(n * count, 1)
+    ends: cython.p_double = memory.view_row(courses["ends"])
     spans: cython.pp_double = memory.view_rows(courses["spans"], count, 3)
     course: cython.pp_double = memory.view_rows(courses["courses"], rows * count, n)
-    t: cython.p_double = memory.doubles(times)
-    step_numbers: cython.p_int = memory.ints(steps)
+    t: cython.p_double = memory.view_row(times)
     rows_out: cython.pp_double = memory.view_rows(states, len(times), n)
+    is_found: cython.p_double = memory.view_row(flags)
     for k in range(len(times)):
-        step = step_numbers[k]
-        x: cython.double = (t[k] - spans[step][STEP_START]) / spans[step][STEP_LENGTH]
-        evaluate_polynomial(course, step * rows + 1, rows - 1, course[step * rows], n, x, rows_out[k])
+        step: cython.Py_ssize_t = find_step(ends, count, t[k])
+        is_found[k] = 0.0
+        if step < count and spans[step][HAS_COURSE] > 0.0 and t[k] < ends[step]:
+            is_found[k] = 1.0
+            x: cython.double = (t[k] - spans[step][STEP_START]) / spans[step][STEP_LENGTH]
+            evaluate_polynomial(course, step * rows + 1, rows - 1, course[step * rows], n, x, rows_out[k])
     memory.fetch()
+
+
+def find_step(ends: cython.p_double, count: cython.Py_ssize_t, t: cython.double) -> cython.Py_ssize_t:
+    """Return the first step that does not end before t; `count` if there is none."""
+    first: cython.Py_ssize_t = 0
+    while first < count:
+        middle: cython.Py_ssize_t = (first + count) // 2
+        if ends[middle] < t:
+            first = middle + 1
+        else:
+            count = middle
+    return first
 
 
 class Integration:

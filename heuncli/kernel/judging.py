@@ -72,16 +72,7 @@ def measure_group_error(
     if rate < group.rate:
         rate = group.rate
     group.trial = rate
-    floor: cython.double = scene.limits.slow_rate * run.control.rate
-    if b == run.energy_group:
-        # energy, relative to the largest work so far or a fraction of the bodies' possible energy
-        floor = scene.limits.slow_rate * run.control.energy_scale * run.control.rate * run.control.rate
-    if run.control.is_balanced:
-        least: cython.double = scene.limits.imposed_rounding * run.control.imposed_rate / run.control.tolerance
-        if b == run.energy_group:
-            least *= run.control.energy_scale * run.control.imposed_rate
-        if floor < least:
-            floor = least
+    floor: cython.double = find_rate_floor(scene, run, b == run.energy_group)
     scale: cython.double = 1.0 / run.control.tolerance
     for i in range(group.coordinates, group.end):
         if i == group.rates:
@@ -95,6 +86,24 @@ def measure_group_error(
     if fine > 0.0:
         return run.h * fine / sqrt(fine + COARSE_SHARE * coarse)
     return fine  # 0, or not a number
+
+
+def find_rate_floor(scene: cython.pointer[Scene], run: cython.pointer[Run], is_energy: cython.bint) -> cython.double:
+    """Return what is added to a group's rate before its errors are measured by it, so that slow groups cost no steps.
+
+    It is a fraction of the largest rate of the scene; where all that moves is rounding (`update_imposed_rate`), at
+    least the rounding of what is imposed. Of energy, the same with the energies that such rates give the bodies.
+    """
+    floor: cython.double = scene.limits.slow_rate * run.control.rate
+    if is_energy:
+        floor = scene.limits.slow_rate * run.control.energy_scale * run.control.rate * run.control.rate
+    if run.control.is_balanced:
+        least: cython.double = scene.limits.imposed_rounding * run.control.imposed_rate / run.control.tolerance
+        if is_energy:
+            least *= run.control.energy_scale * run.control.imposed_rate
+        if floor < least:
+            floor = least
+    return floor
 
 
 def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:

@@ -25,6 +25,11 @@ from heuncli.kernel.response import evaluate
 from heuncli.kernel.watches import check_coarsely, record_extremes, reset_extremes
 
 MAX_FLURRY_EVENTS = 16  # events that gather at an instant
+SPARSE_EVENTS = 2  # so many beside each other are no flurry yet
+# Events at one instant, and for each branch that is held; more count as endless.
+EVENTS_AT_INSTANT, EVENTS_PER_BRANCH = 4, 2
+SHORT_PART = 0.1  # of a step, to which it is cut where bounds decide nothing of it
+END_SHARE = 0.01  # of the run's end: instants before it are as coarse as there
 
 
 # What the steps see
@@ -85,7 +90,7 @@ def find_branch_event(
         return NO_EVENT
     if doubt != BRANCH_IN_DOUBT:
         build_hermite(method, run)
-        build_step_course(scene, run, 3)
+        build_step_course(scene, run, HERMITE_ROWS)
         if find_first_event(scene, course) == NOTHING and not course.undecided:
             return NO_EVENT
     ensure_interpolant(scene, method, run)
@@ -102,10 +107,10 @@ def find_branch_event(
 def shorten_step(scene: cython.pointer[Scene], run: cython.pointer[Run], doubt: cython.int) -> cython.int:
     """End the step at what no stage has seen, or where bounds cease to decide."""
     event_time: cython.double = course_instant(cython.address(run.course), run.course.event)
-    if doubt == UNSEEN or event_time - run.t > 0.1 * run.h:
+    if doubt == UNSEEN or event_time - run.t > SHORT_PART * run.h:
         run.landing.cut = event_time
     elif run.h > scene.limits.locked_step * fabs(run.end):
-        run.landing.cut = run.t + 0.1 * run.h
+        run.landing.cut = run.t + SHORT_PART * run.h
     else:
         run.undecided += 1
         return NO_EVENT
@@ -125,7 +130,10 @@ def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], 
     distance: cython.double = fabs(event_time - run.stop)
     if event_time - run.t <= 2.0 * least_distance:
         run.landing.turns_at_instant += 1
-        if run.landing.turns_at_instant > 4 + 2 * scene.held_count or count_flurry_event(scene, run, run.t):
+        if (
+            run.landing.turns_at_instant > EVENTS_AT_INSTANT + EVENTS_PER_BRANCH * scene.held_count
+            or count_flurry_event(scene, run, run.t)
+        ):
             return EVENT_CHATTER
         hold_branches(scene, course.turned)
         evaluate(scene, clip_time(run, run.t), run.y, run.K[0])
@@ -152,14 +160,16 @@ def instant_tolerance(scene: cython.pointer[Scene], run: cython.pointer[Run]) ->
     that at the run's end.
     """
     t: cython.double = fabs(run.stop)
-    if t < 0.01 * fabs(run.end):
-        t = 0.01 * fabs(run.end)
+    if t < END_SHARE * fabs(run.end):
+        t = END_SHARE * fabs(run.end)
     return scene.limits.one_instant * t
 
 
 def is_in_flurry(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
     """Return whether several events lie just behind."""
-    return run.landing.flurry > 2 and fabs(run.t - run.landing.flurry_begin) <= scene.limits.flurry * fabs(run.end)
+    return run.landing.flurry > SPARSE_EVENTS and fabs(run.t - run.landing.flurry_begin) <= scene.limits.flurry * fabs(
+        run.end
+    )
 
 
 def count_flurry_event(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.bint:

@@ -32,8 +32,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.enclosure import enclose
 from heuncli.kernel.intervals import all_numbers
 from heuncli.kernel.libm import INFINITY
-from heuncli.kernel.ropes import measure_rope
-from heuncli.kernel.strains import bushing_strain, find_span_vector, line_rate, vector_component
+from heuncli.kernel.strains import bushing_strain, find_span_vector, line_rate, measure_rope, vector_component
 
 
 def bound_acceleration(points: cython.pointer[PointCourse], body: cython.int, q: Vec3) -> cython.double:

@@ -14,8 +14,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.evaluator import evaluate_program
 from heuncli.kernel.kinematics import add_load_to_body, locate_point
 from heuncli.kernel.libm import NAN
-from heuncli.kernel.ropes import measure_rope, rope_energy, rope_power
-from heuncli.kernel.strains import find_span_vector
+from heuncli.kernel.strains import find_span_vector, measure_rope, rope_energy, rope_power
 
 
 def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
@@ -38,8 +37,7 @@ def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
         elif load.kind == ROPE:
             power += apply_rope_load(scene, load, vector)
         elif is_bushing(load):
-            shifts: cython.bint = load.kind == BUSHING_SHIFT
-            power += apply_bushing_load(scene, load, vector, relative_motion(scene, load, point.v, shifts))
+            power += apply_bushing_load(scene, load, vector, bushing_rates(scene, load, point.v))
         else:
             power += apply_joint_load(scene, load, vector, point.v)
     return power
@@ -254,6 +252,15 @@ def turn_spring_angle(scene: cython.pointer[Scene], load: cython.pointer[Load]) 
 def relative_motion(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3, slides: cython.bint) -> Vec3:
     """Return the velocity of b's point, which moves with v, or the angular velocity of b, as seen from a."""
     return sliding_velocity(scene, load, v) if slides else sub(body_omega(scene, load.b), body_omega(scene, load.a))
+
+
+def bushing_rates(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3) -> BushingRates:
+    """Return the rates of a bushing whose point of b moves with v; the other is 0 where it has no effect."""
+    shifts: cython.bint = load.kind == BUSHING_SHIFT
+    other: Vec3 = Vec3(0.0, 0.0, 0.0)
+    if load.is_coupled:
+        other = relative_motion(scene, load, v, not shifts)
+    return BushingRates(relative_motion(scene, load, v, shifts), other)
 
 
 def sliding_velocity(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3) -> Vec3:

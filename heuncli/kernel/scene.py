@@ -145,8 +145,11 @@ class Load(Record):
     reach: float = ZERO  # for ENDS: the distance between the two ends [m]
     frame: Mat3 = ZERO  # for a bushing: its axes, in a
     to_frame: Mat3 = ZERO  # and those in b that agree with them where it is not turned
-    stiffnesses: Vec3 = ZERO  # along its axes [N/m], of turning [N m/rad]
-    resistances: Vec3 = ZERO  # [N s/m], [N m s]
+    own_stiffness: Mat3 = ZERO  # by its own strain, in its axes [N/m], of turning [N m/rad]
+    own_damping: Mat3 = ZERO  # by its own rate [N s/m], [N m s]
+    is_coupled: int = ZERO  # 1: its shift loads its turn, and the other way round
+    coupled_stiffness: Mat3 = ZERO  # by the strain of the bushing's other load [N/rad], [N m/m]
+    coupled_damping: Mat3 = ZERO  # by the rate of the other [N s], [N m s/m]
     part: int = ZERO  # for a rope: the first of its parts
     part_count: int = ZERO
 

@@ -8,8 +8,7 @@ from heuncli.kernel.declarations import *
 from heuncli.kernel.loads import load_potential
 from heuncli.kernel.orthogonal import estimate_multiplier_doubt
 from heuncli.kernel.response import evaluate, must_choose_rows, project_state
-from heuncli.kernel.row_choice import choose_rows_again
-from heuncli.kernel.selection import order_all, select_independent_rows, spread_jacobian_row
+from heuncli.kernel.selection import choose_rows_again, order_all, select_independent_rows, spread_jacobian_row
 from heuncli.kernel.sticking import close_sticking_rows, open_sticking_rows, record_sticking, set_friction_mode
 from heuncli.kernel.tree import balance_joints
 

@@ -23,8 +23,7 @@ from heuncli.kernel.response import (
     project_evaluated_state,
     project_state,
 )
-from heuncli.kernel.row_choice import restore_choice, save_choice
-from heuncli.kernel.selection import select_independent_rows
+from heuncli.kernel.selection import restore_choice, save_choice, select_independent_rows
 from heuncli.kernel.stages import step_to_instant
 
 

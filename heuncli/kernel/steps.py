@@ -10,13 +10,13 @@ from math import fabs, pow, sqrt
 from heuncli.kernel.attitudes import enter_chart, find_half_turn, half_turn_rate, measure_turns_left
 from heuncli.kernel.collocation import collocate
 from heuncli.kernel.contact_rounding import clear_accelerations
-from heuncli.kernel.contacts import classify_contact_event, find_pushing_rope, start_contacts
+from heuncli.kernel.contacts import find_contact_code, find_pushing_rope, start_contacts
 from heuncli.kernel.declarations import *
 from heuncli.kernel.dense import clip_time, combine_stages, store_chart_slopes
 from heuncli.kernel.evaluator import evaluate_program
 from heuncli.kernel.events import hold_branches
 from heuncli.kernel.following import follow_drives, is_determined, prepare_step
-from heuncli.kernel.judging import assess_step, sum_magnitudes, update_imposed_rate, weighted_norm
+from heuncli.kernel.judging import SAFETY, assess_step, sum_magnitudes, update_imposed_rate, weighted_norm
 from heuncli.kernel.landing import (
     begin_step_extremes,
     count_flurry_event,
@@ -26,7 +26,7 @@ from heuncli.kernel.landing import (
 )
 from heuncli.kernel.paths import hold_lift_pieces
 from heuncli.kernel.response import evaluate, project_state
-from heuncli.kernel.row_choice import choose_rows_again
+from heuncli.kernel.selection import choose_rows_again
 from heuncli.kernel.stages import estimate_stiffness, evaluate_explicit_stages, is_stability_limited
 from heuncli.kernel.step_ends import accept_step, leave_chart_of_step, sample_reached
 
@@ -257,17 +257,9 @@ def leaves_chart(scene: cython.pointer[Scene], method: cython.pointer[Method], r
     run.chart.half_turn = find_half_turn(scene, method.attitude, run.y)
     measure_turns_left(scene, method.attitude, run.y, run.chart.angles_left)
     run.chart.approach_rate = half_turn_rate(scene, run.y, run.chart.angles_left)
-    if 0.9 * scene.limits.chart_turn < run.chart.approach_rate * run.control.proposed:
-        run.control.proposed = 0.9 * scene.limits.chart_turn / run.chart.approach_rate
+    if SAFETY * scene.limits.chart_turn < run.chart.approach_rate * run.control.proposed:
+        run.control.proposed = SAFETY * scene.limits.chart_turn / run.chart.approach_rate
     return run.chart.half_turn > 0
-
-
-def find_contact_code(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.int:
-    """Return what the contact found does: STRUCK, LET_GO, or ROPE_SLACK if a rope without restitution would push."""
-    event: cython.int = classify_contact_event(scene, run)
-    if event == 3:
-        return ROPE_SLACK
-    return STRUCK if event == 1 else LET_GO
 
 
 def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:

@@ -22,7 +22,7 @@ from heuncli.kernel.declarations import *
 
 # Relative to the largest rate of a step: what began at rest and is slower has not stopped again, but not left its start
 BEGINS_TO_SLIP = 1e-9
-UNREACHED = 1e300  # minus this is the margin of what causes no event
+UNREACHED = 1e300  # a threshold that no margin passes; minus it, the margin of what causes no event
 
 
 def set_friction_mode(

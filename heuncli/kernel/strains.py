@@ -1,13 +1,24 @@
-"""The strain of a load between two bodies: the length of its line, or a bushing's shift and rotation in its own axes.
+"""The strain of a load between two bodies: the length of its line or rope, or a bushing's shift and rotation.
 
-d = T' (x_b - x_a)              shift of b's point relative to a's, in the axes T = R_a F_a, which turn with a
-exp [phi] = T' R_b F_b          rotation vector of b relative to a, in the same axes; |phi| <= pi
-l = |x_b - x_a|,  l' = n . (v_b - v_a)
-phi' = J^-1 omega               J^-1 = 1 - [phi]/2 + c [phi]^2,  c = (1 - theta/2 cot(theta/2)) / theta^2
+A bushing, in its own axes:
+
+    d = T' (x_b - x_a)              shift of b's point relative to a's, in the axes T = R_a F_a, which turn with a
+    exp [phi] = T' R_b F_b          rotation vector of b relative to a, in the same axes; |phi| <= pi
+    l = |x_b - x_a|,  l' = n . (v_b - v_a)
+    phi' = J^-1 omega               J^-1 = 1 - [phi]/2 + c [phi]^2,  c = (1 - theta/2 cot(theta/2)) / theta^2
 
 theta = |phi|; J is the left Jacobian of rotations: Sola, Deray, Atchuthan, A micro Lie theory (2018), (145)-(146).
 
-Below: the change along a direction of the state, t the rotation of a, with which T turns:
+An elastic rope, which also has its energy here:
+
+    S = sum of the parts       conditions between two bodies, as closure rows have them (sheaves.py); those of an
+                               elastic rope belong to no row, and its load applies `value` times their unit loads
+    x = S - l0,  V = 1/2 k x^2 l0: a number, or a law in time
+    k = k0 L / l0              k0: at the length L, for a shorter rope of the same kind is stiffer
+
+A rope that only pulls stores nothing if it is shorter than l0: it is slack there.
+
+Below each: the change along a direction of the state, t the rotation of a, with which T turns:
 
     D = l n:   dl = n . dD,  dn = (dD - n dl) / l,  d(l') = dn . v + n . dv
     dd = T' (dD - t x D),   dphi = J^-1 T' (t_b - t_a)
@@ -18,9 +29,11 @@ from __future__ import annotations
 from math import atan2, sqrt
 
 from heuncli.kernel.carried_points import point_motion, world_place
+from heuncli.kernel.conditions import condition_tangent, measure_condition, set_load_places
 from heuncli.kernel.declarations import *
+from heuncli.kernel.jets import jet
 from heuncli.kernel.libm import tan
-from heuncli.kernel.ropes import free_length, measure_rope, rope_tangent
+from heuncli.kernel.sheaves import body_rotation, point_displacement
 from heuncli.kernel.tangent_motion import point_tangent, rotation_tangent, vector_tangent
 
 
@@ -44,11 +57,19 @@ def find_bushing_rotation(scene: cython.pointer[Scene], load: cython.pointer[Loa
     return find_rotation_vector(Mat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z))
 
 
+def find_bushing_shift(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return d."""
+    return rotate_back(bushing_axes(scene, load), find_span_vector(scene, load))
+
+
 def bushing_strain(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """Return d or phi, depending on the part of a bushing that the load is."""
-    if load.kind == BUSHING_SHIFT:
-        return rotate_back(bushing_axes(scene, load), find_span_vector(scene, load))
-    return find_bushing_rotation(scene, load)
+    return find_bushing_shift(scene, load) if load.kind == BUSHING_SHIFT else find_bushing_rotation(scene, load)
+
+
+def other_strain(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the strain of the other part of a bushing: phi or d."""
+    return find_bushing_rotation(scene, load) if load.kind == BUSHING_SHIFT else find_bushing_shift(scene, load)
 
 
 def find_rotation_vector(R: Mat3) -> Vec3:
@@ -228,9 +249,117 @@ def strain_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], x: 
     """Return the change of a bushing's shift or rotation x."""
     if load.a == load.b:
         return Vec3(0.0, 0.0, 0.0)
-    if load.kind == BUSHING_SHIFT:
-        displacement: Vec3 = sub(point_tangent(scene, load.b, load.q).x, point_tangent(scene, load.a, load.p).x)
-        swept: Vec3 = vector_tangent(scene, load.a, rotate(bushing_axes(scene, load), x))
-        return rotate_back(bushing_axes(scene, load), sub(displacement, swept))
+    return bushing_shift_tangent(scene, load, x) if load.kind == BUSHING_SHIFT else bushing_turn_tangent(scene, load, x)
+
+
+def other_strain_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Return the change of the strain of the other part of a bushing between two bodies."""
+    x: Vec3 = other_strain(scene, load)
+    return bushing_turn_tangent(scene, load, x) if load.kind == BUSHING_SHIFT else bushing_shift_tangent(scene, load, x)
+
+
+def bushing_shift_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], d: Vec3) -> Vec3:
+    """Return the change of a bushing's shift d."""
+    displacement: Vec3 = sub(point_tangent(scene, load.b, load.q).x, point_tangent(scene, load.a, load.p).x)
+    swept: Vec3 = vector_tangent(scene, load.a, rotate(bushing_axes(scene, load), d))
+    return rotate_back(bushing_axes(scene, load), sub(displacement, swept))
+
+
+def bushing_turn_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load], phi: Vec3) -> Vec3:
+    """Return the change of a bushing's rotation vector phi."""
     relative_rotation: Vec3 = sub(rotation_tangent(scene, load.b), rotation_tangent(scene, load.a))
-    return rotation_vector_rate(x, rotate_back(bushing_axes(scene, load), relative_rotation))
+    return rotation_vector_rate(phi, rotate_back(bushing_axes(scene, load), relative_rotation))
+
+
+# Elastic ropes
+
+
+def measure_rope(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:
+    """Find S and S' at the present pose, and the unit loads of the rope's parts."""
+    i: cython.Py_ssize_t
+    S: cython.double = 0.0
+    rate: cython.double = 0.0
+    for i in range(load.part, load.part + load.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        measure_condition(scene, part)
+        set_load_places(scene, part)
+        S += part.factor * part.gap
+        rate += part.factor * part.rate
+    return RopeMotion(S, rate)
+
+
+def free_length(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Jet:
+    """Return l0 with its rate."""
+    if load.y.count:
+        return jet(scene.programs, load.y, scene.programs.variables[0])
+    return Jet(load.length, 0.0, 0.0)
+
+
+def rope_stiffness(load: cython.pointer[Load], free: cython.double) -> cython.double:
+    """Return k at a length l0."""
+    return load.stiffness * load.length / free if load.y.count else load.stiffness
+
+
+def rope_stretch(load: cython.pointer[Load], S: cython.double, free: cython.double) -> cython.double:
+    """Return x; 0 if the rope is slack."""
+    x: cython.double = S - free
+    return 0.0 if load.in_body and x < 0.0 else x
+
+
+def rope_energy(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """Return V at the present pose [J]."""
+    free: cython.double = free_length(scene, load).value
+    x: cython.double = rope_stretch(load, measure_rope(scene, load).S, free)
+    return 0.5 * rope_stiffness(load, free) * x * x
+
+
+def rope_power(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """value S' + dV/dt [W]: the power that damping takes, and that a winch gives when it draws the rope in or pays it
+    out.
+
+    dV/dt = k x (S' - l0') - 1/2 k x^2 l0' / l0
+    """
+    free: Jet = free_length(scene, load)
+    x: cython.double = rope_stretch(load, load.span, free.value)
+    pull: cython.double = rope_stiffness(load, free.value) * x
+    power: cython.double = load.value * load.rate + pull * (load.rate - free.rate)
+    if load.y.count:
+        power -= 0.5 * pull * x * free.rate / free.value
+    return power
+
+
+# Elastic ropes along a direction of the state
+
+
+def rope_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:
+    """Return the changes of S and S': dS = sum of f . (displacement of b - that of a at Q) + m . (rotation of b - that
+    of a).
+    """
+    i: cython.Py_ssize_t
+    longer: cython.double = 0.0
+    faster: cython.double = 0.0
+    for i in range(load.part, load.part + load.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        part_change: cython.double = dot(
+            part.f, sub(point_displacement(scene, part.b, part.Q), point_displacement(scene, part.a, part.Q))
+        )
+        part_change += dot(part.m, sub(body_rotation(scene, part.b), body_rotation(scene, part.a)))
+        longer += part.factor * part_change
+        faster += part.factor * condition_tangent(scene, part).rate
+    return RopeMotion(longer, faster)
+
+
+def rope_power_tangent(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], pull: cython.double, d: RopeMotion
+) -> cython.double:
+    """Return the change of value S' + dV/dt for a change `pull` of `value`, and d of S and S', at one instant."""
+    free: Jet = free_length(scene, load)
+    power: cython.double = pull * load.rate + load.value * d.rate
+    x: cython.double = rope_stretch(load, load.span, free.value)
+    if x == 0.0 and load.in_body:
+        return power
+    k: cython.double = rope_stiffness(load, free.value)
+    power += k * (d.S * (load.rate - free.rate) + x * d.rate)
+    if load.y.count:
+        power -= k * x * d.S * free.rate / free.value
+    return power

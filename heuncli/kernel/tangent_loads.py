@@ -21,15 +21,14 @@ from heuncli.kernel.kinematics import locate_point
 from heuncli.kernel.libm import NAN
 from heuncli.kernel.loads import (
     acts_about_axis,
+    bushing_rates,
     evaluate_load_vector,
     is_bushing,
     is_friction,
-    relative_motion,
     slides_in_joint,
     sliding_velocity,
 )
-from heuncli.kernel.ropes import rope_power_tangent, rope_tangent
-from heuncli.kernel.strains import line_tangent
+from heuncli.kernel.strains import line_tangent, rope_power_tangent, rope_tangent
 from heuncli.kernel.tangent_motion import omega_tangent, point_tangent, vector_tangent
 
 
@@ -193,12 +192,16 @@ def add_bushing_tangent(
         return 0.0
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     slides: cython.bint = load.kind == BUSHING_SHIFT
-    motion: Vec3 = relative_motion(scene, load, locate_point(scene, load.b, load.q).v, slides)
-    change: Vec3 = sub(omega_tangent(scene, load.b), omega_tangent(scene, load.a))
-    if slides:
-        change = sliding_velocity_tangent(scene, load, point)
+    rates: BushingRates = bushing_rates(scene, load, locate_point(scene, load.b, load.q).v)
+    turning_change: Vec3 = sub(omega_tangent(scene, load.b), omega_tangent(scene, load.a))
+    changes: BushingRates = BushingRates(turning_change, zero)
+    if slides or load.is_coupled:
+        sliding_change: Vec3 = sliding_velocity_tangent(scene, load, point)
+        changes = (
+            BushingRates(sliding_change, turning_change) if slides else BushingRates(turning_change, sliding_change)
+        )
     tangent_of_load: BushingTangent = bushing_tangent(
-        scene, load, evaluate_load_vector(scene, load), preload_change, motion, change
+        scene, load, evaluate_load_vector(scene, load), preload_change, rates, changes
     )
     d: LoadTangent = (
         LoadTangent(point.x, tangent_of_load.acts, zero) if slides else LoadTangent(point.x, zero, tangent_of_load.acts)

@@ -61,6 +61,15 @@ class LineTangent(Value):
     rate: float
 
 
+class BushingRates(Value):
+    """The rate of a bushing's shift or turn and that of the other of the two, or their changes: velocity of b's point
+    and angular velocity of b, as seen from a, world axes.
+    """
+
+    own: Vec3
+    other: Vec3
+
+
 class BushingTangent(Value):
     """The change of a bushing's force or moment along a direction of the state, and of the power of its damping."""
 

@@ -23,8 +23,7 @@ from heuncli.kernel.expressions import Expressions
 from heuncli.kernel.kinematics import update_kinematics
 from heuncli.kernel.memory import Memory, allocate_work, copy_tables, set_numbers
 from heuncli.kernel.response import configure, evaluate, must_choose_rows, project_state
-from heuncli.kernel.row_choice import choose_rows_again, set_row_threshold
-from heuncli.kernel.selection import select_independent_rows
+from heuncli.kernel.selection import choose_rows_again, select_independent_rows, set_row_threshold
 from heuncli.kernel.solutions import (
     find_joint_loads,
     recover_states,

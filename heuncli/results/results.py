@@ -207,8 +207,8 @@ SIDE_SIGNS: Mapping[str | None, float] = MappingProxyType({word: sign for sign, 
 
 
 class CutPosition(NamedTuple):
-    """A position in a series of cuts: distance s [m], side of a load there, and the index of the requested cut, if it
-    is one.
+    """A position in a series of cuts: distance s [m], whether it is just before or just beyond what acts there, and the
+    index of the requested cut, if it is one.
     """
 
     s: float

@@ -219,15 +219,16 @@ def compute_equivalent_range(
 
 CODE = "no-collective"
 MIN_INTERVALS = 256  # intervals of a run that are sampled, whatever its steps
-MAX_INSTANTS = 400_000  # of a grid: a hundred thousand steps
+MAX_INSTANTS = 400_000  # instants of a grid: a hundred thousand steps
 
 
 def make_histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str]) -> list[LoadHistory]:
-    """Return the histories of the numbers at some paths over the motion; errors, units: of each path, SI.
+    """Make the histories of the numbers at some paths over the motion; a vector counts by its magnitude.
 
-    A vector counts by its magnitude. Raises NotOneNumber where a path is no single number over a motion, SpecError
-    [unknown-path], SolveError where some of it is indeterminate, unknown, or beyond the horizon, LimitError where it
-    turns too often.
+    errors, units: of each path, SI
+
+    Raises NotOneNumber where a path is no single number over a motion, SpecError [unknown-path], SolveError where it is
+    indeterminate, unknown, or beyond the horizon somewhere, LimitError where it turns too often.
     """
     paths = list(errors)
     for path in paths:

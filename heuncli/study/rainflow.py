@@ -76,7 +76,8 @@ def count_repeated(values: Array, times: int) -> Cycles:
     parts, passes = [make_whole_cycles(closed, float(times))], 1
     while passes < times:
         before = residue
-        closed, residue = pair_points(find_turning_points(np.array(before + pair_points(period.tolist())[1])).tolist())
+        points = find_turning_points(np.array(before + pair_points(period.tolist()).residue))
+        closed, residue = pair_points(points.tolist())
         again = 1 if residue != before else times - passes
         parts.append(make_whole_cycles(closed, float(again)))
         passes += again
@@ -95,8 +96,15 @@ def count_endless(values: Array) -> Cycles:
     return make_whole_cycles([*closed, *zip(residue[:-1:2], residue[1::2], strict=True)])
 
 
-def pair_points(points: list[float]) -> tuple[list[tuple[float, float]], list[float]]:
-    """Return the cycles that close among turning points, and the residue; plain floats, 0.2 µs a point."""
+class PairedPoints(NamedTuple):
+    """The cycles that close among turning points, by both ends, and the turning points that remain."""
+
+    closed: list[tuple[float, float]]
+    residue: list[float]
+
+
+def pair_points(points: list[float]) -> PairedPoints:
+    """Pair the turning points whose cycles close; plain floats, 0.2 µs a point."""
     closed: list[tuple[float, float]] = []
     residue: list[float] = []
     for d in points:
@@ -108,7 +116,7 @@ def pair_points(points: list[float]) -> tuple[list[tuple[float, float]], list[fl
             closed.append((b, c))
             del residue[-2:]
         residue.append(d)
-    return closed, residue
+    return PairedPoints(closed, residue)
 
 
 def make_whole_cycles(pairs: list[tuple[float, float]], times: float = 1.0) -> Cycles:

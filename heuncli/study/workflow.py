@@ -58,14 +58,14 @@ def solve(spec: Spec, options: Options | None = None, stages: Stages = NO_CACHE)
 
 
 def make_solver(options: Options, deadline: float | None) -> Callable[[Spec], Study]:
-    """Return a function that solves variations of the spec (other instants or conditions) with the same options and
-    deadline.
-    """
+    """Make a function that solves the spec at other instants or conditions, with the same options and deadline."""
     return lambda spec: solve_by_deadline(spec, options, deadline)
 
 
 def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stages: Stages = NO_CACHE) -> Study:
-    """Solve the scene up to its last instant; deadline: of time.monotonic() [s].
+    """Solve the scene up to its last instant.
+
+    deadline: by time.monotonic() [s]
 
     Raises what `solve` does; SolveError also where a motion fails after the event that was to end it.
     """
@@ -109,8 +109,9 @@ def solve_by_deadline(spec: Spec, options: Options, deadline: float | None, stag
 
 
 def set_up_requested(spec: Spec, options: Options, stages: Stages = NO_CACHE) -> Setup:
-    """Set up the parts of a spec that the options request and its conditions need. The spec is one of `apply_options`.
-    Raises what `set_up` does.
+    """Set up the parts of a spec that the options request and its conditions need. Raises what `set_up` does.
+
+    spec: as `apply_options` returns it
     """
     conditions = spec.analysis.conditions
     selection = options.selection.union(select_for_conditions(conditions, spec)) if conditions else options.selection

@@ -32,6 +32,7 @@ def memory() -> None:
         scenes = {
             "100,000 samples of double": [str(SCENES / "double.yaml"), *many],
             "100,000 of a closed chain": [str(SPECS / "four_bar.yaml"), *many, "--only", "joints,motion"],
+            "100,000 of it by cause": [str(SPECS / "four_bar.yaml"), *many, "--only", "joints,shares"],
             "10,000 cuts": [str(chimney)],
         }
         for name, words in scenes.items():

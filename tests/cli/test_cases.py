@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from pathlib import Path
 
 import pytest
 
+from heuncli.app.commands.run import cases
+from heuncli.base.text_safety import escape
+from heuncli.output.documents.as_data import format_line
 from heuncli.scene.file_format.load import load
 from tests.shared.command import HANGING, Heun
 
@@ -139,3 +144,10 @@ def test_no_case_governs_rounding_or_what_is_alike(heun: Heun, folder: Path) -> 
     table = heun("run", "cases.yaml", "--case", "all").stdout.partition("ENVELOPE")[2]
     assert "joints.pivot.force.x" not in table
     assert "one, same" in table
+
+
+def test_a_cell_with_a_line_break_stays_one_cell() -> None:
+    text = format_line(["of", "text"]) + format_line(["x", 'two\u2028 "lines"']) + '"a\nb",1\n'
+    rows = list(csv.reader(io.StringIO("".join(cases._iter_csv({"one": text, "two": text})))))
+    assert [row[0] for row in rows] == ["case", "one", "one", "two", "two"]
+    assert rows[2][1:] == [escape("a\nb"), "1"]

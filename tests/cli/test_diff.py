@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.output.snapshots.changes import Tolerance, _compare_sums
+from heuncli.output.snapshots.golden_file import NumberSnapshot, SumSnapshot
 from tests.shared.command import Heun
 
 
@@ -99,3 +101,12 @@ def test_results_at_other_instants_are_compared_where_both_are(heun: Heun, folde
     (folder / "later.json").write_text(json.dumps(result))
     refused = heun("diff", "later.json", "many.json")
     assert (refused.returncode, "no instant in common" in refused.stderr) == (2, True)
+
+
+def test_a_sum_is_compared_in_all_that_one_run_has() -> None:
+    value = NumberSnapshot(unit="N", error=0.1, first=1.0, last=1.0)
+    old = SumSnapshot(factors={"a": 1.0}, error=0.0, value=value)
+    new = SumSnapshot(factors={"a": 1.0, "b": 1.0}, error=0.0, value=value.model_copy(update={"least": 0.0}))
+    for pair in ((old, new), (new, old)):
+        assert [change.what for change in _compare_sums("s", *pair, Tolerance(None, {}))] == ["factor of b", "least"]
+    assert not [*_compare_sums("s", old, old, Tolerance(None, {}))]

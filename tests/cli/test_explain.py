@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.app.commands.explain import pages
 from heuncli.app.commands.explain.pages import MEANINGS, PAGES, find_section, parse_codes, read_sections
-from heuncli.results.path_words import NAMES
+from heuncli.results.path_words import NAMES, find_node
 from heuncli.results.results_schema import ROWS, Quantity
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
@@ -262,3 +263,9 @@ def on_a_terminal(words: list[str], folder: Path, env: dict[str, str]) -> str:
     process.wait()
     os.close(parent)
     return told.decode()
+
+
+def test_only_the_unit_1_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    row = next(node for node in find_node(("joints", "JOINT")).values() if isinstance(node, Quantity))  # type: ignore[union-attr]
+    told = dict(pages._describe_quantity("joints.j.x", ["joints", "j", "x"], row._replace(units=("1", "1/s"))))
+    assert told["unit"].startswith("none or 1/s")

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -175,3 +175,15 @@ def test_a_spec_that_is_not_solved_goes_from_process_to_process(heun: Heun, fold
     (folder / "unsolved.yaml").write_text(text + "expect: [{of: energy.kinetic, is: 0, at: 0}]\n", encoding="utf-8")
     one, other = (heun("check", "unsolved.yaml", "hanging.yaml", "--jobs", n) for n in ("1", "2"))
     assert one == other and one.returncode == 3
+
+
+@pytest.mark.skipif(not jobs.can_fork(), reason="no fork")
+def test_an_error_of_the_work_is_no_good_end() -> None:
+    items: Iterator[int] = iter([1])
+
+    def fail(item: int) -> int:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        raise BrokenPipeError
+
+    ((_, outcome),) = jobs.run_as_completed(fail, lambda: next(items, None), 1)
+    assert isinstance(outcome, jobs.ProcessDeath) and outcome.code == 1

@@ -7,8 +7,11 @@ import json
 import numpy as np
 import pytest
 
-from heuncli.base.errors import HeunError
+from heuncli.base.errors import HeunError, SpecError
 from heuncli.output.tables import measure
+from heuncli.output.tables.measure import PATH, parse_measure, require_known_paths
+from heuncli.scene.file_format.load import load
+from tests.shared.command import HANGING
 from tests.shared.fakes import ACCURATE, FakeStudy
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))
@@ -171,3 +174,19 @@ def test_other_words_get_the_form_that_was_meant(text: str, said: str) -> None:
     with pytest.raises(HeunError) as caught:
         measure.parse_measure(text)
     assert caught.value.problems[0].hint == said
+
+
+def test_a_path_of_many_colons_ends() -> None:
+    assert PATH.match("a:" * 200 + "!") is None
+    assert PATH.match("sections.a@0.1:before.M1") and not PATH.match("a b")
+
+
+def test_stresses_of_an_impulse_need_properties() -> None:
+    text = HANGING + (
+        "sections: {s: {body: bar, at: [0, 0, -0.2], normal: [0, 0, -1], "
+        "piece: {mass: 0.5, center: [0, 0, -0.6], inertia: [0.01, 0.01, 0.001]}}}\n"
+        "impulses: {blow: {on: bar.top, vector: [1, 0, 0]}}\n"
+    )
+    spec = load("scene.yaml", text)
+    with pytest.raises(SpecError, match="the section has no properties"):
+        require_known_paths([parse_measure("impulses.0.sections.s.stress.mises")], spec)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import HeunError
 from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun

@@ -107,6 +107,18 @@ def test_cases_and_specs_over_each_other(bars: Path, heun: Heun) -> None:
     assert heavy.min() < light.min()
 
 
+def test_several_specs_are_drawn_at_common_instants(bars: Path, heun: Heun) -> None:
+    (bars / "longer.yaml").write_text((bars / "conrod.yaml").read_text().replace("2*pi/w", "4*pi/w"))
+    done = heun("plot", "conrod.yaml", "longer.yaml", "sections.shank", "--at", "0.005,0.01", "-o", "both.svg")
+    assert (done.returncode, done.stderr) == (0, "")
+    text = (bars / "both.svg").read_text()
+    assert all(f"{name}: t = {time} s" in text for name in ("conrod", "longer") for time in ("0.005", "0.01"))
+    done = heun("plot", "conrod.yaml", "longer.yaml", "sections.shank", "--at", "last", "-o", "last.svg")
+    assert done.returncode == 2 and not (bars / "last.svg").exists()
+    assert "heun: conrod: --at 0.04" in done.stderr and "one figure shows all runs at the same instants" in done.stderr
+    assert "give instants that all runs reach, in seconds, or call it once for each" in done.stderr
+
+
 @pytest.mark.heavy
 def test_a_figure_repeats_to_the_byte_and_units_are_shown(bars: Path, heun: Heun) -> None:
     for name in ("one.svg", "two.svg"):

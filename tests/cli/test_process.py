@@ -5,10 +5,12 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
+from heuncli.base import programs
 from tests.shared.processes import wait_until_solving
 from tests.shared.shell import ENVIRONMENT, shell
 
@@ -111,3 +113,30 @@ def test_the_process_ends_at_once_unless_something_waits_for_that(before: str, m
         )
         assert done.returncode == expected
         assert done.stdout.partition("\n")[2] == more if words == "--version" else done.stdout == more
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
+def test_a_child_that_holds_the_output_ends_too(tmp_path: Path) -> None:
+    _, reason = programs.run_program(["sh", "-c", "sleep 60 & echo $! > child"], str(tmp_path), 0.3)
+    assert "longer than 0.3 s" in reason
+    assert has_ended(tmp_path / "child")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
+def test_a_child_ends_with_a_program_that_succeeds(tmp_path: Path) -> None:
+    line = "sleep 60 > /dev/null 2>&1 & echo $! > child; echo done"
+    assert programs.run_program(["sh", "-c", line], str(tmp_path), 10.0) == (b"done\n", "")
+    assert has_ended(tmp_path / "child")
+
+
+def has_ended(file: Path) -> bool:
+    """Whether the process whose number stands in a file has ended, or does so within a second."""
+    state = Path(f"/proc/{file.read_text().strip()}/stat")
+    for _ in range(100):
+        try:
+            if state.read_text().split()[2] == "Z":
+                return True
+        except (FileNotFoundError, ProcessLookupError):
+            return True
+        time.sleep(0.01)
+    return False

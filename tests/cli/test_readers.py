@@ -105,3 +105,27 @@ def test_help_imports_no_numpy() -> None:
 
 def test_the_version_imports_nothing_heavy() -> None:
     assert not {"numpy", "yaml", "typer", "pydantic"} & imported("--version")
+
+
+@pytest.mark.parametrize(
+    ("line", "hints"),
+    [
+        ("run specs/double.yaml --json", ["hint: write --format json for --json"]),
+        (
+            "run specs/double.yaml --dt=0.1 --out x",
+            ["hint: write --step SECONDS for --dt", "hint: write --output FILE for --out"],
+        ),
+        ("check specs/double.yaml --dt 0.1", []),  # it has no --step
+        ("methods --full", []),
+    ],
+)
+def test_options_of_other_programs_have_a_hint_where_the_command_has_such_an_option(
+    line: str, hints: list[str]
+) -> None:
+    assert entry.find_option_hints(line.split()) == hints
+
+
+def test_hints_name_options_that_some_command_has() -> None:
+    words = {word for command in COMMANDS for field in list_fields(command.request) for word in field.option.words}
+    assert {known.split()[0] for known in entry.FOREIGN_OPTIONS.values()} <= words
+    assert not entry.FOREIGN_OPTIONS.keys() & {"--format", "--output"}

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.base import files
+from heuncli.base import files, signals
 from tests.shared.folders import ROOT
 
 # Sends itself a signal, twice, when a module is looked for or a function of `os` is called; then runs the command.
@@ -160,3 +160,12 @@ def test_rights_are_those_of_the_old_file_or_the_usual(
         os.umask(before)
     assert path.stat().st_mode & 0o777 == (0o640 if old is None else old)
     assert [one.name for one in tmp_path.iterdir()] == ["out.json"]
+
+
+def test_one_cleanup_does_not_stop_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[object] = []
+    monkeypatch.setattr(signals, "_cleanups", [lambda: done.append("first"), lambda: 1 / 0])
+    monkeypatch.setattr(os, "_exit", done.append)
+    monkeypatch.setattr(os, "write", lambda number, line: done.append(line))
+    signals.exit_after_cleanup(130, b"told")
+    assert done == ["first", b"told", 130]

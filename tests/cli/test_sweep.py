@@ -14,8 +14,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
-from heuncli.app.commands.sweep import running
+from heuncli.analyses.variants.evaluation import VariantEvaluator
+from heuncli.analyses.variants.parameters import Values
+from heuncli.app.cli import variant_workers
 from heuncli.base import process
 from tests.shared.command import Done, Heun
 from tests.shared.shell import ENVIRONMENT
@@ -83,7 +84,7 @@ REFUSED = {
 def test_what_is_refused_before_anything_runs(
     heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
-    monkeypatch.setattr(running, "solve_batch", None)
+    monkeypatch.setattr(variant_workers, "solve_batch", None)
     given = [words] if " qq" in words else words.split()
     done = sweep(heun, *given)
     assert (done.returncode, done.stdout) == (2, "")

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pytest
 
 from heuncli.analyses.variants.evaluation import VariantEvaluator
-from heuncli.app.commands.sweep import running
+from heuncli.app.cli import variant_workers
 from heuncli.scene.file_format.quantity import NumberWithUnit
 from tests.shared.command import Heun
 from tests.shared.sweeps import (
@@ -133,7 +133,7 @@ def test_a_variant_that_ends_its_process_is_tried_once_more(
     words = ("sweep", "hanging.yaml", "m=1:5/5", "--measure", "joints.pivot.force.z", "--format", "csv")
     undisturbed = heun(*words)
     monkeypatch.setattr(VariantEvaluator, "answer", deadly)
-    monkeypatch.setattr(running.Batches, "next", in_one(running.Batches.next))
+    monkeypatch.setattr(variant_workers.Batches, "next", in_one(variant_workers.Batches.next))
     done = heun(*words, "--store", "s.sqlite", "--jobs", "2")
     assert done.returncode == 0
     assert done.stderr == "heun: 1 of 5 variants could not be solved: 1 worker-died\n"
@@ -147,7 +147,7 @@ def test_a_variant_that_ends_its_process_is_tried_once_more(
 def in_one(following):  # type: ignore[no-untyped-def]
     """Batches that begin with all there is."""
 
-    def next_(self: running.Batches) -> object:
+    def next_(self: variant_workers.Batches) -> object:
         self.size = max(self.size, 100)
         return following(self)
 

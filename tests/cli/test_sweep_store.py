@@ -12,10 +12,13 @@ from pathlib import Path
 
 import pytest
 
+import heuncli
 from heuncli.analyses.sweep_store import Store
 from heuncli.analyses.variants.evaluation import VariantEvaluator
 from heuncli.analyses.variants.measures import MeasureValue, VariantResult
-from heuncli.base.errors import OutputError
+from heuncli.app.commands.sweep import running
+from heuncli.app.commands.sweep.request import SweepRequest
+from heuncli.base.errors import OutputError, UsageError
 from heuncli.scene.file_format.quantity import NumberWithUnit
 from tests.shared import triangles
 from tests.shared.command import HANGING, Done, Heun
@@ -297,3 +300,42 @@ def begin(name: str, begins: Barrier) -> None:
     begins.wait()
     with Store(name) as store:
         store.add_result(1, os.getpid(), os.urandom(32), ONE, VariantResult((MeasureValue(1.0),)))
+
+
+@pytest.mark.parametrize("words", ["--dask tcp://h:1", "--no-reduce", "--least-norm", "--seed 0"])
+def test_show_refuses_what_it_would_ignore(heun: Heun, words: str) -> None:
+    done = heun("sweep", "--show", "s.sqlite", *words.split())
+    assert done.returncode == 2
+    assert f"--show and {words.split()[0]} cannot be combined" in done.stderr
+
+
+def test_show_takes_the_rest() -> None:
+    running._require_alone(SweepRequest(show="s.sqlite", format="csv", shard="1/2"))
+
+
+def test_a_store_that_cannot_be_made_is_left_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from heuncli.analyses import sweep_store_file
+
+    opened: list[sqlite3.Connection] = []
+    connect = sqlite3.connect
+
+    def record_connection(*words: object, **options: object) -> sqlite3.Connection:
+        opened.append(connect(*words, **options))  # type: ignore[call-overload]
+        return opened[-1]
+
+    monkeypatch.setattr(sqlite3, "connect", record_connection)
+    monkeypatch.setattr(sweep_store_file, "TABLES", (*sweep_store_file.TABLES, "CREATE NONSENSE"))
+    with pytest.raises(heuncli.HeunError):
+        Store(str(tmp_path / "s.sqlite"))
+    with pytest.raises(sqlite3.ProgrammingError, match="closed"):
+        opened[0].execute("SELECT 1")
+    with connect(tmp_path / "s.sqlite") as again:
+        assert again.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,)
+
+
+def test_a_store_without_its_version_is_damaged(tmp_path: Path) -> None:
+    name = str(tmp_path / "s.sqlite")
+    with Store(name) as store:
+        store.connection.execute("DELETE FROM heun")
+    with pytest.raises(UsageError, match="damaged"):
+        Store(name)

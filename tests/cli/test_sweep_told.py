@@ -21,7 +21,7 @@ from heuncli.analyses.sweep_rows import SweepHead, SweptRow, explain_missing, fi
 from heuncli.analyses.variants.measures import MeasureLabel, MeasureValue, MissingWord, VariantResult
 from heuncli.analyses.variants.parameters import ParameterAxis, RandomVariable, parse_axis_values
 from heuncli.analyses.variants.plans import Plan, make_axes_plan, make_draws
-from heuncli.app.commands.sweep import writer
+from heuncli.app.commands.sweep import as_columns, writer
 from heuncli.app.commands.sweep.writer import SweepOutput, make_tables
 from heuncli.output.documents.as_text import format_plain
 from heuncli.study.quantities.table_units import Units, parse_units
@@ -308,7 +308,7 @@ def test_memory_does_not_grow_with_the_rows(
         answer = VariantResult((MeasureValue(1.5, 1e-9, 0.25),))
         return (SweptRow(k, plan.find_values(k), answer) for k in range(count))
 
-    monkeypatch.setattr(writer, "GROUP", 1000)
+    monkeypatch.setattr(as_columns, "ROWS_AT_ONCE", 1000)
     how = SweepOutput(form, str(tmp_path / f"out.{form}"))
     writer.write_sweep(head_of(plan, "N"), rows(1), how)  # what is loaded for it
     peaks = []
@@ -342,7 +342,7 @@ def test_parquet_goes_to_a_file_and_needs_its_extra(heun: Heun, folder: Path, mo
         done = heun(*words, *more)
         assert done.returncode == 2 and "parquet requires a file" in done.stderr and not done.stdout
     (folder / "out.parquet").write_text("old")
-    monkeypatch.setattr(writer.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(as_columns.importlib.util, "find_spec", lambda name: None)
     done = heun(*words, "-o", "out.parquet")
     assert done.returncode == 2 and "[missing-extra]" in done.stderr
     assert 'pip install "heuncli[parquet]"' in done.stderr and (folder / "out.parquet").read_text() == "old"
@@ -363,7 +363,7 @@ def test_parquet_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
 
 
 def test_parquet_has_row_groups(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(writer, "GROUP", 2)
+    monkeypatch.setattr(as_columns, "ROWS_AT_ONCE", 2)
     plan = make_axes_plan([axis("n=1:5/5")])
     path = tmp_path / "out.parquet"
     writer.write_sweep(head_of(plan, "N"), rows_of(plan, [1.0, 2.0, None, 4.0, 5.0]), SweepOutput("parquet", str(path)))

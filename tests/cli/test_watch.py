@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.app.commands.run.command import read_state
 from tests.shared.command import HANGING, Heun
 
 TABLED = (
@@ -73,3 +74,16 @@ def test_again_at_each_save_until_it_is_interrupted(watching: Watching, tmp_path
 @pytest.mark.parametrize("words", [("hanging.yaml", "--time-limit", "3"), ("-",)])
 def test_what_cannot_be_watched(heun: Heun, words: tuple[str, ...]) -> None:
     assert heun("run", *words, "--watch").returncode == 2
+
+
+def test_the_watch_sees_every_file_of_a_spec(tmp_path: Path) -> None:
+    spec = tmp_path / "scene.yaml"
+    spec.write_text(
+        HANGING + "report: {logo: logo.png}\ncases: {a: {set: {tables.gas.file: b.csv}}}\n"
+        "tables: {gas: {file: a.csv}}\nexpect: [{of: x, curve: c.csv}]\n"
+        "other: [{shapes: [{type: mesh, file: m.stl}]}]\n"
+    )
+    names = ("logo.png", "a.csv", "b.csv", "c.csv", "m.stl")
+    for name in names:
+        (tmp_path / name).write_text("1")
+    assert {Path(state[0]).name for state in read_state(str(spec)) if state} == {"scene.yaml", *names}

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
 from heuncli.scene.shapes.rotations import cross_matrix
@@ -60,7 +61,15 @@ CENTER, INERTIA, MASS = np.array([0.05, -0.02, 0.1]), np.diag([1.2, 1.5, 0.9]), 
 MOUNTS = {"a": [0.3, 0.2, -0.1], "b": [0.3, -0.2, -0.1], "c": [-0.4, 0.2, -0.15], "d": [-0.4, -0.2, -0.1]}
 
 
-def engine(weight: float = 0.0) -> dict[str, Any]:
+PLAIN = {"stiffness": [2e4, 3e4, 9e4], "turning": [30.0, 50.0, 80.0]}
+CROSSED = {
+    "stiffness": [[2e4, 5e3, -2e3], [5e3, 3e4, 6e3], [-2e3, 6e3, 9e4]],
+    "turning": [[30.0, 5.0, -9.0], [5.0, 50.0, 8.0], [-9.0, 8.0, 80.0]],
+    "coupling": [[200.0, -300.0, 400.0], [50.0, 250.0, -100.0], [-300.0, 400.0, 500.0]],
+}
+
+
+def engine(weight: float = 0.0, of_bushing: Mapping[str, Any] = PLAIN) -> dict[str, Any]:
     """A block on four bushings, whose axes lean inward; drawn where nothing strains them."""
     lean = {n: {"axis": [1, 0, 0], "angle": 0.6 * np.sign(at[1])} for n, at in MOUNTS.items()}
     return {
@@ -68,14 +77,13 @@ def engine(weight: float = 0.0) -> dict[str, Any]:
         "bodies": {"block": {"mass": MASS, "center": CENTER.tolist(), "inertia": np.diag(INERTIA).tolist(),
                              "points": MOUNTS, "position": [0, 0, 0]}},
         "forces": {
-            n: {"type": "bushing", "from": f"ground.{n}", "to": f"block.{n}", "stiffness": [2e4, 3e4, 9e4],
-                "turning": [30.0, 50.0, 80.0], "orientation": lean[n]}
+            n: {"type": "bushing", "from": f"ground.{n}", "to": f"block.{n}", "orientation": lean[n], **of_bushing}
             for n in MOUNTS
         },
     }  # fmt: skip
 
 
-def stiffness() -> np.ndarray[Any, Any]:
+def stiffness(of_bushing: Mapping[str, Any] = PLAIN) -> np.ndarray[Any, Any]:
     """The 6 x 6 of shift of, and turn about, the centre of mass."""
     K = np.zeros((6, 6))
     for at in MOUNTS.values():
@@ -83,27 +91,33 @@ def stiffness() -> np.ndarray[Any, Any]:
         c, s = np.cos(angle), np.sin(angle)
         T = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
         G = np.hstack([np.eye(3), -cross_matrix(np.array(at) - CENTER)])  # d = shift + turn x arm
-        K += G.T @ T @ np.diag([2e4, 3e4, 9e4]) @ T.T @ G
-        K[3:, 3:] += T @ np.diag([30.0, 50.0, 80.0]) @ T.T
+        strains = np.vstack([T.T @ G, np.hstack([np.zeros((3, 3)), T.T])])  # shift and turn in the bushing's axes
+        upper, lower = (np.diag(x) if np.ndim(x := of_bushing[key]) == 1 else np.array(x) for key in PLAIN)
+        coupling = np.array(of_bushing.get("coupling", np.zeros((3, 3))))
+        K += strains.T @ np.block([[upper, coupling], [coupling.T, lower]]) @ strains
     return K
 
 
-def test_an_engine_on_four_bushings() -> None:
+@pytest.mark.parametrize("of_bushing", [PLAIN, CROSSED], ids=["plain", "crossed"])
+def test_an_engine_on_four_bushings(of_bushing: Mapping[str, Any]) -> None:
     """Six rigid-body modes, as of the 6 x 6 by hand; with weight on it those about the pose that rests lie beside."""
-    told = compute_spec_modes(load("scene.yaml", to_yaml(engine())))
+    told = compute_spec_modes(load("scene.yaml", to_yaml(engine(0.0, of_bushing))))
     M = np.zeros((6, 6))
     M[:3, :3], M[3:, 3:] = MASS * np.eye(3), INERTIA
-    wanted = np.sqrt(np.linalg.eigvals(np.linalg.solve(M, stiffness())).real)
+    wanted = np.sqrt(np.linalg.eigvals(np.linalg.solve(M, stiffness(of_bushing))).real)
     found = sorted(mode.eigenvalue.imag for mode in told.modes if mode.eigenvalue.imag > 0.0)
     assert len(found) == 6
     assert np.abs(np.array(found) - np.sort(wanted)).max() <= 1e-11 * max(wanted)
 
 
-def test_it_rests_where_its_springs_bear_it() -> None:
+@pytest.mark.parametrize("of_bushing", [PLAIN, CROSSED], ids=["plain", "crossed"])
+def test_it_rests_where_its_springs_bear_it(of_bushing: Mapping[str, Any]) -> None:
     """Small weight: the shift and turn that the 6 x 6 gives, to second order; what they bear is the weight."""
     weight = 1e-3
-    found = solved(engine(weight) | {"analysis": {"type": "rest"}, "report": ["motion", "foundation", "forces"]})
-    small = np.linalg.solve(stiffness(), [0, 0, -MASS * weight, 0, 0, 0])
+    found = solved(
+        engine(weight, of_bushing) | {"analysis": {"type": "rest"}, "report": ["motion", "foundation", "forces"]}
+    )
+    small = np.linalg.solve(stiffness(of_bushing), [0, 0, -MASS * weight, 0, 0, 0])
     moved = np.asarray(found.bodies["block"]["center"])[0] - CENTER
     near(moved, small[:3], float(np.abs(small[:3]).max()), 1e-4)
     near(found.foundation["force"][0], [0, 0, -MASS * weight], MASS * weight, 1e-9)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.output.tables.run_description import make_heading
 from heuncli.scene.file_format.load import load

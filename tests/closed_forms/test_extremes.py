@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,11 @@ import pytest
 from heuncli.output.documents.document import format_cell
 from heuncli.output.tables import measure
 from heuncli.output.tables.page import make_page
+from heuncli.results.results import Extremes
 from heuncli.results.results_schema import REPORTS
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.queries.study import Study
+from heuncli.study.search.extremes import search_extremes
 from tests.shared.measured import measured
 from tests.shared.scenes import near, study
 
@@ -211,3 +214,67 @@ def test_under_a_trolley_that_runs_along_a_beam(count: int) -> None:
         most,
         1e-11,
     )
+
+
+# ---- peaks of the same height
+TURN = 2.0 * np.pi
+
+
+def first_extremes(f: Callable[[np.ndarray], np.ndarray], error: float, turns: float = 5.2, **more: Any) -> Extremes:
+    """The extremes of f over some turns, from 17.3 samples a turn."""
+    times = np.arange(0.0, turns * TURN, TURN / 17.3)
+    return search_extremes(lambda t: f(t)[:, None], times, errors=np.array([error]), **more)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3, 1.1, 2.5, 4.0])
+def test_the_first_of_equal_peaks_is_named(phase: float) -> None:
+    found = first_extremes(lambda t: np.sin(t + phase), 1e-13)
+    near(found.high, [1.0], 1.0, 1e-13)
+    near(found.high_at, [(0.25 * TURN - phase) % TURN], TURN, 1e-6)
+    near(found.low_at, [(0.75 * TURN - phase) % TURN], TURN, 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("growth", "error", "turn"),
+    [(1e-9, 1e-10, 5), (1e-9, 1e-8, 0), (-1e-9, 1e-10, 0), (1e-5, 1e-6, 5), (1e-5, 2e-5, 5)],
+)
+def test_a_later_peak_is_named_if_it_is_higher_by_more_than_the_error(growth: float, error: float, turn: int) -> None:
+    """The last row: numbers known to fewer than six digits are not compared with their error."""
+    found = first_extremes(lambda t: (1.0 + growth * t / TURN) * np.sin(t), error, turns=5.9)
+    near(found.high_at, [(0.25 + turn) * TURN], TURN, 1e-4)
+
+
+def test_the_first_of_equal_magnitudes_and_of_two_columns() -> None:
+    found = first_extremes(lambda t: (np.sin(t) + 0.2) ** 2, 1e-13, is_squared=np.array([True]))
+    near([found.high[0], found.high_at[0]], [1.44, 0.25 * TURN], TURN, 1e-6)
+    times = np.arange(0.0, 4.6 * TURN, TURN / 17.3)
+    both = search_extremes(lambda t: np.stack([np.sin(t), np.cos(t - 1.0)], axis=1), times, [[0, 1]])
+    near(both.high_at, [1.0], TURN, 1e-6)
+    assert both.high_column.tolist() == [1]
+
+
+def test_all_loads_of_a_press_are_greatest_in_its_first_turn() -> None:
+    """Two turns of a driven slider-crank: each row names the first, whatever rounding makes of the second."""
+    run = study("""
+heun: 1
+space: planar
+gravity: [0, 0, 0]
+ground: {points: {O: [0, 0, 0], G: [0.9, 0, 0]}}
+bodies:
+  crank: {mass: 2, center: [0.05, 0, 0], inertia: 0.01, points: {O: [0, 0, 0], A: [0.1, 0, 0]}}
+  rod: {mass: 3, center: [0.25, 0, 0], inertia: 0.06, points: {A: [0, 0, 0], B: [0.5, 0, 0]}}
+  ram: {mass: 20, center: [0, 0, 0], inertia: 0.1, points: {B: [0, 0, 0]}}
+joints:
+  O: {type: pin, from: ground.O, to: crank.O}
+  A: {type: pin, from: crank.A, to: rod.A}
+  B: {type: pin, from: rod.B, to: ram.B}
+  G: {type: slide, from: ground.G, to: ram.B, axis: [1, 0, 0]}
+drives: {motor: {joint: O, angle: 30*t}}
+forces: {press: {type: force, on: ram.B, vector: ["-20 kN*max(0, sin(30*t))", 0, 0]}}
+analysis: {duration: 0.4, samples: 101}
+""")
+    page = make_page(run.results, make_labels(run.spec), run.magnitudes)
+    found = run.search_extremes(page.make_search(), frozenset(REPORTS), whole=True)
+    names = [k for k, path in enumerate(found.paths) if path.split(".")[0] in ("joints", "foundation", "forces")]
+    assert len(names) > 20
+    assert max(*found.low_at[names], *found.high_at[names]) < TURN / 30.0

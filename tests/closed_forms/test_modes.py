@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.motion.linearisation.oscillations import SceneModes
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml

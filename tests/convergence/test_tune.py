@@ -11,9 +11,9 @@ import pytest
 from heuncli.analyses.tune.results import TuneGoal, TuneResults, TuneTask
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import Trials
-from heuncli.analyses.variants.evaluation import Values
-from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, Comparison, MeasureValue, VariantResult
-from heuncli.analyses.variants.parameters import DesignVariable
+from heuncli.analyses.variants.conditions import Comparison
+from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, MeasureValue, VariantResult
+from heuncli.analyses.variants.parameters import DesignVariable, Values
 from heuncli.results.results import Array
 
 Function = Callable[[Array], float]
@@ -85,8 +85,8 @@ def test_a_kink_in_two_variables(seed: int) -> None:
     assert found.ending == "converged" and found.gain is not None
     assert found.gain <= found.floor <= 2e-6 * spread(kinked)
     assert 0.0 <= best_of(found) - 5.0 <= 10.0 * found.floor
-    for freedom, rises in zip(found.tolerance_ranges, ((1.0, 1.0), (2.5, 3.0)), strict=True):
-        for move, rise in zip(freedom.of_hundredth, rises, strict=True):
+    for range_, rises in zip(found.tolerance_ranges, ((1.0, 1.0), (2.5, 3.0)), strict=True):
+        for move, rise in zip(range_.hundredth_moves, rises, strict=True):
             assert move is not None and move.limit == "worse"
             assert 0.8 * 0.05 / rise - 1e-4 <= move.distance <= 0.05 / rise + 1e-4
 
@@ -95,10 +95,10 @@ def test_a_kink_in_two_variables(seed: int) -> None:
 def test_a_smooth_bowl_whichever_way_up(greatest: bool) -> None:
     found = tuned(lambda x: -bowl(x) if greatest else bowl(x), error=1e-9, greatest=greatest)
     assert found.ending == "converged" and abs(abs(best_of(found)) - 1.0) <= found.floor
-    for freedom, curvature in zip(found.tolerance_ranges, (1.0, 2.0), strict=True):
-        for move in freedom.of_hundredth:  # 1 % of 1: curvature s² = 0.01
+    for range_, curvature in zip(found.tolerance_ranges, (1.0, 2.0), strict=True):
+        for move in range_.hundredth_moves:  # 1 % of 1: curvature s² = 0.01
             assert move is not None and move.distance == pytest.approx(math.sqrt(0.01 / curvature), rel=0.15)
-        for move in freedom.of_floor:
+        for move in range_.floor_moves:
             assert move is not None and move.distance == pytest.approx(math.sqrt(found.floor / curvature), rel=0.5)
 
 
@@ -120,7 +120,7 @@ def test_a_boundary_with_a_closed_form() -> None:
     assert found.ending == "converged" and found.is_feasible and found.active_constraints == (True,)
     assert 0.0 <= best_of(found) - 2.0 * math.sqrt(0.4) <= 2.0 * found.floor
     assert found.best is not None and found.best.place == pytest.approx((math.sqrt(0.4), math.sqrt(0.1)), abs=2e-3)
-    down, up = found.tolerance_ranges[0].of_hundredth
+    down, up = found.tolerance_ranges[0].hundredth_moves
     assert down is not None and down.limit == "c0" and up is not None and up.limit == "worse"
 
 
@@ -139,10 +139,10 @@ def test_bounds_that_hold_it() -> None:
     found = tuned(lambda x: float(x[0] - 3.0 * x[1]))
     assert found.ending == "converged" and best_of(found) == -3.0
     assert (found.find_bound(0), found.find_bound(1)) == ("low", "high")
-    assert found.tolerance_ranges[0].of_hundredth[0] is not None
+    assert found.tolerance_ranges[0].hundredth_moves[0] is not None
     assert (
-        found.tolerance_ranges[0].of_hundredth[0].limit == "bound"
-        and found.tolerance_ranges[0].of_hundredth[0].distance == 0.0
+        found.tolerance_ranges[0].hundredth_moves[0].limit == "bound"
+        and found.tolerance_ranges[0].hundredth_moves[0].distance == 0.0
     )
 
 
@@ -153,15 +153,15 @@ def test_half_of_the_box_cannot_be_solved() -> None:
     edge = min(kinked(np.array([0.5, y])) for y in ys)
     assert found.ending == "converged" and abs(best_of(found) - edge) <= 1e-4
     assert found.failures["does-not-close"] > 10 and found.best is not None and found.best.place[0] >= 0.5
-    down = found.tolerance_ranges[0].of_hundredth[0]
+    down = found.tolerance_ranges[0].hundredth_moves[0]
     assert down is not None and down.limit == "does-not-close"
 
 
 def test_a_jump() -> None:
-    """The best lies beside a jump, and its freedom says so."""
+    """The best lies beside a jump, and its moves say so."""
     found = tuned(lambda x: float((x[0] - 0.3) ** 2 + (x[1] - 0.6) ** 2 + (5.0 if x[0] > 0.25 else 0.0)) + 1.0)
     assert found.ending == "converged" and best_of(found) == pytest.approx(1.0025, abs=1e-5)
-    up = found.tolerance_ranges[0].of_hundredth[1]
+    up = found.tolerance_ranges[0].hundredth_moves[1]
     assert up is not None and up.distance < 1e-6 and up.limit == "jump"
 
 
@@ -182,9 +182,9 @@ def test_a_flat_valley() -> None:
     """Where one variable does nothing, it may move from bound to bound."""
     found = tuned(lambda x: float((x[0] - 0.4) ** 2) + 1.0)
     assert found.ending == "converged" and best_of(found) - 1.0 <= found.floor
-    assert [move.limit for move in found.tolerance_ranges[1].of_hundredth if move is not None] == ["bound", "bound"]
+    assert [move.limit for move in found.tolerance_ranges[1].hundredth_moves if move is not None] == ["bound", "bound"]
     assert found.best is not None
-    assert [move.distance for move in found.tolerance_ranges[1].of_hundredth if move is not None] == pytest.approx(
+    assert [move.distance for move in found.tolerance_ranges[1].hundredth_moves if move is not None] == pytest.approx(
         [found.best.place[1], 1.0 - found.best.place[1]]
     )
 

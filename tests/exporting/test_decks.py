@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody, convert_load_cases, parse_units
+from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
 from heuncli.analyses.load_cases.solid_mesh import SolidMesh, read_mesh
+from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_units
 from heuncli.app.commands.export import FORMATS
 from heuncli.base.records import replace
 from heuncli.output.fe_decks import nastran

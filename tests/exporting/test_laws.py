@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.load_cases.assembly import BALANCE_TOLERANCE
-from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody, convert_load_cases, parse_units
+from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
+from heuncli.analyses.load_cases.unit_systems import convert_load_cases, parse_units
 from heuncli.results.results import Array
 from heuncli.scene.file_format.load import load
 from heuncli.scene.file_format.source import read_source

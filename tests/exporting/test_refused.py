@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from heuncli.analyses.load_cases.assembly import require_balance
-from heuncli.analyses.load_cases.model import SI, parse_units
 from heuncli.analyses.load_cases.solid_mesh import read_mesh
+from heuncli.analyses.load_cases.unit_systems import SI, parse_units
 from heuncli.base.errors import Finding, SolveError
 from heuncli.base.records import replace
 from tests.shared.command import Heun

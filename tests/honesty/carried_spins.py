@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.motion.linearisation.oscillations import SceneModes
 from heuncli.results.results import Array

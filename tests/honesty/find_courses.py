@@ -25,7 +25,7 @@ import numpy as np
 
 from heuncli.analyses.find.results import FindResults
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.measures import Comparison
+from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.analyses.variants.samples import Sample
 from heuncli.app.cli.entry import enter

@@ -17,8 +17,8 @@ from scipy.optimize import brentq
 from heuncli.analyses.find.narrowing import is_steep
 from heuncli.analyses.find.results import IntervalFindings
 from heuncli.analyses.find.study import find_meetings
+from heuncli.analyses.variants.conditions import Relation
 from heuncli.analyses.variants.course import MeasureCourse
-from heuncli.analyses.variants.measures import Relation
 from heuncli.analyses.variants.samples import Sample
 
 Function = Callable[[float], float]

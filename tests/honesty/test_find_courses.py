@@ -6,7 +6,7 @@ import pytest
 
 from heuncli.analyses.find.study import find_meetings
 from heuncli.analyses.variants.samples import Sample
-from tests.honesty.find_courses import KINDS, judged
+from tests.honesty.find_courses import KINDS, KnownCourse, found_directly, judged
 
 
 @pytest.mark.heavy
@@ -51,3 +51,9 @@ def test_what_errors_leave_open_is_not_met_nowhere(off: float, is_open: bool) ->
     )
     assert found.is_complete and not found.touches and found.is_met_nowhere is not is_open
     assert [one.left.x <= 0.4 <= one.right.x for one in found.not_excluded] == [True] * is_open
+
+
+@pytest.mark.parametrize(("formula", "ways"), [("x", [None]), ("x - 0.25", ["rises"]), ("0.5 - x", ["falls"])])
+def test_a_crossing_at_an_end_has_no_way(formula: str, ways: list[str | None]) -> None:
+    told = found_directly(KnownCourse("", formula, 0.0, 1.0, 0.0, lambda x: x), "=")
+    assert [one["way"] for one in told["crossings"]] == ways

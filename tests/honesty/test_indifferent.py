@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.scene.file_format.load import load
 from tests.honesty.indifferent import PARTS, TYPED, Bench, law, spring_arm, turntable
 from tests.oracle.values import to_yaml

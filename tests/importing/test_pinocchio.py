@@ -94,7 +94,7 @@ def same(text: str, seed: int, *, driven: bool = True, **options: Any) -> None:
     agree_in_planes(robot, found, wanted)
 
 
-PUBLIC = ("panda", "so101", "qbmove_2dof", "double_pendulum", "quadruped", "simple_humanoid")
+PUBLIC = ("human", "panda", "so101", "qbmove_2dof", "double_pendulum", "quadruped", "simple_humanoid")
 
 
 @pytest.mark.parametrize("name", PUBLIC)

@@ -47,6 +47,7 @@ PASSED = {  # what stands beside the links, in the joint, in the link; how it is
     "semantics": ({"top": '<passive_joint name="hip"/><disable_collisions/>'}, "1 passive_joint, 1 disable_collisions"),
     "words with others in them": ({"top": "<a:drawing/><a:property/><a:enforce/><a:forceTorqueSensor/>"},
                                   "1 a:drawing, 1 a:property, 1 a:enforce, 1 a:forceTorqueSensor"),
+    "of a drone": ({"top": '<properties arm="0.04" kf="3e-10"/>'}, "1 properties"),
     "in a joint": ({"inner": "<safety_controller/><drake:color/>"},
                    "1 safety_controller in joints, 1 drake:color in joints"),
     "in a link": ({"part": "<contact/><drake:looks/><origin/>"},
@@ -243,3 +244,16 @@ def test_two_runs_say_the_same_in_the_same_order() -> None:
         for seed in ("1", "2")
     }  # fmt: skip
     assert len(texts) == 1
+
+
+def test_products_given_twice_are_read_once_and_must_agree() -> None:
+    twice = FINE.replace("<inertia", '<inertia iyx="0" izx="0" izy="0"')
+    assert spec(robot(leg=MASS.replace(FINE, twice))) == spec(robot())
+    with pytest.raises(SpecError, match=r"ixy is 0, but iyx is 0\.001") as refused:
+        imported(robot(leg=MASS.replace(FINE, twice.replace('iyx="0"', 'iyx="0.001"'))))
+    assert refused.value.problems[0].code == "import-inertia" and "delete iyx" in refused.value.problems[0].hint
+
+
+def test_a_joint_holds_to_the_world_that_is_not_a_link() -> None:
+    weld = '<joint name="weld" type="fixed"><origin xyz="0 0 2"/><parent link="world"/><child link="base"/></joint>'
+    assert spec(robot(weld)) == spec(robot(f'<link name="world"/>{weld}'))

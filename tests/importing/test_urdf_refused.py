@@ -121,8 +121,8 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
     "negative by its products": (
         [link("a", inertia("1", 1, 1, 1, 2))], [(2, "import-inertia", "negative: -1, 1, 3")],
     ),
-    "massless between joints": (
-        [link("a"), link("b", ""), link("c"), joint("j", "a", "b"), joint("k", "b", "c")],
+    "massless before what floats": (
+        [link("a"), link("b", ""), link("c"), joint("j", "a", "b"), joint("k", "b", "c", kind="floating")],
         [(3, "import-massless", "moved by the joint j")],
     ),
     "massless at the end": ([link("a"), link("b", ""), joint("j", "a", "b")], [(3, "import-massless", "the joint j")]),

@@ -152,13 +152,14 @@ def test_repairs_change_as_little_as_they_can_and_say_so():
         link("a", inertial(1, 1, 3)), link("b", inertial(-1, 1, 1)), link("c", inertial(0, 0, 0)), link("d", ""),
         link("e", inertial(2, 2, 3, 1)), joint("j", "a", "b", "revolute"), joint("k", "b", "c", "revolute"),
         joint("l", "c", "d", "revolute"), joint("m", "d", "e", "revolute"),
+        link("f", ""), joint("n", "e", "f", "revolute"),
     ]  # fmt: skip
     text = imported(robot(*parts), repair=frozenset({"triangle", "negative", "zero", "massless"}))
     bodies = spec_of(text).bodies
     assert np.diag(bodies["a"].inertia).tolist() == [1.5, 1.5, 3]
     assert np.diag(bodies["b"].inertia).tolist() == [0, 1, 1]
     assert not np.any(bodies["c"].inertia)
-    assert bodies["d"].mass == 1e-6
+    assert bodies["d"].mass == 0 and bodies["f"].mass == 1e-6
     assert np.linalg.eigvalsh(bodies["e"].inertia).tolist() == pytest.approx([1, 3, 3])
     for told in (
         "repaired (triangle): principal moments 1.5, 1.5, 3; the file has 1, 1, 3",

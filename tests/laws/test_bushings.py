@@ -44,6 +44,16 @@ def two_bodies(**mount: Any) -> dict[str, Any]:
 
 DAMPED = {"damping": [3.0, 1.0, 2.0], "turning_damping": [0.1, 0.2, 0.3]}
 PRELOADED = {"preload": [1.0, 2.0, 40.0], "turning_preload": [0.3, 0.2, -0.5]}
+# of six numbers each, so that the 6 x 6 are positive definite and couple all directions
+CROSSED = {
+    "stiffness": [[200, 40, -20], [40, 300, 60], [-20, 60, 500]], "turning": [[3, 0.5, -1], [0.5, 9, 2], [-1, 2, 6]],
+    "coupling": [[4, -7, 2], [5, 3, -6], [-3, 8, 5]],
+}  # fmt: skip
+CROSS_DAMPED = {
+    "damping": [[3, 0.5, -0.4], [0.5, 1, 0.2], [-0.4, 0.2, 2]],
+    "turning_damping": [[0.1, 0.02, 0], [0.02, 0.2, -0.03], [0, -0.03, 0.3]],
+    "coupling_damping": [[0.1, -0.05, 0.1], [0.05, 0.1, 0.02], [-0.1, 0.1, 0.2]],
+}  # fmt: skip
 RUBBER = {"x": [-0.3, -0.1, 0.0, 0.2, 0.4], "y": [-90, -20, 1, 30, 160], "interpolation": "cubic", "outside": "hold"}
 TWIST = {"x": [-3.2, -1.0, 0.5, 3.2], "y": [-25.0, -6.0, 2.0, 30.0], "interpolation": "pchip"}
 COGS = {"x": [0.1, 0.2, 0.4], "y": [20.0, -30.0, 20.0], "interpolation": "cubic", "period": 0.3}
@@ -52,12 +62,13 @@ TABLES = {"rubber": RUBBER, "twist": TWIST, "cogs": COGS}
 
 
 @pytest.mark.parametrize(
-    "more", [{}, PRELOADED, DAMPED | PRELOADED, BY_TABLES | PRELOADED, BY_TABLES | DAMPED],
-    ids=["springs", "preloaded", "damped", "tables", "damped-tables"],
+    "more", [{}, PRELOADED, DAMPED | PRELOADED, BY_TABLES | PRELOADED, BY_TABLES | DAMPED, CROSSED | PRELOADED,
+             CROSSED | CROSS_DAMPED],
+    ids=["springs", "preloaded", "damped", "tables", "damped-tables", "crossed", "crossed-damped"],
 )  # fmt: skip
 def test_energy(more: dict[str, Any]) -> None:
     """Springs, preloads and tables have a potential at any angle; what dampers take is work, and never given back."""
-    found = solved(two_bodies(**more) | ({"tables": TABLES} if "stiffness" in more else {}))
+    found = solved(two_bodies(**more) | ({"tables": TABLES} if "turning" in more else {}))
     assert float(np.linalg.norm(found.forces["mount"]["turn"], axis=1).max()) > 1.0
     e = found.energy
     near(
@@ -94,7 +105,7 @@ def test_alike_in_all_directions_it_has_no_axes() -> None:
 def test_the_world_turned() -> None:
     """With it and the bodies' axes a bushing's axes turn; what it tells stands in its own."""
     R = random_rotation(np.random.default_rng(3))
-    scene = two_bodies(**DAMPED, **PRELOADED)
+    scene = two_bodies(**CROSSED, **CROSS_DAMPED, **PRELOADED)
     other = turned(scene, R)
     for load in other["forces"].values():
         load["orientation"] = {"matrix": (R @ attitude(load.get("orientation"))).tolist()}
@@ -108,8 +119,9 @@ def test_the_world_turned() -> None:
 def test_faster() -> None:
     """k -> c^2 k and damping -> c d, with speeds c times as large and weight c^2: the same way in 1/c of the time."""
     c = 3.0
-    scene, fast = two_bodies(**DAMPED, **PRELOADED), two_bodies(**DAMPED, **PRELOADED)
-    powers = {"stiffness": 2, "turning": 2, "preload": 2, "turning_preload": 2, "damping": 1, "turning_damping": 1}
+    scene, fast = (two_bodies(**CROSSED, **CROSS_DAMPED, **PRELOADED) for _ in range(2))
+    powers = dict.fromkeys(("stiffness", "turning", "coupling", "preload", "turning_preload"), 2)
+    powers |= dict.fromkeys(("damping", "turning_damping", "coupling_damping"), 1)
     fast["gravity"] = (c**2 * np.array(scene["gravity"])).tolist()
     for load in fast["forces"].values():
         load |= {key: (c**n * np.array(load[key])).tolist() for key, n in powers.items() if key in load}
@@ -138,7 +150,9 @@ joints:
 forces:
   mount: {type: bushing, from: ground.O, to: engine.c, stiffness: {x: rubber, y: 300, z: 40}, turning: [1, 2, 6],
           damping: [3, 1, 2], turning_damping: 0.1, preload: [1, 40, 0], turning_preload: [0, 0, -0.5]}
-  tip: {type: bushing, from: lid.e, to: ground.P, stiffness: [90, 40, 10], turning: [1, 2, 3],
+  tip: {type: bushing, from: lid.e, to: ground.P, stiffness: [[90, 9, 0], [9, 40, 0], [0, 0, 10]], turning: [1, 2, 3],
+        coupling: [[0, 0, 4], [0, 0, -5], [1, 2, 0]], coupling_damping: [[0, 0, 0.1], [0, 0, 0], [0, 0, 0]],
+        damping: 0.5, turning_damping: 0.5,
         orientation: {axis: [0, 0, 1], angle: 0.4}}
   coil: {type: spring, from: ground.P, to: lid.e, force: "-table(rubber, length - 0.3) - 4*rate"}
 analysis: {times: [0, 0.1, 0.25], tolerance: 1e-10}
@@ -159,13 +173,16 @@ def test_smaller_scenes() -> None:
 
 
 @pytest.mark.parametrize(
-    "mount", [{"turning_preload": [0.3, 0, 0]}, {"orientation": {"axis": [1, 0, 0], "angle": 0.3}}]
+    "old, new",
+    [
+        ("turning_preload: [0, 0, -0.5]", "turning_preload: [0.3, 0, -0.5]"),
+        ("turning_preload: [0, 0, -0.5]", "turning_preload: [0, 0, -0.5], orientation: {axis: [1, 0, 0], angle: 0.3}"),
+        ("[9, 40, 0], [0, 0, 10]", "[9, 40, 3], [0, 3, 10]"),
+        ("coupling: [[0, 0, 4]", "coupling: [[0, 1, 4]"),
+    ],
 )
-def test_what_leaves_the_plane_is_no_planar_scene(mount: dict[str, Any]) -> None:
-    """A moment across the normal, or axes askew to it, turn a free body out of the plane."""
+def test_what_leaves_the_plane_is_no_planar_scene(old: str, new: str) -> None:
+    """A moment across the normal, axes askew to it, or what couples it with the plane, turn a free body out of it."""
     flat = FLAT.replace("SPACE", "space: auto")
-    assert "turning_preload: [0, 0, -0.5]" in flat
-    change = "turning_preload: [0.3, 0, -0.5]" if "turning_preload" in mount else (
-        "turning_preload: [0, 0, -0.5], orientation: {axis: [1, 0, 0], angle: 0.3}"
-    )  # fmt: skip
-    assert solved(flat.replace("turning_preload: [0, 0, -0.5]", change)).model["space"] == "spatial"
+    assert flat.count(old) == 1
+    assert solved(flat.replace(old, new)).model["space"] == "spatial"

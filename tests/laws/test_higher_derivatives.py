@@ -7,7 +7,7 @@ import math
 import pytest
 
 from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml

@@ -196,6 +196,20 @@ def test_a_gimbal_in_line_is_refused() -> None:
         )
 
 
+@pytest.mark.parametrize("arm", [0.1, 0.2, 0.3, 0.31, 0.5, 0.7, 0.9])
+def test_two_pins_on_one_axis_are_refused_wherever_the_load_hangs(arm: float) -> None:
+    """The ring between the pins can turn by itself, whatever rounding leaves of the inertia that it carries."""
+    text = HEAD + (
+        f"bodies:\n  x: {{{FRAME}}}\n  s: {{mass: 100, center: [{arm}, 0, {-arm}], inertia: [0.1, 0.1, 0.1]}}\n"
+        "joints:\n"
+        "  u: {type: pin, from: ground.O, to: x.c, axis: [0, 1, 0.3]}\n"
+        "  v: {type: pin, from: x.c, to: {body: s, at: [0, 0, 0]}, axis: [0, 1, 0.3]}\n"
+    )
+    with pytest.raises(SolveError) as refused:
+        solved(text + "analysis: {duration: 0.1, samples: 2}\n")
+    assert refused.value.problems[0].code == "no-inertia"
+
+
 def test_some_body_has_mass() -> None:
     with pytest.raises(SpecError, match="mass must be greater than 0"):
         solved(f"{HEAD}bodies: {{x: {{{FRAME}}}}}\njoints: {{u: {{type: pin, from: ground.O, to: x.c}}}}\n{RUN}")

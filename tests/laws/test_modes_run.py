@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.modes import find_state, require_time_independent
+from heuncli.analyses.modes.reference_state import find_state, require_time_independent
 from heuncli.base.errors import SolveError
 from heuncli.motion.integration.methods.explicit import DOP853
 from heuncli.motion.integration.run.request import MotionTask

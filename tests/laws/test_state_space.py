@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.analyses.lagrange.coordinates import choose_coordinates, compute_accelerations
+from heuncli.analyses.lagrange.coordinate_rates import compute_accelerations
+from heuncli.analyses.lagrange.coordinates import choose_coordinates
 from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
 from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange, to_results
 from heuncli.base.errors import SolveError

@@ -112,6 +112,10 @@ forces:
           turning: {x: turny, y: 50, z: 80}, turning_preload: [1, 2, 3], damping: [1, 2, 3], turning_damping: [1, 2, 3]}
   two: {type: bushing, from: frame.d, to: rotor.a, stiffness: 400, turning: [10, 50, 20], damping: [4, 1, 2],
         turning_damping: [0.1, 0.2, 0.3], orientation: {axis: [1, 0, 0], angle: 0.5}}
+  six: {type: bushing, from: frame.d, to: rotor.a, stiffness: [[400, 50, -20], [50, 300, 60], [-20, 60, 500]],
+        turning: [[10, 2, -1], [2, 50, 3], [-1, 3, 20]], coupling: [[9, -7, 2], [5, 3, -6], [-3, 8, 5]],
+        damping: [[4, 1, 0], [1, 2, 0.5], [0, 0.5, 3]], turning_damping: [[0.3, 0.1, 0], [0.1, 0.2, 0], [0, 0, 0.3]],
+        coupling_damping: [[0.2, 0.1, 0.3], [0, -0.3, 0.1], [0.2, 0, 0.1]]}
   back: {type: bushing, from: rotor.a, to: ground.P, stiffness: [40, 50, 60], turning: {y: turny}, preload: [1, 2, 3]}
   coil: {type: spring, from: ground.P, to: drum.a, force: "table(rubber, length - 0.5) - 4*rate + s.angle"}
   motor: {type: motor, joint: s, curve: torq, ratio: 5, limit: 22, value: "min(1 + t, 1.5)"}

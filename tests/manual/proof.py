@@ -6,7 +6,7 @@ The cases are solved where the tables are asked for, not where this is imported.
 from __future__ import annotations
 
 from heuncli.analyses.published.cases import list_names, read_case
-from heuncli.app.commands.check.references import format_digits, format_largest_difference, list_kinds
+from heuncli.app.commands.check.references_page import format_digits, format_largest_difference, list_kinds
 from tests.manual.tables import Table
 from tests.shared.published import compared_case
 

@@ -7,6 +7,7 @@ A table is known by its page, its heading and its first line; what stands around
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -226,6 +227,7 @@ def renew(table: Table) -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m tests.manual.tables", description=__doc__.partition("\n")[0]).parse_args()
     from tests.manual import proof
 
     for each in (*TABLES, *proof.tables()):

@@ -212,18 +212,28 @@ def elastic(scene: Model, state: State, spec: Spec) -> tuple[Array, Array]:
     place = B.point(b.point)
     slip = T.T @ (B.speed(b.point) - A.velocity - cross(A.angular_velocity, place - A.position))
     spin = T.T @ (B.angular_velocity - A.angular_velocity)
-    three = {key: np.broadcast_to(spec.get(key, 0.0), 3) for key in ELASTIC}
-    F = three["preload"] - three["stiffness"] * d - three["damping"] * slip
+    six = [
+        np.block([[square(spec, shift), (X := square(spec, coupling))], [X.T, square(spec, turn)]])
+        for shift, turn, coupling in BLOCKS
+    ]
+    preload = np.concatenate([np.broadcast_to(spec.get(key, 0.0), 3) for key in ("preload", "turning_preload")])
+    elastic_load = preload - six[0] @ np.concatenate([d, phi])
+    drag = six[1] @ np.concatenate([slip, spin])
     angle = float(np.linalg.norm(phi))
     K = np.array([[0.0, -phi[2], phi[1]], [phi[2], 0.0, -phi[0]], [-phi[1], phi[0], 0.0]])
     J = np.eye(3)
     if angle > 0.0:
         J = J + (1.0 - np.cos(angle)) / angle**2 * K + (angle - np.sin(angle)) / angle**3 * K @ K
-    M = np.linalg.solve(J.T, three["turning_preload"] - three["turning"] * phi)
-    return F, M - three["turning_damping"] * spin
+    return elastic_load[:3] - drag[:3], np.linalg.solve(J.T, elastic_load[3:]) - drag[3:]
 
 
-ELASTIC = ("stiffness", "damping", "preload", "turning", "turning_damping", "turning_preload")
+BLOCKS = ("stiffness", "turning", "coupling"), ("damping", "turning_damping", "coupling_damping")
+
+
+def square(spec: Spec, key: str) -> Array:
+    """A matrix from one number, three, or nine."""
+    value = np.asarray(spec.get(key, 0.0), dtype=float)
+    return value if value.ndim == 2 else np.diag(np.broadcast_to(value, 3))
 
 
 def turned_by(joint: Joint, state: State) -> float:

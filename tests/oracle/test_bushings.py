@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SolveError
-from tests.oracle.loads import elastic, pushes, strain
+from tests.oracle.loads import BLOCKS, elastic, pushes, strain
 from tests.oracle.masses import Plane, cut
 from tests.oracle.scenes import ELASTIC, random_scene
 from tests.oracle.turns import unit
@@ -25,15 +25,31 @@ SEEDS = seeds(12)
 JOINTS = ("ball", "pin", "cylinder", "universal", "slide", "weld")
 
 
+def couple_all_directions(seed: int) -> dict[str, list[list[float]]]:
+    """Stiffness and damping of a bushing by random positive definite 6 x 6."""
+    keys: dict[str, list[list[float]]] = {}
+    rng = np.random.default_rng(seed)
+    for size, blocks in ((1.0, BLOCKS[0]), (0.2, BLOCKS[1])):
+        factor = rng.normal(size=(6, 6))
+        whole = size * factor @ factor.T
+        for key, block in zip(blocks, (whole[:3, :3], whole[3:, 3:], whole[:3, 3:]), strict=True):
+            keys[key] = block.tolist()
+    return keys
+
+
 @cache
 def elastic_scene(seed: int) -> Case:
-    """A tree with bushings between its bodies, every third with free bodies, every other one with a loop, and cuts."""
+    """A tree with bushings between its bodies, every third with free bodies, every other one with a loop, cross
+    stiffness in its bushing, and cuts.
+    """
     rng = np.random.default_rng(seed)
     while True:
         scene, _ = random_scene(
             rng, int(rng.integers(1, 5)), kinds=JOINTS, free=(0.0, 0.0, 0.6)[seed % 3], loops=seed % 2,
             loop_kinds=("pin", "ball", "cylinder", "line"), loads=ELASTIC, masses="shapes",
         )  # fmt: skip
+        if seed % 2:
+            scene["forces"]["f_bushing"] |= couple_all_directions(seed)
         cuts: dict[str, Any] = {}
         for name, body in scene["bodies"].items():
             through = cut_through(body, rng)

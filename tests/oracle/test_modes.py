@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.modes import find_state
+from heuncli.analyses.modes.reference_state import find_state
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.displacements import displace
 from heuncli.motion.linearisation.steady_motion import LinearisedState

@@ -167,6 +167,8 @@ def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: fl
                 "damping": mass / time,
                 "preload": force,
                 "turning": moment,
+                "coupling": force,
+                "coupling_damping": force * time,
                 "turning_damping": moment * time,
                 "turning_preload": moment,
             },

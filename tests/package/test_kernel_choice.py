@@ -14,7 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.app.cli import entry
 from heuncli.kernel import choose, form
+from heuncli.kernel.modules import SOURCES
 
 ROOT = Path(form.FOLDER).parent.parent
 REPORT = """\
@@ -118,6 +120,25 @@ def test_a_message_names_some_of_what_was_edited(monkeypatch: pytest.MonkeyPatch
     with pytest.raises(form.KernelError, match=r"a\.py, b\.py, c\.py, d\.py, e\.py and 2 more changed since"):
         form.choose_form("")
     assert form.choose_form("pure") == "pure"
+
+
+@pytest.mark.skipif(form.KERNEL == "pure", reason="nothing is compiled")
+def test_older_sources_that_differ_are_found_when_heun_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The kernel's file may be newer and yet of other structs: copied, or compiled on another branch."""
+    assert form.find_stale_problem() is None
+    kernel = tmp_path / "heuncli" / "kernel"
+    kernel.mkdir(parents=True)
+    (tmp_path / "pyproject.toml").touch()
+    for name in SOURCES:
+        shutil.copyfile(Path(form.FOLDER, f"{name}.py"), kernel / f"{name}.py")
+    monkeypatch.setattr(form, "FOLDER", str(kernel))
+    assert form.find_stale_problem() is None
+    for name in ("scene", "values"):
+        with (kernel / f"{name}.py").open("a", encoding="utf-8") as file:
+            file.write("EDITED = 1\n")
+    with pytest.raises(form.KernelError, match=r"scene\.py, values\.py changed since \[stale-kernel\]") as error:
+        entry.run_contained(lambda: memoryview(b"")[1], ["run"])
+    assert error.value.exit_code == 2 and "python -m heuncli.build" in str(error.value)
 
 
 def test_an_unknown_wish_is_an_error() -> None:

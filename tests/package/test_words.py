@@ -43,9 +43,9 @@ FILES_OF_KEYS = re.compile(
 # Others that strings refer to, or whose name a protocol of Python's prescribes.
 KEPT = {
     "analyses/load_cases/model.py": {"PointAction.at"},
-    "analyses/sensitivity.py": {"Contribution.below", "Contribution.above"},
+    "analyses/tolerance_analysis.py": {"Contribution.below", "Contribution.above"},
     "app/api.py": {"solve(at)", "solve_cases(at)"},
-    "app/commands/sweep/writer.py": {"ByteSink.tell"},
+    "app/commands/sweep/as_columns.py": {"ByteSink.tell"},
     "app/python/signals.py": {"Signal.computed", "Signal.beyond", "Signal.at"},
     "app/python/solved_scene.py": {"Solved.paths(under)", "Solved.at", "Solved.load_cases(at)", "Solved.plot(over)"},
     "base/named_tuples.py": {"named"},

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.base.errors import HeunError, UsageError
+from heuncli.base.errors import HeunError, SpecError, UsageError
 from tests.shared.command import HANGING
 
 WRONG: dict[str, list[Any]] = {
@@ -109,3 +109,10 @@ def test_of_a_solved_scene() -> None:
         study.plot(path, 3)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="paths"):
         study.frame(3)  # type: ignore[arg-type]
+
+
+def test_solve_cases_suggests_none_of_what_it_lacks() -> None:
+    text = HANGING + "cases: {a: {set: {m: 2}}}\n"
+    with pytest.raises(SpecError) as raised:
+        heuncli.solve_cases(text=text, cas="a")
+    assert "option case" not in str(raised.value)

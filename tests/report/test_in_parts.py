@@ -118,6 +118,28 @@ def test_a_total_is_none_beside_the_largest_force_of_the_whole_run(small: None) 
     assert np.isfinite(alone).all()
 
 
+RUBBED = """\
+heun: 1
+gravity: [0, 0, -9.81]
+bodies: {b: {mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], velocity: [2, 0, 0], points: {c: [0, 0, 0]}}}
+joints: {guide: {type: slide, from: {body: ground, at: [0, 0, 0]}, to: b.c, axis: [1, 0, 0]}}
+forces:
+  pull: {type: force, on: b.c, vector: [0, "1e3*step(t - 0.5)", 0]}
+  rub: {type: friction, joint: guide, force: 6, speed: 0.1}
+analysis: {duration: 1, samples: 32}
+"""
+
+
+def test_causes_and_notes_are_those_of_the_whole_run(small: None) -> None:
+    """In the first half the pull has no effect, and only in the second the friction is not full."""
+    spec = load("rubbed.yaml", text=RUBBED)
+    wanted = frozenset({"joints", "foundation", "shares"})
+    whole, divided = (solve(spec, Options(requested_reports=wanted, in_parts=parts)) for parts in (False, True))
+    assert divided.result_recovery is None and "pull" in whole.results.joints["guide"]["shares"]
+    assert texts(divided) == texts(whole)
+    assert any("do not include full friction" in note for note in divided.results.model["notes"])
+
+
 def test_what_is_not_finite_is_refused_in_the_same_words(small: None, monkeypatch: pytest.MonkeyPatch) -> None:
     energy = recovery.energy_block
 
@@ -235,9 +257,9 @@ def little(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.mark.heavy
 @pytest.mark.parametrize("form", ["json", "csv"])
 def test_a_sample_takes_its_states_and_nothing_else(form: str, little: None) -> None:
-    """Some 7 numbers of state in two runs, its instant, as a number and as text; of it 15 numbers are told."""
+    """Some 7 numbers of state in two runs, its instant, as a number and as text; 15 numbers are told, and by cause."""
     few, many = (swinging(n, 2) for n in (3_000, 12_000))
-    wanted = frozenset({"joints"})
+    wanted = frozenset({"joints", "shares"})
     a, b = (peak(spec, wanted, pieces(form, spec)) for spec in (few, many))
     assert (b - a) / 9_000 <= 250.0, f"{(b - a) / 9_000:.0f} bytes a sample"
 

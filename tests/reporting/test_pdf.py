@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.app import reports
-from heuncli.base.process import BROWSERS
+from heuncli.base.programs import BROWSERS
 from tests.shared.command import Heun
 
 PRINTS = """\

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.output.documents.document import use_decimal_comma
+from heuncli.output.documents.document import OutputDocument, use_decimal_comma, write_decimal_comma
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS
 from tests.shared.page_reader import PageReader
@@ -116,3 +116,7 @@ def close(text: str, number: float) -> bool:
     """Whether a number is written so, rounded to the digits that are written."""
     digits = len(text.partition(".")[2])
     return abs(float(text.replace("−", "-")) - number) <= 0.5000001 * 10.0**-digits
+
+
+def test_facts_have_decimal_commas() -> None:
+    assert write_decimal_comma(OutputDocument(facts=[("mass", "1.5 kg")])).facts == [("mass", "1,5 kg")]

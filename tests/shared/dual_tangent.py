@@ -22,7 +22,7 @@ def dual_tangent(layout: Layout, t: float, state: Array, closed: float = 0.0) ->
     workspace = dual_module("workspace").Workspace(layout.tables, layout.indices, programs, kernel_numbers(layout))
     workspace.hold([closed] * len(layout.contacts))
     workspace.start(0.0, layout.y0.tolist())
-    scene, kernel, chosen = workspace.scene, dual_module("response"), dual_module("row_choice")
+    scene, kernel, chosen = workspace.scene, dual_module("response"), dual_module("selection")
     y: list[float] = np.asarray(state, dtype=float).tolist()
     for _ in range(2):
         if scene.closure_count:

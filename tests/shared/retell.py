@@ -223,7 +223,7 @@ SLIDING: dict[str, dict[str, Powers]] = {
     "distributed": {"vector": PER_LENGTH, "to_vector": PER_LENGTH, "from": LENGTH, "to": LENGTH},
     "bushing": {
         "stiffness": PER_LENGTH, "damping": THRUST_DAMPING, "preload": FORCE, "turning": MOMENT,
-        "turning_damping": TORQUE_DAMPING, "turning_preload": MOMENT,
+        "turning_damping": TORQUE_DAMPING, "turning_preload": MOMENT, "coupling": FORCE, "coupling_damping": (1, 1, -1),
     },
 }  # fmt: skip
 TURNING: dict[str, dict[str, Powers]] = SLIDING | {

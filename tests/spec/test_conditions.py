@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from heuncli.analyses.variants.measures import WrittenCondition, find_si_value, parse_condition
+from heuncli.analyses.variants.conditions import WrittenCondition, find_si_value, parse_condition
 from heuncli.analyses.variants.parameters import AxisError
 from heuncli.scene.file_format.load import load
 from tests.shared.folders import SPECS

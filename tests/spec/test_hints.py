@@ -43,6 +43,17 @@ def hint(text: str) -> str:
     return next(iter(found.values()))
 
 
+@pytest.mark.parametrize("kind", ["ball", "universal, axis: [1, 0, 0], to_axis: [0, 1, 0]"])
+@pytest.mark.parametrize(
+    "line",
+    ["stops: {s: {joint: b, angle: [0, 1]}}", "forces: {m: {type: motor, joint: b, stall: 2, idle: 30}}",
+     "forces: {t: {type: torque, joint: b, value: 2}}"],
+)  # fmt: skip
+def test_a_joint_of_several_rotations_is_pins_in_a_row_for_what_acts_about_one(kind: str, line: str) -> None:
+    joint = f"joints:\n  b: {{type: {kind}, from: ground.O, to: ball.p}}\n"
+    assert "pins in a row, with bodies of mass: 0 between" in hint(SCENE.replace("joints:\n", joint) + line + "\n")
+
+
 @pytest.mark.parametrize("key", ["tolerance: 1e-8", "duration: 2", "samples: 5", "times: [0, 1]", "method: auto"])
 def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
     word = key.partition(":")[0]
@@ -148,6 +159,10 @@ def test_a_line_more(line: str, path: str, said: str) -> None:
         ("axis: [0, 1, 0]}", "axis: y}", "the y axis is [0, 1, 0]"),
         ("axis: [0, 1, 0]}", "axis: -z}", "the z axis is [0, 0, -1]"),
         ("axis: [0, 1, 0]}", "axis: [0, 1, 0], angle: 60 deg}", "initial: {angle: ...}"),
+        ("axis: [0, 1, 0]}", "axis: [0, 1, 0], drive: 3*t}", "drives: {motor: {joint: NAME, rate: 1500 rpm}}"),
+        ("axis: [0, 1, 0]}", "axis: [0, 1, 0], friction: 0.1}", "type: friction, joint: NAME, torque: 0.3 N m"),
+        ("axis: [0, 1, 0]}", "axis: [0, 1, 0], damping: 3}", "type: damper, joint: NAME, coefficient: 0.01"),
+        ("axis: [0, 1, 0]}", "axis: [0, 1, 0], spring: 3}", "type: turn_spring, joint: NAME"),
         ("joints:\n", "joints:\n  b: {type: ball, from: ground.O, to: ball.p, initial: {rate: 3}}\n", "orientation"),
         ("type: pin", "type: pivot", "type: pin"),
         ("type: pin", "type: rigid", "type: weld"),

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from heuncli.base import units as u
 from heuncli.base.errors import Finding
+from heuncli.base.units import parse_unit
 from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.quantity import read_function, read_number
 
@@ -43,7 +44,8 @@ def test_units(text: str, value: float, dimension: u.Dimension) -> None:
 @pytest.mark.parametrize(("text", "value"), [
     (3, 3.0), (2.5, 2.5), ("3", 3.0), ("2*L", 4.0), ("-L/2", -1.0), ("2*m", 6.0), ("1e3", 1000.0), ("1.5E-2", 0.015),
     ("9.81/2", 4.905), ("21/2*L", 21.0), ("0.31/2/L", 0.0775), ("11/2", 5.5), ("1/2", 0.5), ("9.81/2*cos(0)", 4.905),
-    ("2 if L > 1 else 3", 2.0), ("2 if 0 else 3", 3.0), ("90*deg", math.pi / 2), (" 4 ", 4.0), ("1 and 0", 0.0),
+    ("2 if L > 1 else 3", 2.0), ("2 if 0 else 3", 3.0), ("90*deg", math.pi / 2), (" 4 ", 4.0),
+    ("2*(1 and 0)", 0.0), ("1 if L > 1 else 0", 1.0),
 ])  # fmt: skip
 def test_plain_numbers_and_expressions(text: object, value: float) -> None:
     assert read_number(text, u.LENGTH, SCOPE) == pytest.approx(value, rel=1e-15)
@@ -51,6 +53,8 @@ def test_plain_numbers_and_expressions(text: object, value: float) -> None:
 
 @pytest.mark.parametrize(("value", "code", "words"), [
     ("2 kg", "dimension", "a mass, expected a length"),
+    ("1 > 0", "wrong-kind", "'1 > 0' is a condition, not a number"), ("(0 < L < 3)", "wrong-kind", "a condition"),
+    ("1 and 0", "wrong-kind", "a condition"), ("0 or L", "wrong-kind", "a condition"), ("not L", "wrong-kind", "not L"),
     ("2 m^2", "dimension", "an area"),
     ("2 kg*m", "dimension", "kg*m"),
     ("2 L", "dimension", "2*L"),
@@ -151,3 +155,9 @@ def test_any_text_is_a_number_or_a_finding(text: str) -> None:
             assert math.isfinite(read_number(words, None, SCOPE))
         except Finding as finding:
             assert finding.message
+
+
+@pytest.mark.parametrize("unit", ["mm^99*mm^99/m^99/m^98", "km^99*km^99*km^99"])
+def test_a_unit_has_a_size(unit: str) -> None:
+    with pytest.raises(Finding, match="out of number range"):
+        parse_unit(unit)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from jsonschema import Draft7Validator
 
-from heuncli.app.cli.typer_reader import complete_measures, complete_overrides
+from heuncli.app.cli.completion import complete_measures, complete_overrides
 from heuncli.base.errors import SpecError
 from heuncli.output.tables.export import to_json
 from heuncli.scene.file_format.entries import keys_of

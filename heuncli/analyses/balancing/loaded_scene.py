@@ -19,14 +19,8 @@ from heuncli.analyses.balancing.cycle import drop_rates, make_driven_mechanism, 
 from heuncli.analyses.balancing.cycle_nodes import PieceNodes
 from heuncli.analyses.balancing.cycle_plan import CyclePlan
 from heuncli.analyses.balancing.followed_run import FollowedRun, describe_nonperiodic_loads
-from heuncli.analyses.balancing.orders import (
-    MAX_ORDERS,
-    CycleRotation,
-    OrderSelection,
-    bound_higher_orders,
-    magnitudes,
-    make_order_rows,
-)
+from heuncli.analyses.balancing.order_selection import MAX_ORDERS, OrderSelection, bound_higher_orders
+from heuncli.analyses.balancing.orders import CycleRotation, magnitudes, make_order_rows
 from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_scales
 from heuncli.analyses.balancing.results import CycleLoad, OrderRow
 from heuncli.analyses.balancing.sampling import compute_square_root_magnitudes

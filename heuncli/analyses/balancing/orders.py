@@ -1,138 +1,31 @@
-"""Orders of a cycle's force, moment and torque: which of them are reported, and the verdict on each.
+"""Report the orders of a cycle's force, moment and torque: amplitudes, phases, rotating vectors and a verdict on each.
 
-Of smooth quantities all orders up to rounding are selected, by equally spaced nodes. Quantities with jumps or kinks
-have infinitely many orders; they decrease as
-    |a_k| <= 2/L (sum of jumps / k + (sum of bends + ∫|F''|) / k²)
-so from some order on none reaches a ten-thousandth of the largest.
+An order "does not arise" where no body contributes to it, "cancels" where the contributions of the bodies add up to
+rounding, and otherwise "remains".
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cache
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from heuncli.analyses.balancing.cycle import MassEffects
-from heuncli.analyses.balancing.cycle_nodes import CycleNodes, PieceNodes
+from heuncli.analyses.balancing.cycle_nodes import CycleNodes
+from heuncli.analyses.balancing.order_selection import ALL_ORDERS, OrderSelection
 from heuncli.analyses.balancing.results import OrderRow
-from heuncli.analyses.balancing.series import MAX_NODES, compute_rotating_vectors, evaluate_legendre
+from heuncli.analyses.balancing.series import compute_rotating_vectors
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
-from heuncli.results.results import Array, Indices, Mask
-
-FIRST_ORDERS = 64
-# doublings of the number of orders, after which two in a row without a significant order end the search
-MIN_DOUBLINGS = 4
-MAX_ORDERS, MAX_WORK = 10_000, 4_000_000  # orders per turn; orders times pieces
-SLOPE_PLACES = 33  # places of a piece at which its slopes are computed
-
-
-@record
-class OrderSelection:
-    """Requested orders per turn; None: all significant ones.
-
-    noise: error of every order in addition to that of the nodes
-    """
-
-    requested: tuple[float, ...] | None = None
-    noise: float = 0.0
-
-    def select_orders(self, nodes: CycleNodes, values: Array, threshold: float) -> Indices:
-        """Return the orders of values (n, c) to compute, whole numbers per cycle, ascending from 1.
-
-        threshold: smaller values count as 0
-        """
-        last = nodes.last_order
-        if last is None:
-            assert isinstance(nodes, PieceNodes)
-            last = find_last_order(nodes, values, threshold)
-        requested = [] if self.requested is None else [order * nodes.turns for order in self.requested]
-        extra = [round(k) for k in requested if abs(k - round(k)) < tolerances.SAME_VALUE]
-        return np.unique(np.concatenate([np.arange(1, last + 1), np.array(extra, dtype=int)]))
-
-    def are_requested(self, orders: Indices, turns: int) -> Mask:
-        """Return which of the orders per cycle are requested, (m,)."""
-        if self.requested is None:
-            return np.zeros(len(orders), dtype=bool)
-        requested = np.array(self.requested) * turns
-        return np.asarray((np.abs(orders[:, None] - requested) < tolerances.SAME_VALUE).any(axis=1))
-
-
-ALL_ORDERS = OrderSelection()
-
-
-def find_last_order(nodes: PieceNodes, values: Array, threshold: float) -> int:
-    """Return the last order per cycle of values (n, c) that reaches a ten-thousandth of the largest, or the last
-    allowed.
-
-    threshold: smaller values count as 0
-    """
-    last_allowed = min(MAX_ORDERS * nodes.turns, max(MAX_WORK // len(nodes.begins), FIRST_ORDERS))
-    jumps, bends = compute_decay(nodes, values)
-    first, largest, band = 1, threshold, find_fastest_wave(nodes, values)
-    sizes = [np.zeros(0)]
-    while first <= last_allowed:
-        orders = np.arange(first, min(max(2 * first, FIRST_ORDERS), last_allowed) + 1)
-        sizes.append(np.sqrt(np.sum(np.abs(nodes.compute_amplitudes(values, orders)) ** 2, axis=1)))
-        largest = max(largest, float(sizes[-1].max()))
-        first = int(orders[-1]) + 1
-        k, significance = first / nodes.turns, max(tolerances.LISTED_ORDER * largest, threshold)
-        is_negligible = [float(size.max(initial=0.0)) <= significance for size in sizes[-2:]]
-        if jumps / k + bends / k**2 <= significance or (
-            len(sizes) > MIN_DOUBLINGS and all(is_negligible) and first > 2.0 * band
-        ):
-            break
-    significant = np.flatnonzero(np.concatenate(sizes) > max(tolerances.LISTED_ORDER * largest, threshold))
-    return max(int(significant[-1]) + 1 if len(significant) else 0, FIRST_ORDERS)
-
-
-def find_fastest_wave(nodes: PieceNodes, values: Array) -> float:
-    """Return the order per cycle of the fastest significant wave that the polynomials show."""
-    coefficients = nodes.compute_coefficients(values)
-    width = nodes.ends - nodes.begins
-    shares = np.abs(coefficients).max(axis=2) * (width / nodes.length)[:, None]
-    is_significant = shares > tolerances.LISTED_ORDER * shares.sum(axis=0).max(initial=0.0)
-    degree = (is_significant * np.arange(MAX_NODES)).max(axis=1)
-    return float((degree * 2.0 / width).max()) * nodes.turns
-
-
-def bound_higher_orders(nodes: CycleNodes, values: Array, order: float) -> float:
-    """Bound the orders above a given one (per turn); 0 for equally spaced nodes."""
-    if not isinstance(nodes, PieceNodes):
-        return 0.0
-    jumps, bends = compute_decay(nodes, values)
-    return jumps / order + bends / order**2
-
-
-def compute_decay(nodes: PieceNodes, values: Array) -> tuple[float, float]:
-    """Return the factors of 1/order and 1/order²: 2/L times the sum of jumps, and of slope changes with ∫|F''|."""
-    coefficients = nodes.compute_coefficients(values)
-    jumps = np.sqrt(np.sum(nodes.compute_jumps(coefficients) ** 2, axis=1)).sum()
-    half = 0.5 * (nodes.ends - nodes.begins)
-    slopes = np.einsum("mn,pnc->pmc", compute_legendre_slopes(), coefficients) / half[:, None, None]
-    inner_bends = np.sqrt(np.sum(np.diff(slopes, axis=1) ** 2, axis=2)).sum()
-    break_bends = slopes[:, 0] - np.roll(slopes[:, -1], 1, axis=0)
-    bends = inner_bends + np.sqrt(np.sum(break_bends**2, axis=1)).sum()
-    return 2.0 / nodes.length * float(jumps), 2.0 / nodes.length * float(bends)
-
-
-@cache
-def compute_legendre_slopes() -> Array:
-    """Return the slopes of P_0 ... at equally spaced places of [-1, 1], (SLOPE_PLACES, MAX_NODES)."""
-    u = np.linspace(-1.0, 1.0, SLOPE_PLACES)
-    P = evaluate_legendre(u)
-    slopes = np.zeros_like(P)
-    for n in range(1, MAX_NODES):
-        slopes[:, n] = n * P[:, n - 1] + u * slopes[:, n - 1]
-    return slopes
-
+from heuncli.results.results import Array, Indices
 
 Verdict = Literal["does not arise", "cancels", "remains"]
-MAX_NAMED = 6
+NO_PARTS: Mapping[str, Array] = MappingProxyType({})
+NO_SELECTIONS: Mapping[str, OrderSelection] = MappingProxyType({})
+MAX_NAMED = 6  # orders that a sentence names
 SMALLER = "smaller ones"
 ENDLESS = ", weaker ones without limit"
 LETTERS = ("x", "y", "z")
@@ -163,18 +56,20 @@ def format_remaining_orders(rows: Sequence[OrderRow], *, endless: bool = False) 
     named = [row for row in named if row.size > tolerances.NAMED_ORDER * largest]
     directions = {format_direction(row) for row in named}
     common_direction = directions.pop() if len(directions) == 1 else ""
+    ending = f", {common_direction}" if common_direction else ""
     names = [
         f"{row.order:g}" + (f" ({format_direction(row)})" if directions and format_direction(row) else "")
         for row in named
     ]
     if len(remaining) == 1:
-        return f"only order {names[0]} remains{f', {common_direction}' if common_direction else ''}"
-    joined_names = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
-    sentence = f"order{'s' if len(names) > 1 else ''} {joined_names} remain{'' if len(names) > 1 else 's'}"
-    sentence += f", {common_direction}" if common_direction else ""
-    last = max(row.order for row in remaining)
+        return f"only order {names[0]} remains{ending}"
+    if len(names) > 1:
+        sentence = f"orders {', '.join(names[:-1])} and {names[-1]} remain{ending}"
+    else:
+        sentence = f"order {names[0]} remains{ending}"
     if len(remaining) == len(named):
         return sentence
+    last = max(row.order for row in remaining)
     return f"{sentence}; {SMALLER} up to order {last:g}{ENDLESS if endless else ''}"
 
 
@@ -190,15 +85,9 @@ def format_direction(row: OrderRow) -> str:
         return ""
     if row.against_turn <= tolerances.NO_PART * row.with_turn and row.is_across_axis:
         return "rotating with the shaft"
-    return (
-        "rotating against the shaft"
-        if row.with_turn <= tolerances.NO_PART * row.against_turn and row.is_across_axis
-        else ""
-    )
-
-
-NO_PARTS: Mapping[str, Array] = MappingProxyType({})
-NO_SELECTIONS: Mapping[str, OrderSelection] = MappingProxyType({})
+    if row.with_turn <= tolerances.NO_PART * row.against_turn and row.is_across_axis:
+        return "rotating against the shaft"
+    return ""
 
 
 @record
@@ -257,60 +146,116 @@ def make_order_rows(
     threshold: level of rounding or error, below which values count as 0
     parts: quantities whose sum the values are, reported with them
     """
-    turns, sum_ = rotation.turns, values.sum(axis=1)
-    error = float(magnitudes(nodes.estimate_errors(sum_).order)) + selection.noise
-    orders = selection.select_orders(nodes, sum_, max(threshold, error))
-    amplitudes = nodes.compute_amplitudes(values, orders)
-    part_amplitudes = {name: nodes.compute_amplitudes(part, orders) for name, part in parts.items()}
-    total, body_sums = amplitudes.sum(axis=1), magnitudes(amplitudes).sum(axis=1)
-    largest = float(body_sums.max(initial=0.0))
-    rounding = max(tolerances.ORDERS_SETTLED * largest, threshold, error)
-    terms = body_sums + sum(
-        (magnitudes(part).sum(axis=1) for part in part_amplitudes.values()), np.zeros_like(body_sums)
-    )
-    significance = (
-        rounding
-        if nodes.last_order is not None
-        else max(tolerances.LISTED_ORDER * float(terms.max(initial=0.0)), rounding)
-    )
-    last = int(orders[np.flatnonzero(terms > significance).max(initial=turns - 1)])
-    selected = np.flatnonzero((orders <= last) | selection.are_requested(orders, turns))
-    sizes_of_sums, zero_levels = magnitudes(total), np.maximum(tolerances.CANCELS * body_sums, rounding)
-    verdicts = [
-        classify_order(float(sizes_of_sums[i]), float(body_sums[i]), largest, max(threshold, error))
-        for i in selected.tolist()
-    ]
-    zero_levels[selected[[verdict != "remains" for verdict in verdicts]]] = math.inf
-    cleaned = drop_rounding(total, zero_levels[:, None])
-    sizes, angles, reach = np.abs(cleaned), compute_phases(cleaned), magnitudes(cleaned)
-    part_levels = np.maximum(tolerances.CANCELS * terms, rounding)[:, None]
-    cleaned_parts = {name: drop_rounding(part.sum(axis=1), part_levels) for name, part in part_amplitudes.items()}
+    spectrum = compute_spectrum(values, nodes, parts, threshold, selection)
+    listed = find_listed_orders(spectrum, nodes, selection)
+    verdicts = spectrum.classify(listed)
+    zero_levels = np.maximum(tolerances.CANCELS * spectrum.body_sums, spectrum.rounding)
+    zero_levels[listed[[verdict != "remains" for verdict in verdicts]]] = math.inf
+    cleaned = drop_rounding(spectrum.total, zero_levels[:, None])
+    sizes, phases, reach = np.abs(cleaned), compute_phases(cleaned), magnitudes(cleaned)
+    part_levels = np.maximum(tolerances.CANCELS * spectrum.terms, spectrum.rounding)[:, None]
+    cleaned_parts = {name: drop_rounding(part, part_levels) for name, part in spectrum.parts.items()}
     part_rows = {name: (np.abs(part), compute_phases(part)) for name, part in cleaned_parts.items()}
     rows = []
-    for i, verdict in zip(selected.tolist(), verdicts, strict=True):
+    for i, verdict in zip(listed.tolist(), verdicts, strict=True):
         row = OrderRow(
-            float(orders[i] / turns), sizes[i], angles[i], float(reach[i]), float(body_sums[i]), verdict, error,
-            parts={name: (size[i], angle[i]) for name, (size, angle) in part_rows.items()} or None,
+            float(spectrum.orders[i] / rotation.turns), sizes[i], phases[i], float(reach[i]),
+            float(spectrum.body_sums[i]), verdict, spectrum.error,
+            parts={name: (size[i], phase[i]) for name, (size, phase) in part_rows.items()} or None,
         )  # fmt: skip
-        rows.append(add_rotating_vectors(row, total[i], rotation, float(zero_levels[i])))
+        rows.append(add_rotating_vectors(row, spectrum.total[i], rotation, float(zero_levels[i])))
     return tuple(rows)
 
 
+@record
+class OrderSpectrum:
+    """Complex amplitudes of m orders of a quantity with c components, and the size of the terms that they add up.
+
+    orders (m,): whole numbers per cycle
+    total (m, c): amplitudes of the sum over the bodies
+    parts: amplitudes of each part of the quantity, summed over the bodies, (m, c)
+    body_sums (m,): sum of the magnitudes of the bodies
+    terms (m,): the same with the magnitudes of their parts
+    error: error of any amplitude
+    floor: level of rounding or error, below which values count as 0
+    """
+
+    orders: Indices
+    total: Array
+    parts: Mapping[str, Array]
+    body_sums: Array
+    terms: Array
+    error: float
+    floor: float
+
+    @property
+    def largest(self) -> float:
+        """The largest sum of the bodies' magnitudes of any order."""
+        return float(self.body_sums.max(initial=0.0))
+
+    @property
+    def rounding(self) -> float:
+        """The level up to which amplitudes are rounding or error."""
+        return max(tolerances.ORDERS_SETTLED * self.largest, self.floor)
+
+    def classify(self, listed: Indices) -> list[Verdict]:
+        """Return the verdict on each of the listed orders."""
+        sizes, largest = magnitudes(self.total), self.largest
+        return [classify_order(float(sizes[i]), float(self.body_sums[i]), largest, self.floor) for i in listed.tolist()]
+
+
+def compute_spectrum(
+    values: Array, nodes: CycleNodes, parts: Mapping[str, Array], threshold: float, selection: OrderSelection
+) -> OrderSpectrum:
+    """Compute the selected orders of the sum over the bodies of values (n, bodies, c), and of their parts.
+
+    threshold: level of rounding or error, below which values count as 0
+    """
+    sum_ = values.sum(axis=1)
+    error = float(magnitudes(nodes.estimate_errors(sum_).order)) + selection.noise
+    floor = max(threshold, error)
+    orders = selection.select_orders(nodes, sum_, floor)
+    amplitudes = nodes.compute_amplitudes(values, orders)
+    part_amplitudes = {name: nodes.compute_amplitudes(part, orders) for name, part in parts.items()}
+    body_sums = magnitudes(amplitudes).sum(axis=1)
+    part_sums = (magnitudes(part).sum(axis=1) for part in part_amplitudes.values())
+    return OrderSpectrum(
+        orders=orders,
+        total=amplitudes.sum(axis=1),
+        parts={name: part.sum(axis=1) for name, part in part_amplitudes.items()},
+        body_sums=body_sums,
+        terms=body_sums + sum(part_sums, np.zeros_like(body_sums)),
+        error=error,
+        floor=floor,
+    )
+
+
+def find_listed_orders(spectrum: OrderSpectrum, nodes: CycleNodes, selection: OrderSelection) -> Indices:
+    """Return the indices of the orders up to the last significant one, at least of one turn, and of those requested."""
+    significance = spectrum.rounding
+    if nodes.last_order is None:
+        significance = max(tolerances.LISTED_ORDER * float(spectrum.terms.max(initial=0.0)), significance)
+    last = int(spectrum.orders[np.flatnonzero(spectrum.terms > significance).max(initial=nodes.turns - 1)])
+    return np.flatnonzero((spectrum.orders <= last) | selection.are_requested(spectrum.orders, nodes.turns))
+
+
 def add_rotating_vectors(row: OrderRow, a: Array, rotation: CycleRotation, zero_level: float) -> OrderRow:
-    """Return the row with the vectors that rotate across the cycle's axis; values up to the zero level are rounding."""
+    """Return the row with the rotating vectors of its amplitude a (c,) across the cycle's axis; values up to the zero
+    level are rounding.
+    """
     if rotation.axis is None:
         return row
-    P, N = (
-        abs(vector[0]) if abs(vector[0]) > zero_level else 0.0
+    with_turn, against_turn = (
+        float(abs(vector[0])) if abs(vector[0]) > zero_level else 0.0
         for vector in compute_rotating_vectors(a[None, :], rotation.axis)
     )
-    across = bool(abs(a @ rotation.axis) <= zero_level)
-    return replace(row, with_turn=float(P), against_turn=float(N), is_across_axis=across)
+    is_across = bool(abs(a @ rotation.axis) <= zero_level)
+    return replace(row, with_turn=with_turn, against_turn=against_turn, is_across_axis=is_across)
 
 
-def drop_rounding(a: Array, zero_level: float) -> Array:
-    """Set complex numbers to 0 where they do not exceed rounding."""
-    return np.asarray(np.where(np.abs(a) > zero_level, a, 0.0))
+def drop_rounding(a: Array, zero_levels: Array) -> Array:
+    """Set complex numbers (m, c) to 0 where they do not exceed rounding, (m, 1)."""
+    return np.asarray(np.where(np.abs(a) > zero_levels, a, 0.0))
 
 
 def compute_phases(a: Array) -> Array:

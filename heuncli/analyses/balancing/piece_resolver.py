@@ -23,10 +23,12 @@ Sample = Callable[[Array], Array]  # maps ascending places (n,) to numbers (n, c
 FIRST_NODES = 8  # nodes of a short piece at first; other pieces have MAX_NODES
 SHORT_PIECE = 0.05  # of a turn
 MAX_PIECE = 0.125  # of a turn: longest piece at first
-# of the tail of the piece before it was halved: a tail that halving lowers to no less is rounding of the numbers
+# share of the tail of the piece before it was halved: a tail that halving lowers to no less is rounding of the numbers
 MIN_TAIL_REDUCTION = 0.25
 GRADING = 8.0  # ratio of the lengths of adjacent pieces towards a place that is resolved again
 MAX_EVALUATIONS = 400_000
+MIN_LENGTHS = 4.0  # negligible lengths: a piece that is no longer than these is not halved
+PART_ROUNDING = 1e-9  # of MAX_PIECE: a piece longer by no more than this is not divided
 
 
 class ResolvedNumbers(NamedTuple):
@@ -41,7 +43,11 @@ class ResolvedNumbers(NamedTuple):
 
 
 class CyclePieces(NamedTuple):
-    """Pieces (p,) with their numbers of nodes, and the largest relative tail of the piece that each is a half of."""
+    """Pieces of a cycle, (p,) each.
+
+    sizes: numbers of nodes
+    parent_tails: largest relative tail of the piece that each is a half of; infinite if it is none
+    """
 
     begins: Array
     ends: Array
@@ -54,7 +60,13 @@ class CyclePieces(NamedTuple):
 
 
 class CycleResolver:
-    """Finds pieces for numbers over a cycle; resolved pieces are stored in `resolved` and `values`."""
+    """Finds pieces for numbers over a cycle.
+
+    resolved, values: resolved pieces so far, ascending, and the numbers at the nodes of each
+    largest: largest scales of the columns so far
+    is_resolved: whether no piece was left as it was because of MAX_EVALUATIONS
+    min_length [rad]: length below which pieces are negligible
+    """
 
     def __init__(self, sample: Sample, cycle: PieceNodes, scales: Callable[[Array], Array]) -> None:
         """cycle: without pieces yet
@@ -69,16 +81,16 @@ class CycleResolver:
 
     def resolve(self, marks: Array) -> ResolvedNumbers:
         """Divide the cycle at the marks (places) and refine the pieces until all are resolved."""
-        ends = self.cycle.length
-        breaks = np.unique(
-            np.concatenate([[0.0], marks[(marks > self.min_length) & (marks < ends - self.min_length)], [ends]])
-        )
+        length = self.cycle.length
+        inner_marks = marks[(marks > self.min_length) & (marks < length - self.min_length)]
+        breaks = np.unique(np.concatenate([[0.0], inner_marks, [length]]))
         breaks = breaks[np.append(True, np.diff(breaks) > self.min_length)]
-        breaks[-1] = ends
-        turn = ends / self.cycle.turns
-        parts = np.maximum(np.ceil(np.diff(breaks) / (MAX_PIECE * turn) - 1e-9), 1.0).astype(int)
+        breaks[-1] = length
+        turn = length / self.cycle.turns
+        counts = np.maximum(np.ceil(np.diff(breaks) / (MAX_PIECE * turn) - PART_ROUNDING), 1.0).astype(int)
         places = np.concatenate([
-            *(a + (b - a) * np.arange(n) / n for a, b, n in zip(breaks[:-1], breaks[1:], parts, strict=True)), [ends]
+            *(a + (b - a) * np.arange(n) / n for a, b, n in zip(breaks[:-1], breaks[1:], counts, strict=True)),
+            [length],
         ])  # fmt: skip
         sizes = np.where(np.diff(places) < SHORT_PIECE * turn, FIRST_NODES, MAX_NODES)
         self.refine(CyclePieces(places[:-1], places[1:], sizes, np.full(len(sizes), np.inf)))
@@ -87,51 +99,54 @@ class CycleResolver:
     def probe(self, probes: Array) -> ResolvedNumbers:
         """Compare the pieces with the numbers at the probes and refine again where they differ; return all numbers."""
         probes = np.unique(probes[(probes > self.min_length) & (probes < self.cycle.length - self.min_length)])
-        resolved = self.collect_numbers()
-        if not len(probes):
-            return resolved
-        deviations = (
-            np.abs(
-                self.sample(probes)
-                - resolved.nodes.evaluate(resolved.nodes.compute_coefficients(resolved.values), probes)
-            )
-            / self.scale
-        )
-        k = np.searchsorted(self.resolved.begins, probes, side="right") - 1
-        is_inside = (
-            np.minimum(probes - self.resolved.begins[k], self.resolved.ends[k] - probes) > GRADING * self.min_length
-        )
-        deviations = np.where(is_inside, deviations.max(axis=1), 0.0)
-        order = np.lexsort((deviations, k))
-        worst = order[np.append(k[order][1:] != k[order][:-1], True)]  # worst probe of each piece
-        wrong = worst[deviations[worst] > tolerances.CANCELS]
-        if not len(wrong):
-            return resolved
-        self.regrade(k[wrong], probes[wrong])
+        if len(probes):
+            k = np.searchsorted(self.resolved.begins, probes, side="right") - 1
+            wrong = self.find_wrong_probes(probes, k)
+            if len(wrong):
+                self.regrade(k[wrong], probes[wrong])
         return self.collect_numbers()
+
+    def find_wrong_probes(self, probes: Array, k: Indices) -> Indices:
+        """Return the indices of the worst probe of each piece on which polynomials and numbers differ.
+
+        k: the piece of each probe
+        """
+        nodes, values, _ = self.collect_numbers()
+        interpolated = nodes.evaluate(nodes.compute_coefficients(values), probes)
+        deviations = np.abs(self.sample(probes) - interpolated) / self.scale
+        distance_to_ends = np.minimum(probes - self.resolved.begins[k], self.resolved.ends[k] - probes)
+        deviations = np.where(distance_to_ends > GRADING * self.min_length, deviations.max(axis=1), 0.0)
+        order = np.lexsort((deviations, k))
+        is_last_of_piece = np.append(k[order][1:] != k[order][:-1], True)
+        worst = order[is_last_of_piece]
+        return np.asarray(worst[deviations[worst] > tolerances.CANCELS])
 
     def regrade(self, k: Indices, places: Array) -> None:
         """Replace pieces by ones that shorten toward a place within each, on both sides.
 
         Details there may be shorter than the distance of any nodes.
         """
-        ends = []
+        all_marks = []
         for i, place in zip(k.tolist(), places.tolist(), strict=True):
-            a, b = float(self.resolved.begins[i]), float(self.resolved.ends[i])
-            for width, side in ((place - a, -1.0), (b - place, 1.0)):
-                levels = int(max(np.log(width / (GRADING * self.min_length)) / np.log(GRADING), 0.0))
-                ends.append(place + side * width * GRADING ** -np.arange(levels + 1.0))
-            ends.append(np.array([place]))
-            ends[-3][0], ends[-2][0] = a, b
-        marks = np.unique(np.concatenate(ends))
+            begin, end = float(self.resolved.begins[i]), float(self.resolved.ends[i])
+            all_marks += [self.grade(place, begin), self.grade(place, end), np.array([place])]
+        marks = np.unique(np.concatenate(all_marks))
         is_replaced = np.zeros(len(self.resolved.begins), dtype=bool)
         is_replaced[k] = True
-        middle = 0.5 * (marks[1:] + marks[:-1])
-        inside = is_replaced[np.searchsorted(self.resolved.begins, middle, side="right") - 1]
-        begins, piece_ends = marks[:-1][inside], marks[1:][inside]
-        self.values = [own for own, out in zip(self.values, is_replaced, strict=True) if not out]
+        middles = 0.5 * (marks[1:] + marks[:-1])
+        is_inside = is_replaced[np.searchsorted(self.resolved.begins, middles, side="right") - 1]
+        begins, ends = marks[:-1][is_inside], marks[1:][is_inside]
+        self.values = [numbers for numbers, out in zip(self.values, is_replaced, strict=True) if not out]
         self.resolved = self.resolved.select(~is_replaced)
-        self.refine(CyclePieces(begins, piece_ends, np.full(len(begins), MAX_NODES), np.full(len(begins), np.inf)))
+        self.refine(CyclePieces(begins, ends, np.full(len(begins), MAX_NODES), np.full(len(begins), np.inf)))
+
+    def grade(self, place: float, end: float) -> Array:
+        """Return marks from one end of a piece toward a place, each GRADING times closer to it than the one before."""
+        width, side = abs(end - place), -1.0 if end < place else 1.0
+        levels = int(max(np.log(width / (GRADING * self.min_length)) / np.log(GRADING), 0.0))
+        marks = place + side * width * GRADING ** -np.arange(levels + 1.0)
+        marks[0] = end
+        return np.asarray(marks)
 
     def refine(self, pieces: CyclePieces) -> None:
         """Halve pieces until each is resolved or has negligible length; then store them."""
@@ -144,15 +159,14 @@ class CycleResolver:
             self.largest = scales if self.largest is None else np.maximum(self.largest, scales)
             tails = (nodes.estimate_tails(nodes.compute_coefficients(values)) / self.scale).max(axis=1)
             width = pieces.ends - pieces.begins
-            noise = (tails <= tolerances.RESOLVED_TO_NOISE) & (tails > MIN_TAIL_REDUCTION * pieces.parent_tails)
-            wide = width > 4.0 * self.min_length
+            is_noise = (tails <= tolerances.RESOLVED_TO_NOISE) & (tails > MIN_TAIL_REDUCTION * pieces.parent_tails)
+            is_wide = width > MIN_LENGTHS * self.min_length
             is_exhausted = self.evaluations > MAX_EVALUATIONS
-            is_done = (tails <= tolerances.ORDERS_SETTLED) | noise | ~wide | is_exhausted
-            self.is_resolved &= not (is_exhausted and bool((tails > tolerances.CANCELS)[wide].any()))
-            parts = np.split(values, np.cumsum(pieces.sizes)[:-1])
-            self.store(
-                pieces.select(is_done), [part for part, own_done in zip(parts, is_done, strict=True) if own_done]
-            )
+            is_done = (tails <= tolerances.ORDERS_SETTLED) | is_noise | ~is_wide | is_exhausted
+            self.is_resolved &= not (is_exhausted and bool((tails > tolerances.CANCELS)[is_wide].any()))
+            values_by_piece = np.split(values, np.cumsum(pieces.sizes)[:-1])
+            done_values = [numbers for numbers, done in zip(values_by_piece, is_done, strict=True) if done]
+            self.store(pieces.select(is_done), done_values)
             pieces = divide_pieces(pieces._replace(parent_tails=tails).select(~is_done))
 
     def store(self, pieces: CyclePieces, values: Sequence[Array]) -> None:
@@ -170,8 +184,8 @@ class CycleResolver:
 
     def make_nodes(self, pieces: CyclePieces) -> PieceNodes:
         """Return the cycle's nodes on these pieces."""
-        found: PieceNodes = replace(self.cycle, begins=pieces.begins, ends=pieces.ends, sizes=pieces.sizes.astype(int))
-        return found
+        nodes: PieceNodes = replace(self.cycle, begins=pieces.begins, ends=pieces.ends, sizes=pieces.sizes.astype(int))
+        return nodes
 
     def collect_numbers(self) -> ResolvedNumbers:
         """Return all numbers resolved so far."""

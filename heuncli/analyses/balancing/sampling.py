@@ -11,9 +11,9 @@ import numpy as np
 from heuncli.analyses.balancing.cycle import MAX_SAMPLES, Cycle, FollowedScene, MassEffects, compute_mass_effects
 from heuncli.analyses.balancing.cycle_nodes import TAIL_FRACTION, CycleNodes, Interpolant
 from heuncli.analyses.balancing.followed_run import SAMPLES_PER_TURN
+from heuncli.analyses.balancing.order_selection import OrderSelection
 from heuncli.analyses.balancing.orders import (
     CycleRotation,
-    OrderSelection,
     compute_rounding,
     format_remaining_orders,
     magnitudes,

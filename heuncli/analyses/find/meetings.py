@@ -1,5 +1,7 @@
 """Find the places where a measure meets its target value, from its samples, and the error of each place.
-    |x - x0| <= E / |g'|            E: the error of the measure and the residual of g at the place [that of g]
+
+    |x - x0| <= E / |g'|            E: the error of the measure and the residual of g at the place, in the unit of g
+
 The slope g' comes from neighbours clearly off the value, minus its own error, and is no more than the chords to them.
 The place is never farther than the next neighbours that are certainly on one side. Where the measure bends at the
 value, or its slope falls towards it as at an inflection, the neighbours' slopes do not describe the place itself: the
@@ -14,6 +16,7 @@ from itertools import groupby
 from operator import attrgetter
 
 from heuncli.analyses.find.results import (
+    AT_END,
     Crossing,
     EdgeKind,
     MeasureJump,
@@ -25,15 +28,15 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.touches import find_touch_range, iter_minima
 from heuncli.analyses.variants.course import MIN_DISTANCE, MeasureCourse
-from heuncli.analyses.variants.samples import Sample, interpolate_slope
+from heuncli.analyses.variants.samples import AT_VALUE, LEFT, RIGHT, Sample, interpolate_slope
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 
-CLEAR_FACTOR = 20.0  # times E: distance from the value of neighbours that give a slope to a tenth
-MAX_SLOPE_ERROR = 0.5  # of a slope: its permitted error
-MIN_CHORD_RATIO = 0.5  # of the steeper chord: if the other is less, the measure bends
-ENCLOSURE_FACTOR = 2.0  # times E / chord: where a crossing is enclosed
-FLAT_FACTOR = 4.0  # times E / chord: an enclosure that is not flat
+CLEAR_FACTOR = 20.0  # |g| / E of neighbours that give a slope to a tenth
+MAX_SLOPE_ERROR = 0.5  # permitted relative error of a slope
+MIN_CHORD_RATIO = 0.5  # smallest ratio of the flatter chord to the steeper one at which the measure does not bend
+ENCLOSURE_FACTOR = 2.0  # distance at which a crossing is enclosed, in E / chord
+FLAT_FACTOR = 4.0  # half width of an enclosure above which the crossing counts as flat, in E / chord
 
 
 class SlopeEstimate(NamedTuple):
@@ -79,13 +82,14 @@ def iter_meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | MeasureJ
     found = group_by_side(course)
     for _, middle, _ in iter_minima(course):
         if (ends := find_touch_range(course, middle)) is not None:
-            yield Touch(middle, *ends, middle.side or 0)
+            yield Touch(middle, *ends, middle.side or AT_VALUE)
     for k, group in enumerate(found):
         before = found[k - 1].side if k else None
         after = found[k + 1].side if k + 1 < len(found) else None
-        if group.side == 0:
+        if group.side == AT_VALUE:
             meeting = classify_group(course, group, before, after)
-            if isinstance(meeting, Touch) and meeting.side:  # between the next samples that differ from the value
+            if isinstance(meeting, Touch) and meeting.side:
+                # its ends are the next samples that differ from the value
                 meeting = meeting._replace(low=found[k - 1][-1].x, high=found[k + 1][0].x)
             yield meeting
         elif group.side and before and before == -group.side:
@@ -106,9 +110,9 @@ def classify_group(
     if previous_side and previous_side == next_side:
         return Touch(best, group[0].x, group[-1].x, previous_side)
     if not previous_side and not next_side:
-        return Touch(best, group[0].x, group[-1].x, 0)
+        return Touch(best, group[0].x, group[-1].x, AT_VALUE)
     error, is_flat = estimate_place_error(course, group, best)
-    return Crossing(best, error, next_side if previous_side and next_side else 0, is_flat)
+    return Crossing(best, error, next_side if previous_side and next_side else AT_END, is_flat)
 
 
 def estimate_place_error(course: MeasureCourse, group: SideGroup, best: Sample) -> tuple[float, bool]:
@@ -131,17 +135,19 @@ def compute_value_error(group: SideGroup, best: Sample) -> float:
 
 def iter_enclosure(course: MeasureCourse, group: SideGroup) -> Iterator[tuple[int, Sample, Sample | None]]:
     """Yield for both directions the end of a group and the next sample that is certainly on one side, or None."""
-    for direction, end in ((-1, group[0]), (1, group[-1])):
-        yield direction, end, next(iter(find_neighbours(course, group, direction, 0.0)), None)
+    for direction, end in ((LEFT, group[0]), (RIGHT, group[-1])):
+        yield direction, end, next(iter(find_clear_neighbours(course, group, direction, 0.0)), None)
 
 
 def estimate_slope(course: MeasureCourse, group: SideGroup, best: Sample, value_error: float) -> SlopeEstimate | None:
     """Estimate the slope at a sample; None if there are too few neighbours."""
-    left, right = (find_neighbours(course, group, direction, CLEAR_FACTOR * value_error) for direction in (-1, 1))
+    left, right = (
+        find_clear_neighbours(course, group, direction, CLEAR_FACTOR * value_error) for direction in (LEFT, RIGHT)
+    )
     all_samples = [*reversed(left), best, *right]
     if len(all_samples) < 3:
         return None
-    # parabola through the nearest, and cubics with one more: their difference is the error of the slope
+    # the parabola through the nearest gives the slope; cubics with one more sample differ from it by its error
     nearest = [*left[: 1 if right else 2], *right[: 1 if left else 2], best]
     larger_sets = [sorted({*nearest, extra}) for extra in all_samples if extra not in nearest]
     slopes = [interpolate_slope(sorted(points), best.x) for points in (nearest, *larger_sets)]
@@ -168,19 +174,16 @@ def is_flattening(best: Sample, *sides: list[Sample]) -> bool:
     return min(powers, default=0.0) > tolerances.FLATTENS
 
 
-def find_neighbours(course: MeasureCourse, group: SideGroup, direction: int, min_size: float) -> list[Sample]:
-    """Return up to two samples next to a group, nearest first, in the same stretch and farther than `min_size` from the
-    value.
-    """
-    samples = course.samples
-    k = samples.index(group[0] if direction < 0 else group[-1])
+def find_clear_neighbours(course: MeasureCourse, group: SideGroup, direction: int, min_size: float) -> list[Sample]:
+    """Find up to two samples next to a group, nearest first, that differ from the value by `min_size` or more."""
+    k = course.samples.index(group[0] if direction == LEFT else group[-1])
     found: list[Sample] = []
-    while len(found) < 2 and 0 <= k + direction < len(samples) and not course.is_interrupted(k + min(direction, 0)):
-        k += direction
-        sample = samples[k]
+    for sample in course.iter_outward(k, direction):
         is_separate = not found or abs(sample.x - found[0].x) >= MIN_DISTANCE * abs(found[0].x - group[0].x)
         if sample.side and sample.distance >= min_size and is_separate:
             found.append(sample)
+            if len(found) == 2:
+                break
     return found
 
 
@@ -189,7 +192,7 @@ def iter_enclosing_places(course: MeasureCourse) -> Iterator[float]:
     found = group_by_side(course)
     for k, group in enumerate(found):
         previous_side, next_side = (found[i].side if 0 <= i < len(found) else None for i in (k - 1, k + 1))
-        if group.side != 0 or previous_side == next_side or not (previous_side or next_side):
+        if group.side != AT_VALUE or previous_side == next_side or not (previous_side or next_side):
             continue
         best = min(group, key=attrgetter("distance"))
         value_error = compute_value_error(group, best)

@@ -15,17 +15,20 @@ from operator import attrgetter
 
 import numpy as np
 
-from heuncli.analyses.variants.course import NOISE, MeasureCourse
-from heuncli.analyses.variants.samples import Sample, interpolate, withhold
+from heuncli.analyses.variants.course import MeasureCourse
+from heuncli.analyses.variants.course_extremes import find_pole
+from heuncli.analyses.variants.course_prediction import NOISE, sample_and_learn
+from heuncli.analyses.variants.samples import AT_VALUE, LEFT, RIGHT, Sample, interpolate, withhold
 from heuncli.base import tolerances
 
-MAX_REMAINING_GAP = 0.25  # of the gap: if interpolation leaves more than this, a halving follows
-WIDE_BRACKET = 1000.0  # times the narrowest bracket: a wider one, across which a jump has the same size
-SUFFICIENT_REDUCTION = 0.5  # of a bracket: if the two sides of a pole leave less, the middle need not follow
-# of a bracket: what remains if both sides of a predicted pole or edge, at a share of it, enclose it; with some slack
+MAX_REMAINING_GAP = 0.25  # share of the gap that interpolation may leave; if it leaves more, a halving follows
+WIDE_BRACKET = 1000.0  # width of a bracket across which a jump still has the same size, in narrowest brackets
+SUFFICIENT_REDUCTION = 0.5  # share of a bracket: if the two sides of a pole leave less, the middle need not follow
+# Two places at a share s of the bracket on both sides of a predicted pole or edge enclose it in 2 s; with some slack:
 ENCLOSED_SHARES = 2.5
-MIN_BRACKET = 10.0  # times the narrowest bracket: a comparison bracket that is not wider proves no jump
-FIRST_POLE_SHARE, MIN_POLE_SHARE = 0.05, 1e-6  # of a bracket: distance to both sides of the predicted pole
+MIN_BRACKET = 10.0  # width of a bracket that can prove a jump by comparison, in narrowest brackets
+FIRST_SHARE, MIN_SHARE = 0.05, 1e-6  # share s of the bracket: at first, and the smallest
+HALVINGS = 60  # halvings to the root of a polynomial: down to the last bit
 
 
 class PlaceRule(IntEnum):
@@ -57,22 +60,22 @@ def narrow_pair(course: MeasureCourse, i: int) -> None:
     sides of the root of the inverse measure are tried, ever closer to it.
     """
     left, right = course.samples[i], course.samples[i + 1]
-    rule, pole_share = PlaceRule.PREDICTED_ROOT, FIRST_POLE_SHARE
+    rule, pole_share = PlaceRule.PREDICTED_ROOT, FIRST_SHARE
     while right.x - left.x > course.finest:
-        if rule != PlaceRule.PREDICTED_ROOT and (pole := course.find_pole(course.samples.index(left))) is not None:
+        if rule != PlaceRule.PREDICTED_ROOT and (pole := find_pole(course, course.samples.index(left))) is not None:
             width = right.x - left.x
             left, right = narrow_pole(course, left, right, pole, pole_share)
             if left.gap is None or right.gap is None or not left.side or not right.side:
                 return
             is_narrower = right.x - left.x < ENCLOSED_SHARES * pole_share * width
-            pole_share = max(pole_share * pole_share, MIN_POLE_SHARE) if is_narrower else FIRST_POLE_SHARE
+            pole_share = max(pole_share * pole_share, MIN_SHARE) if is_narrower else FIRST_SHARE
             is_reduced = right.x - left.x < SUFFICIENT_REDUCTION * width
             rule = PlaceRule.PAST_ROOT if is_reduced else PlaceRule.MIDDLE
             if is_narrower or is_reduced:
                 continue
         best = min(left.distance, right.distance)
-        sample = course.sample_and_learn(choose_root_place(course, left, right, rule))
-        if sample.gap is None or sample.side == 0:
+        sample = sample_and_learn(course, choose_root_place(course, left, right, rule))
+        if sample.gap is None or sample.side == AT_VALUE:
             return
         is_closer = abs(sample.gap) < MAX_REMAINING_GAP * best
         rule = PlaceRule.PREDICTED_ROOT if is_closer else PlaceRule(min(rule + 1, PlaceRule.MIDDLE))
@@ -115,8 +118,8 @@ def is_steep(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     Near a jump the slope outside is small, near a pole it grows. Only the change that exceeds both errors counts.
     """
     i = next(i for i, sample, _ in course.iter_pairs() if sample is left)
-    outer_pairs = [(left, each) for each in course.find_neighbours(i, -1)[:1]] + [
-        (right, each) for each in course.find_neighbours(i, 1)[:1]
+    outer_pairs = [(left, each) for each in course.find_neighbours(i, LEFT)[:1]] + [
+        (right, each) for each in course.find_neighbours(i, RIGHT)[:1]
     ]
     errors = 2.0 * (left.error + right.error)
     slope_inside = max(abs(right.gap_or_zero - left.gap_or_zero) - errors, 0.0) / (right.x - left.x)
@@ -132,7 +135,10 @@ def is_jump_size(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     A jump does, and a pole changes by more; a vertical tangent, as of a root of x - c, changes by less.
     """
     distance = 0.5 * WIDE_BRACKET * (right.x - left.x)
-    outer_left, outer_right = sample_outside(course, left, -1, distance), sample_outside(course, right, 1, distance)
+    outer_left, outer_right = (
+        sample_outside(course, left, LEFT, distance),
+        sample_outside(course, right, RIGHT, distance),
+    )
     if outer_right.x - outer_left.x < MIN_BRACKET * (right.x - left.x):
         return False
     inner_change = abs(right.gap_or_zero - left.gap_or_zero) + left.error + right.error
@@ -144,13 +150,12 @@ def sample_outside(course: MeasureCourse, end: Sample, direction: int, distance:
 
     Raises SampleLimitError.
     """
-    k, best = course.samples.index(end), end
-    while 0 <= k + direction < len(course.samples) and not course.is_interrupted(k + min(direction, 0)):
-        k += direction
-        if abs(course.samples[k].x - end.x) > distance:
-            sample = course.sample_at(end.x + direction * distance)
-            return sample if sample.gap is not None else best
-        best = course.samples[k]
+    best = end
+    for sample in course.iter_outward(course.samples.index(end), direction):
+        if abs(sample.x - end.x) > distance:
+            new_sample = course.sample_at(end.x + direction * distance)
+            return new_sample if new_sample.gap is not None else best
+        best = sample
         if abs(best.x - end.x) >= 0.5 * distance:
             return best
     return best
@@ -163,7 +168,7 @@ def predict_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
     others = sorted((each for each in stretch if each not in (left, right)), key=lambda each: abs(each.x - near.x))
     samples = _straighten_pole(course, [left, right, *others[:2]])
     low, high = left.x, right.x
-    for _ in range(60):  # halvings of a polynomial, which cost nothing
+    for _ in range(HALVINGS):  # they cost nothing: no variant is solved
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
@@ -174,8 +179,10 @@ def predict_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
 
 
 def _straighten_pole(course: MeasureCourse, samples: list[Sample]) -> list[Sample]:
-    """Return samples of 1/value - 1/measure, which has the same root, where it is followed better by a polynomial, as
-    towards a pole; else the same samples. The nearest to the root is predicted from the others.
+    """Return samples of 1/value - 1/measure, if a polynomial follows that better, as towards a pole; else the same.
+
+    It has the same root. What a polynomial follows better is judged by the sample nearest to the root, which is
+    predicted from the others.
     """
     m = [course.get_measure(sample) for sample in samples]
     if len(samples) < 4 or min(x * course.value for x in m) <= 0.0:
@@ -190,20 +197,16 @@ def _straighten_pole(course: MeasureCourse, samples: list[Sample]) -> list[Sampl
     return inverses if inverse_error < abs(expected - near.gap_or_zero) else samples
 
 
-def find_stretch(course: MeasureCourse, one: Sample) -> list[Sample]:
+def find_stretch(course: MeasureCourse, member: Sample) -> list[Sample]:
     """Return the samples of the stretch that contains a sample."""
     stretch: list[Sample] = []
     for i, sample in enumerate(course.samples):
         if stretch and course.is_interrupted(i - 1):
-            if one in stretch:
+            if member in stretch:
                 return stretch
             stretch = []
         stretch.append(sample)
     return stretch
-
-
-FIRST_FRACTION = 0.05  # of the bracket: first distance to both sides of the predicted edge
-MIN_FRACTION = 1e-6
 
 
 def close_edges(course: MeasureCourse) -> None:
@@ -237,7 +240,7 @@ def find_middle(low: float, high: float) -> float | None:
 
 def close_edge(course: MeasureCourse, solved_sample: Sample, failed_sample: Sample) -> None:
     """Narrow one edge down. Raises SampleLimitError."""
-    fraction, is_trusted = FIRST_FRACTION, True
+    share, is_trusted = FIRST_SHARE, True
     while not is_closed(course, solved_sample, failed_sample):
         middle = solved_sample.x + 0.5 * (failed_sample.x - solved_sample.x)
         width = failed_sample.x - solved_sample.x
@@ -251,11 +254,11 @@ def close_edge(course: MeasureCourse, solved_sample: Sample, failed_sample: Samp
             is_trusted = True
             continue
         old_width = abs(width)
-        for x in (predicted - fraction * width, predicted + fraction * width):
+        for x in (predicted - share * width, predicted + share * width):
             if min(solved_sample.x, failed_sample.x) < x < max(solved_sample.x, failed_sample.x):
                 solved_sample, failed_sample = evaluate_between(course, solved_sample, failed_sample, x)
-        is_trusted = abs(failed_sample.x - solved_sample.x) < ENCLOSED_SHARES * fraction * old_width
-        fraction = max(fraction * fraction, MIN_FRACTION) if is_trusted else FIRST_FRACTION
+        is_trusted = abs(failed_sample.x - solved_sample.x) < ENCLOSED_SHARES * share * old_width
+        share = max(share * share, MIN_SHARE) if is_trusted else FIRST_SHARE
 
 
 def evaluate_between(
@@ -271,7 +274,7 @@ def evaluate_between(
 def predict_edge(course: MeasureCourse, solved_sample: Sample, width: float) -> float | None:
     """Return the edge that the solved samples predict within the bracket; None if they predict none."""
     samples = course.samples
-    k, direction = samples.index(solved_sample), -1 if width > 0.0 else 1
+    k, direction = samples.index(solved_sample), LEFT if width > 0.0 else RIGHT
     nearest = [samples[k + direction * j] for j in range(3) if 0 <= k + direction * j < len(samples)]
     if len(nearest) < 3 or any(sample.gap is None for sample in nearest):
         return None
@@ -285,6 +288,6 @@ def predict_edge(course: MeasureCourse, solved_sample: Sample, width: float) -> 
     bend = ((x[2] - x[1]) / (m[2] - m[1]) - chord) / (m[2] - m[0])
     if bend == 0.0 or not math.isfinite(bend):
         return None
-    slope = chord - bend * (m[1] - m[0])  # of x over u, at the solved sample
+    slope = chord - bend * (m[1] - m[0])  # dx/du at the solved sample
     distance = -0.25 * slope * slope / bend
     return solved_sample.x + distance if 0.0 < distance / width < 1.0 else None

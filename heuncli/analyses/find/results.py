@@ -6,19 +6,20 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.analyses.variants.measures import Comparison
+from heuncli.analyses.variants.conditions import Comparison
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.analyses.variants.samples import Sample
 from heuncli.base.named_tuples import NamedTuple
 
 EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved", "bracket"]
+FALLS, AT_END, RISES = -1, 0, 1  # the direction of a crossing; the numbers are signs of its slope
 
 
 class Crossing(NamedTuple):
     """A place where the measure passes its value, with its error.
 
     sample: the variant there
-    direction: 1 if it rises through the value, -1 if it falls; 0 at an end of the known range
+    direction: RISES or FALLS; AT_END of the known range it may not pass the value
     flat: the slope there is smaller than its own error; the error of the place then reaches to the neighbours that
     are certainly on one side of the value
     """
@@ -34,7 +35,7 @@ class Touch(NamedTuple):
 
     sample: the nearest one
     low, high: next places that are distinguishable from the value, or the ends of the known range
-    side: the side around it; 0 if it is indistinguishable wherever it is known
+    side: BELOW or ABOVE around it; AT_VALUE if it is indistinguishable from the value wherever it is known
     """
 
     sample: Sample

@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.analyses.find.narrowing import narrow_all
-from heuncli.analyses.find.poles import find_hidden_pole, has_pole, is_far_from_value
+from heuncli.analyses.find.poles import find_possible_peak, has_pole, is_far_from_value
 from heuncli.analyses.find.touches import (
     find_touch_range,
     follow_minimum,
@@ -25,15 +25,15 @@ from heuncli.analyses.find.touches import (
     leads_to_touch,
     step_towards_value,
 )
-from heuncli.analyses.variants.course import FIRST_DISTRUST, GOLDEN, MAX_DISTRUST, NOISE, MeasureCourse
+from heuncli.analyses.variants.course import FIRST_DISTRUST, GOLDEN, MeasureCourse
 from heuncli.analyses.variants.course_extremes import clip_inside
-from heuncli.analyses.variants.samples import Sample, interpolate
+from heuncli.analyses.variants.course_prediction import MAX_DISTRUST, NOISE, predict_course, sample_and_learn
+from heuncli.analyses.variants.samples import AT_VALUE, LEFT, RIGHT, Sample, interpolate
 from heuncli.base import tolerances
 
-FINE_GAP = 0.125  # of the scan's spacing: before neighbours closer than this are parted, minima of |g| are followed
-WIDE_GAP = 0.5  # of the scan's spacing: neighbours farther apart count as an interval of the scan
-CHECK_OFFSET = 0.1  # of a scan interval: offset from its middle, so that no wave is hidden by aliasing
-PEAK_GROWTH = 2.0  # times the predicted rise of a peak: its possible rise
+FINE_GAP = 0.125  # share of the scan's spacing: before closer neighbours are divided, minima of |g| are followed
+WIDE_GAP = 0.5  # share of the scan's spacing: neighbours farther apart count as an interval of the scan
+CHECK_OFFSET = 0.1  # largest distance of a check from the middle, as a share of its interval: so no wave is hidden
 
 
 def search(course: MeasureCourse) -> None:
@@ -50,9 +50,9 @@ def search(course: MeasureCourse) -> None:
         if left.gap is None or right.gap is None:
             course.sample_at(0.5 * (left.x + right.x))
         elif (x := find_possible_peak(course, i)) is not None:
-            course.sample_and_learn(x)
+            sample_and_learn(course, x)
         else:
-            course.sample_and_learn(choose_place(course, i))
+            sample_and_learn(course, choose_place(course, i))
 
 
 def follow_new_minimum(course: MeasureCourse) -> bool:
@@ -102,7 +102,7 @@ def is_uncertain(course: MeasureCourse, i: int, ends: list[tuple[float, float]])
         return False
     if leads_to_touch(course, i):
         return False
-    prediction = course.predict(i)
+    prediction = predict_course(course, i)
     side, error = left.side or right.side, max(left.error, right.error)
     if not side:  # both meet the value: do all places between?
         return bool((np.abs(prediction.gaps) + prediction.uncertainty > NOISE * error).any())
@@ -131,8 +131,8 @@ def check_scan(course: MeasureCourse) -> None:
         ):
             continue
         x = low + (high - low) * (0.5 + CHECK_OFFSET * (2.0 * (len(places) * GOLDEN % 1.0) - 1.0))
-        prediction = course.predict(i, np.array([x]))
-        evaluated = course.sample_and_learn(x)
+        prediction = predict_course(course, i, np.array([x]))
+        evaluated = sample_and_learn(course, x)
         places.append(x)
         prediction_error = float(prediction.uncertainty[0]) * FIRST_DISTRUST / course.distrust
         if (
@@ -143,8 +143,7 @@ def check_scan(course: MeasureCourse) -> None:
 
 
 def may_hide_wave(course: MeasureCourse, i: int) -> bool:
-    """Return whether two neighbours may hide a wave that meets the value, with a prediction error MAX_DISTRUST times as
-    large.
+    """Return whether two neighbours may hide a wave that meets the value, by predictions of the greatest distrust.
 
     They may if the curvature changes there, or if one of them is the last of its stretch: predictions are then
     one-sided, and agree by accident at times.
@@ -154,29 +153,29 @@ def may_hide_wave(course: MeasureCourse, i: int) -> bool:
         return False
     if has_pole(course):  # then no value is far from any other
         return True
-    is_one_sided = not (course.find_neighbours(i, -1) and course.find_neighbours(i, 1))
+    is_one_sided = not (course.find_neighbours(i, LEFT) and course.find_neighbours(i, RIGHT))
     if breaks_law(course, i) or (is_one_sided and course.distrust > FIRST_DISTRUST):
         return True
     if not (is_one_sided or changes_curvature(course, i)):
         return False
-    prediction = course.predict(i)
+    prediction = predict_course(course, i)
     nearest = left.side * prediction.gaps - MAX_DISTRUST / course.distrust * prediction.uncertainty
     return bool((nearest <= max(left.error, right.error)).any())
 
 
 def breaks_law(course: MeasureCourse, i: int) -> bool:
-    """Return whether four samples on one side of a gap lie on a parabola, to their errors, and the one beyond does not.
+    """Return whether four samples on one side of an interval lie on a parabola, to their errors, and the next one does
+    not.
 
-    Then the law changes in the gap, at a kink or a jump, and no prediction holds there.
+    Then the law changes in the interval, at a kink or a jump, and no prediction holds there.
     """
-    for near, direction in ((i, -1), (i + 1, 1)):
-        law = course.samples[max(near - 3, 0) : near + 1] if direction < 0 else course.samples[near : near + 4]
-        is_whole = len(law) == 4 and not any(
-            course.is_interrupted(k) for k in (range(near - 3, near) if direction < 0 else range(near, near + 3))
-        )
-        if is_whole and follows_parabola(law[1:], law[0]) and follows_parabola(law[:-1], law[-1]):
-            nearest = law[1:] if direction < 0 else law[:-1]
-            if not follows_parabola(nearest, course.samples[near - direction]):
+    for first, beyond in ((i - 3, i + 1), (i + 1, i)):  # the four on the left, and on the right
+        if first < 0 or first + 4 > len(course.samples) or any(map(course.is_interrupted, range(first, first + 3))):
+            continue
+        law = course.samples[first : first + 4]
+        if follows_parabola(law[1:], law[0]) and follows_parabola(law[:-1], law[-1]):
+            nearest = law[1:] if beyond > first else law[:-1]
+            if not follows_parabola(nearest, course.samples[beyond]):
                 return True
     return False
 
@@ -196,7 +195,7 @@ def changes_curvature(course: MeasureCourse, i: int) -> bool:
 
     Curvature of one sign is followed by the polynomials, or by the logarithm.
     """
-    left, right = course.find_neighbours(i, -1), course.find_neighbours(i, 1)
+    left, right = course.find_neighbours(i, LEFT), course.find_neighbours(i, RIGHT)
     samples = [
         *reversed(left[: 1 if right else 2]), course.samples[i], course.samples[i + 1], *right[: 1 if left else 2],
     ]  # fmt: skip
@@ -206,7 +205,7 @@ def changes_curvature(course: MeasureCourse, i: int) -> bool:
 
 
 def iter_possible_meetings(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
-    """Yield stretches on one side where samples and their errors do not exclude that the value is met.
+    """Yield stretches on one side of the value where samples and their errors do not exclude that the value is met.
 
     Unlike in `is_uncertain`, differences between polynomials within the noise count: more evaluations would not help,
     and yet the measure may reach the value. Ends that lead to a reported crossing or touch are left out.
@@ -236,7 +235,7 @@ def may_meet_value(course: MeasureCourse, i: int, ends: list[tuple[float, float]
         return False
     if leads_to_touch(course, i):
         return False
-    prediction = course.predict(i)
+    prediction = predict_course(course, i)
     nearest = (left.side or 0) * prediction.gaps - prediction.total_uncertainty
     return bool((nearest <= 0.0).any()) or find_possible_peak(course, i) is not None
 
@@ -252,58 +251,29 @@ def leads_to_meeting(course: MeasureCourse, i: int) -> bool:
 
 
 def find_range_ends(course: MeasureCourse) -> list[tuple[float, float]]:
-    """Return the pairs of places between which the measure jumps, is vertical, ends, or touches the value where its
-    error vanishes.
+    """Return the pairs of places between which the course ends.
+
+    There the measure jumps, is vertical, does not exist on one side, or meets the value without an error.
     """
     ends = [(a.x, b.x) for _, a, b in course.iter_pairs() if (a.gap is None) != (b.gap is None)]
-    exact = [(sample.x, sample.x) for sample in course.samples if sample.side == 0 and sample.error == 0.0]
+    exact = [(sample.x, sample.x) for sample in course.samples if sample.side == AT_VALUE and sample.error == 0.0]
     touches = [find_touch_range(course, middle) for _, middle, _ in iter_minima(course)]
     return [*course.jumps, *course.steep, *ends, *exact, *(touch for touch in touches if touch)]
 
 
 def is_near_jump(course: MeasureCourse, left: Sample, right: Sample, ends: list[tuple[float, float]]) -> bool:
-    """Return whether the measure jumps or ends close to two neighbours; predictions towards a pole are never
-    certain.
-    """
+    """Return whether the measure jumps or ends close to two neighbours, where no prediction is certain."""
     margin = tolerances.DOUBTED_NEAR_JUMP * course.spacing
     return any(low - margin <= left.x and right.x <= high + margin for low, high in ends)
 
 
-def find_possible_peak(course: MeasureCourse, i: int) -> float | None:
-    """Return where a peak or a pole between two neighbours may reach the value; None if nothing indicates one."""
-    left, right = course.samples[i], course.samples[i + 1]
-    if (pole := find_hidden_pole(course, i)) is not None:
-        return clip_inside(left, right, pole)
-    peak = course.find_peak(i)
-    if peak is None or not left.side or left.side != right.side:
-        return None
-    if np.isinf(peak.size) and course.get_measure(left) * course.get_measure(right) < 0.0:
-        return clip_inside(left, right, step_to_pole(course, left, right, peak.place))
-    largest = (
-        max(course.get_measure(sample) for sample in (left, right))
-        if course.value > 0.0
-        else min(course.get_measure(sample) for sample in (left, right))
-    )
-    if largest * course.value <= 0.0 or abs(largest) >= abs(course.value):
-        return None
-    peak_height = abs(largest) + PEAK_GROWTH * (peak.size - abs(largest))
-    return clip_inside(left, right, peak.place) if peak_height >= abs(course.value) else None
-
-
-def step_to_pole(course: MeasureCourse, left: Sample, right: Sample, pole: float) -> float:
-    """Return the place beside a pole at which the measure is twice the value, by the line through its inverse: at the
-    pole itself it has no measure.
-    """
-    before, after = (course.get_measure(sample) for sample in (left, right))
-    distance = 0.5 * (right.x - left.x) / abs(course.value * (1.0 / after - 1.0 / before))
-    return pole - distance if before * course.value > 0.0 else pole + distance
-
-
 def choose_place(course: MeasureCourse, i: int) -> float:
-    """Choose where to evaluate between two neighbours: where the measure may come nearest to the value; beside a sample
-    that meets it just off the value; else in the middle.
+    """Choose the place to evaluate between the i-th sample and the next.
+
+    Between two on one side it is where the measure may come nearest to the value; next to a sample that meets the value
+    it is where |g| is a few errors; else it is the middle.
     """
-    left, right, prediction = course.samples[i], course.samples[i + 1], course.predict(i)
+    left, right, prediction = course.samples[i], course.samples[i + 1], predict_course(course, i)
     if not left.side or left.side != right.side:
         place = step_towards_value(course, i)
         return 0.5 * (left.x + right.x) if place is None else place

@@ -1,4 +1,8 @@
-"""Find where a function of one number meets a value: all crossings in an interval that its samples reveal."""
+"""Find where a measure meets a value: all crossings and touches in an interval that its samples reveal.
+
+search.py samples where the behaviour is uncertain, narrowing.py encloses crossings and jumps, touches.py and poles.py
+find what samples hide, meetings.py classifies what was found and states its error.
+"""
 
 from __future__ import annotations
 
@@ -23,14 +27,14 @@ from heuncli.analyses.find.results import (
 )
 from heuncli.analyses.find.search import check_scan, iter_possible_meetings, search
 from heuncli.analyses.find.touches import find_touches, step_towards_value
+from heuncli.analyses.variants.conditions import SIDES, Relation
 from heuncli.analyses.variants.course import MeasureCourse, SampleLimitError
-from heuncli.analyses.variants.course_extremes import find_extreme, refine_extreme
-from heuncli.analyses.variants.measures import SIDES, Relation
-from heuncli.analyses.variants.samples import Sample
+from heuncli.analyses.variants.course_extremes import GREATEST, LEAST, find_extreme, refine_extreme
+from heuncli.analyses.variants.samples import AT_VALUE, LEFT, RIGHT, Sample
 
-CROSSING_HALVINGS = 8  # towards a crossing with an uncertain slope: down to a 250th of the neighbour's distance
-TOUCH_HALVINGS = 12  # towards each end of a touch: flat ones end at a 4,000th of the neighbour's distance
-CLOSE_TO_VALUE = 4.0  # times the error: |g| at the ends that enclose a touch
+CROSSING_HALVINGS = 8  # halvings towards a crossing with an uncertain slope: to a 250th of the neighbour's distance
+TOUCH_HALVINGS = 12  # halvings towards each end of a touch: flat ones end at a 4,000th of the neighbour's distance
+CLOSE_TO_VALUE = 4.0  # ratio of |g| to its error at the ends that enclose a touch
 
 
 def find_meetings(
@@ -45,16 +49,17 @@ def find_meetings(
 ) -> IntervalFindings:
     """Return the findings between low and high.
 
+    evaluate: returns the sample at a place, whose gap is the measure minus the value
     scan_count: places of the scan
     max_evaluations: limit of all evaluations
-    value: the measure minus its gap
+    value: what the measure is compared with
     """
     course = MeasureCourse(evaluate, low, high, scan_count, max_evaluations, value)
     is_complete, is_refined = True, False
     try:
         course.scan()
         sample_count, enclosed_count = 0, -1
-        refined: dict[int, Sample | None] = {}  # the extremes after their refinement
+        refined: dict[int, Sample | None] = {}
         while len(course.samples) > sample_count:  # new samples are examined like those of the scan
             sample_count = len(course.samples)
             course.withhold_isolated()
@@ -66,7 +71,7 @@ def find_meetings(
                 enclosed_count = meeting_count
             find_touches(course)
             enclose_touches(course)
-            if not any(iter_meetings(course)) and find_extreme(course, 1) is not None:
+            if not any(iter_meetings(course)) and find_extreme(course, GREATEST) is not None:
                 is_refined = True
                 refine_new_extremes(course, refined)
             if len(course.samples) == sample_count:
@@ -78,14 +83,16 @@ def find_meetings(
 
 
 def refine_new_extremes(course: MeasureCourse, refined: dict[int, Sample | None]) -> None:
-    """Refine the least (-1) and the greatest (1) value, if it is not the one that was refined before, and record it.
+    """Refine the least and the greatest value, if it is not the one that was refined before, and record it.
+
+    refined: the extremes after their last refinement, by LEAST and GREATEST
 
     Raises SampleLimitError.
     """
-    for sign in (-1, 1):
-        if sign not in refined or find_extreme(course, sign) != refined[sign]:
-            refine_extreme(course, sign)
-            refined[sign] = find_extreme(course, sign)
+    for direction in (LEAST, GREATEST):
+        if direction not in refined or find_extreme(course, direction) != refined[direction]:
+            refine_extreme(course, direction)
+            refined[direction] = find_extreme(course, direction)
 
 
 def collect_findings(
@@ -113,8 +120,8 @@ def collect_findings(
         met_stretches=tuple(iter_met_stretches(course, SIDES[relation], includes_value="=" in relation))
         if SIDES[relation]
         else (),
-        least=find_extreme(course, -1),
-        greatest=find_extreme(course, 1),
+        least=find_extreme(course, LEAST),
+        greatest=find_extreme(course, GREATEST),
         is_refined=is_refined,
         samples=tuple(course.samples),
         spacing=course.spacing,
@@ -137,7 +144,7 @@ def enclose_touches(course: MeasureCourse) -> None:
     SampleLimitError.
     """
     for group in find_touching_groups(course):
-        for end, direction in ((group[0], -1), (group[-1], 1)):
+        for end, direction in ((group[0], LEFT), (group[-1], RIGHT)):
             for _ in range(TOUCH_HALVINGS):
                 k = course.samples.index(end)
                 if not 0 <= k + direction < len(course.samples) or course.is_interrupted(min(k, k + direction)):
@@ -149,7 +156,7 @@ def enclose_touches(course: MeasureCourse) -> None:
                 sample = course.sample_at(0.5 * (end.x + outer.x) if place is None else place)
                 if sample.gap is None:
                     break
-                if sample.side == 0:
+                if sample.side == AT_VALUE:
                     end = sample
 
 
@@ -159,5 +166,5 @@ def find_touching_groups(course: MeasureCourse) -> list[SideGroup]:
     return [
         group
         for previous, group, following in zip(side_groups, side_groups[1:], side_groups[2:], strict=False)
-        if group.side == 0 and previous.side and previous.side == following.side
+        if group.side == AT_VALUE and previous.side and previous.side == following.side
     ]

@@ -12,17 +12,19 @@ import math
 from collections.abc import Iterator
 from operator import attrgetter
 
-from heuncli.analyses.variants.course import FIRST_DISTRUST, NOISE, MeasureCourse
-from heuncli.analyses.variants.samples import Sample
+from heuncli.analyses.variants.course import FIRST_DISTRUST, MeasureCourse
+from heuncli.analyses.variants.course_prediction import NOISE, sample_and_learn
+from heuncli.analyses.variants.samples import AT_VALUE, LEFT, RIGHT, Sample
 from heuncli.base import tolerances
 
-POWERS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
+POWERS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # values of p that are tried
 MAX_MISFIT = 3.0  # largest ratio between the middle sample and its prediction by the power
-MIN_GAIN = 0.5  # of |g|: largest ratio after a useful step, and of a minimum to its neighbours
+MIN_GAIN = 0.5  # largest ratio of |g| after a useful step to |g| before, and of a minimum to its neighbours
 MAX_STEPS = 60  # steps towards one touch
-DOUBLING = 2.0
-CLEAR_OF_VALUE = 2.0 * NOISE  # times its error: |g| of a sample next to one that meets the value
-MAX_POWER_CHANGE = 0.1  # of a power: how much it may differ outside of two samples, at the first distrust
+DOUBLING = 2.0  # ratio by which |g| rises on both sides of a touch
+CLEAR_OF_VALUE = 2.0 * NOISE  # ratio of |g| to its error at a sample next to one that meets the value
+MAX_POWER_CHANGE = 0.1  # relative change of the power outside of two samples that is permitted at the first distrust
+INSIDE = 0.25  # smallest distance of a place from the end of its interval, in finest distances
 
 
 def find_touches(course: MeasureCourse) -> None:
@@ -64,13 +66,13 @@ def follow_minimum(course: MeasureCourse, x: float) -> None:
             return
         if predicted is None:
             return
-        sample = course.sample_at(min(max(predicted, left.x + 0.25 * course.finest), right.x - 0.25 * course.finest))
+        margin = INSIDE * course.finest
+        sample = course.sample_at(min(max(predicted, left.x + margin), right.x - margin))
         if sample.gap is None or sample.side != middle.side:
             return
-        if sample.distance > MIN_GAIN * middle.distance and sample is not middle:
-            sample = course.sample_at(
-                0.5 * (middle.x + (left.x if abs(left.x - middle.x) > abs(right.x - middle.x) else right.x))
-            )
+        if sample.distance > MIN_GAIN * middle.distance and sample is not middle:  # then halve the wider interval
+            is_left_wider = abs(left.x - middle.x) > abs(right.x - middle.x)
+            sample = course.sample_at(0.5 * (middle.x + (left.x if is_left_wider else right.x)))
             if sample.gap is None or sample.side != middle.side:
                 return
         x = min((left, middle, right, sample), key=attrgetter("distance")).x
@@ -90,7 +92,7 @@ def confirm_touch(course: MeasureCourse, middle: Sample) -> None:
     for offset in (-2.0, 2.0):
         x = middle.x + offset * course.finest
         if course.low < x < course.high:
-            course.sample_and_learn(x)
+            sample_and_learn(course, x)
 
 
 def find_touch_range(course: MeasureCourse, middle: Sample) -> tuple[float, float] | None:
@@ -100,11 +102,8 @@ def find_touch_range(course: MeasureCourse, middle: Sample) -> tuple[float, floa
     """
     i = course.samples.index(middle)
     ends: list[float] = []
-    for direction in (-1, 1):
-        k = i
-        while 0 <= k + direction < len(course.samples) and not course.is_interrupted(k + min(direction, 0)):
-            k += direction
-            sample = course.samples[k]
+    for direction in (LEFT, RIGHT):
+        for sample in course.iter_outward(i, direction):
             if abs(sample.x - middle.x) > tolerances.TOUCH_DOUBLES * course.finest or sample.side != middle.side:
                 return None
             if sample.distance >= DOUBLING * middle.distance:
@@ -128,8 +127,9 @@ def predict_minimum(left: Sample, middle: Sample, right: Sample) -> float | None
 
 
 def find_power(touch: Sample, inner: Sample, outer: Sample) -> float | None:
-    """Return p of |g| = a |x - x_touch|^p through two samples on one side of one that meets the value; None if |g| does
-    not grow from it.
+    """Return p of |g| = a |x - x_touch|^p through two samples on one side of a touch; None if |g| does not grow.
+
+    inner, outer: the nearer and the farther of the two
     """
     size = inner.distance
     if not inner.side or inner.side != outer.side or not size < outer.distance:
@@ -138,16 +138,17 @@ def find_power(touch: Sample, inner: Sample, outer: Sample) -> float | None:
 
 
 def step_towards_value(course: MeasureCourse, i: int) -> float | None:
-    """Return the place between a sample and the only one that meets the value at which |g| is a few of its errors, if
-    it grows from there as a power of the distance; None if it does not.
+    """Return where |g| is a few errors between the i-th sample and the next, exactly one of which meets the value.
+
+    None if the sample next to that one meets the value, too, or if |g| does not grow as a power of the distance.
     """
     left, right = course.samples[i], course.samples[i + 1]
-    outer, met, direction = (left, right, -1) if right.side == 0 else (right, left, 1)
+    outer, met, direction = (left, right, LEFT) if right.side == AT_VALUE else (right, left, RIGHT)
     beyond = next(iter(course.find_neighbours(i, direction)), None)
     others = course.samples[i + 2 : i + 3] if met is right else course.samples[max(i - 1, 0) : i]
     if (
-        met.side != 0
-        or any(other.side == 0 for other in others)
+        met.side != AT_VALUE
+        or any(other.side == AT_VALUE for other in others)
         or beyond is None
         or (power := find_power(met, outer, beyond)) is None
     ):
@@ -161,11 +162,12 @@ def step_towards_value(course: MeasureCourse, i: int) -> float | None:
 
 
 def leads_to_touch(course: MeasureCourse, i: int) -> bool:
-    """Return whether |g| falls between two neighbours as the power of the distance from a sample that meets the value
-    beside them, by which it falls outside of them, too.
+    """Return whether |g| falls between the i-th sample and the next towards one that meets the value, by one power.
+
+    It must be the power of the distance by which |g| falls outside of the two, too.
     """
     samples, allowed = course.samples, MAX_POWER_CHANGE * FIRST_DISTRUST / course.distrust
-    for near, direction in ((i, -1), (i + 1, 1)):
+    for near, direction in ((i, LEFT), (i + 1, RIGHT)):
         far = i + 1 if near == i else i
         beyond = next(iter(course.find_neighbours(i, -direction)), None)
         met = find_met(course, near, direction)
@@ -179,15 +181,16 @@ def leads_to_touch(course: MeasureCourse, i: int) -> bool:
 
 
 def find_met(course: MeasureCourse, k: int, direction: int) -> Sample | None:
-    """Return the first sample that meets the value, or is a touch, in a direction, with all between them on one side;
-    None without one.
+    """Find the first sample that meets the value, or is a touch, in a direction from the k-th.
+
+    |g| must fall towards it, on one side of the value; None otherwise.
     """
-    samples = course.samples
-    while 0 <= k + direction < len(samples) and not course.is_interrupted(k + min(direction, 0)):
-        k += direction
-        is_lowest = samples[k].distance < samples[k - direction].distance
-        if samples[k].side == 0 or (is_lowest and find_touch_range(course, samples[k]) is not None):
-            return samples[k]
-        if not is_lowest or samples[k].side != samples[k - direction].side:
+    previous = course.samples[k]
+    for sample in course.iter_outward(k, direction):
+        is_lower = sample.distance < previous.distance
+        if sample.side == AT_VALUE or (is_lower and find_touch_range(course, sample) is not None):
+            return sample
+        if not is_lower or sample.side != previous.side:
             return None
+        previous = sample
     return None

@@ -11,28 +11,22 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from heuncli.analyses.lagrange.rodrigues import (
-    RODRIGUES_NAMES,
-    compute_rodrigues_rates,
-    make_rodrigues_rows,
-)
+from heuncli.analyses.lagrange.coordinate_rates import RODRIGUES_NAMES, make_rodrigues_rows
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, is_length
 from heuncli.base.records import record
 from heuncli.base.spelling import suggest
-from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.motion.linearisation.linearise import LinearisedEquations, make_coordinate_rows, point_twist
 from heuncli.motion.linearisation.reduced_equations import find_massless_spins, find_orthogonal_complement
-from heuncli.multibody.mechanism.loads import GROUND
-from heuncli.multibody.mechanism.model import Joint, Mechanism
+from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array
-from heuncli.scene.shapes.rotations import cross_rows
 
 OPTION_WORD = "rodrigues"  # value of --coordinates that selects them
 PROBLEM_CODE = "no-coordinate"
+NOTHING_FREE_HINT = "free a joint, or drive one: drives are released here"
 PIVOT_RATIO = 0.1  # of the largest remaining pivot: the first in the file that reaches this is taken
 TRUE_COORDINATES = ("angle", "travel", "length", *RODRIGUES_NAMES)  # coordinates; all others are quasi-velocities
 
@@ -42,15 +36,16 @@ class CoordinateChoice:
     """The chosen coordinates.
 
     names: joint.quantity of each; is_driven: whether a drive moves it
-    rows: C (f, n); S (n, f): partials
+    rows (f, n), S (n, f): C and S, see above
     left_out: bodies whose spin has no inertia and is left out of the motion
+    bodies: all bodies, by name
     """
 
     names: tuple[str, ...]
     is_driven: tuple[bool, ...]
     rows: Array
     S: Array
-    left_out: tuple[str, ...]  # bodies whose spin has no inertia, and is no part of the motion
+    left_out: tuple[str, ...]
     bodies: tuple[str, ...]
 
     @property
@@ -100,11 +95,13 @@ def choose_coordinates(
     C = np.array([rows[name] for name in names]).reshape(len(names), -1)
     require_independent(names, np.array([scaled[name] for name in names]), T.shape[1], scaled)
     return CoordinateChoice(
-        tuple(names), tuple(name in driven for name in names), C, T @ np.linalg.inv(C @ T), left_out, bodies
+        names=tuple(names),
+        is_driven=tuple(name in driven for name in names),
+        rows=C,
+        S=T @ np.linalg.inv(C @ T),
+        left_out=left_out,
+        bodies=bodies,
     )
-
-
-NOTHING_FREE_HINT = "free a joint, or drive one: drives are released here"
 
 
 def compute_admitted_motions(
@@ -140,9 +137,9 @@ def make_candidate_rows(layout: Layout, linear_equations: LinearisedEquations) -
 
 def make_length_row(layout: Layout, linear_equations: LinearisedEquations, joint: Joint) -> Array:
     """Return the row of the distance of two points: their relative velocity along the line between them."""
-    target_twist, b = point_twist(layout, linear_equations, joint.b, joint.q, None)
-    carrier_twist, a = point_twist(layout, linear_equations, joint.a, joint.p, None)
-    return np.asarray((b - a) / np.sqrt((b - a) @ (b - a)) @ (target_twist[3:] - carrier_twist[3:]))
+    twist_b, Q = point_twist(layout, linear_equations, joint.b, joint.q, None)
+    twist_a, P = point_twist(layout, linear_equations, joint.a, joint.p, None)
+    return np.asarray((Q - P) / np.sqrt((Q - P) @ (Q - P)) @ (twist_b[3:] - twist_a[3:]))
 
 
 def group_coordinates(layout: Layout, rows: Mapping[str, Array], driven: Mapping[str, str]) -> list[list[str]]:
@@ -220,87 +217,3 @@ def require_independent(names: Sequence[str], rates: Array, count: int, scaled_r
 def find_largest_rate(scaled_rows: Mapping[str, Array]) -> float:
     """Return the largest rate of any coordinate for the free motions."""
     return max(float(np.sqrt(row @ row)) for row in scaled_rows.values())
-
-
-def compute_rates(layout: Layout, names: Sequence[str], states: BodyStates) -> Array:
-    """Return the rates q' of the coordinates, (n_t, f), from the motion of the bodies."""
-    return np.stack([_compute_rate(layout, name, states)[0] for name in names], axis=1)
-
-
-def compute_accelerations(layout: Layout, names: Sequence[str], states: BodyStates) -> Array:
-    """Return q'' of the coordinates, (n_t, f), from the accelerations of the bodies; for quasi-velocities their
-    derivatives.
-    """
-    return np.stack([_compute_rate(layout, name, states)[1] for name in names], axis=1)
-
-
-def _compute_rate(layout: Layout, name: str, states: BodyStates) -> tuple[Array, Array]:
-    """Return the rate of one coordinate and its derivative, (n_t,) each."""
-    owner, _, quantity = name.rpartition(".")
-    mechanism = layout.mechanism
-    joint = next((joint for joint in mechanism.joints if joint.name == owner), None)
-    if quantity in RODRIGUES_NAMES:
-        body = next(i for i, other in enumerate(mechanism.bodies) if other.name == owner)
-        k = RODRIGUES_NAMES.index(quantity)
-        rate, acceleration = compute_rodrigues_rates(
-            states.R[:, body], states.omega[:, body], states.alpha[:, body], owner
-        )
-        return rate[:, k], acceleration[:, k]
-    if joint is None:
-        return get_body_rate(mechanism, owner, quantity, states)
-    if quantity == "length":
-        return compute_length_rate(joint, states)
-    wa, ua = get_rotation(states, joint.a)
-    wb, ub = get_rotation(states, joint.b)
-    n = states.world_direction(joint.a, joint.axis)
-    if quantity == "angle":
-        return dot_rows(n, wb - wa), dot_rows(n, ub - ua)
-    if quantity in "xyz":
-        k = "xyz".index(quantity)
-        return (wb - wa)[:, k], (ub - ua)[:, k]
-    Q = states.point_position(joint.b, joint.q)
-    v = states.point_velocity(joint.b, Q) - states.point_velocity(joint.a, Q)
-    a = states.point_acceleration(joint.b, Q) - states.point_acceleration(joint.a, Q)
-    if quantity == "travel":
-        return dot_rows(n, v), dot_rows(n, a - 2.0 * cross_rows(wa, v))
-    k = "xyz".index(quantity[1])
-    return v[:, k], (a - cross_rows(wa, v))[:, k]  # the position is that of `to`, which moves past `from` with v
-
-
-def get_rotation(states: BodyStates, body: int) -> tuple[Array, Array]:
-    """Return angular velocity and acceleration of a body, or of the ground, (n_t, 3) each."""
-    if body == GROUND:
-        return np.zeros((len(states.x), 3)), np.zeros((len(states.x), 3))
-    return states.omega[:, body], states.alpha[:, body]
-
-
-def get_body_rate(mechanism: Mechanism, name: str, quantity: str, states: BodyStates) -> tuple[Array, Array]:
-    """Return a component of the angular velocity, or of the centre's velocity, of a free body, and its derivative."""
-    body = next(i for i, other in enumerate(mechanism.bodies) if other.name == name)
-    k = "xyz".index(quantity[-1])
-    if quantity.startswith("d"):
-        return states.v_centre[:, body, k], states.a_centre[:, body, k]
-    return states.omega[:, body, k], states.alpha[:, body, k]
-
-
-def compute_length(layout: Layout, states: BodyStates, name: str) -> float:
-    """Return the distance of a rod's two points at the first instant [m]."""
-    joint = next(joint for joint in layout.mechanism.joints if joint.name == name)
-    D = states.point_position(joint.b, joint.q)[0] - states.point_position(joint.a, joint.p)[0]
-    return float(np.sqrt(D @ D))
-
-
-def compute_length_rate(joint: Joint, states: BodyStates) -> tuple[Array, Array]:
-    """Return the derivatives of the distance D of two points: e . v, and e . a + (v^2 - (e . v)^2) / |D|."""
-    A, B = states.point_position(joint.a, joint.p), states.point_position(joint.b, joint.q)
-    v = states.point_velocity(joint.b, B) - states.point_velocity(joint.a, A)
-    a = states.point_acceleration(joint.b, B) - states.point_acceleration(joint.a, A)
-    D = B - A
-    length = np.sqrt(dot_rows(D, D))
-    e = D / length[:, None]
-    return dot_rows(e, v), dot_rows(e, a) + (dot_rows(v, v) - dot_rows(e, v) ** 2) / length
-
-
-def dot_rows(a: Array, b: Array) -> Array:
-    """Return the scalar products of vectors (n_t, 3)."""
-    return np.asarray(np.sum(a * b, axis=1))

@@ -11,12 +11,13 @@ from the kernel's solutions at other rates.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import CoordinateChoice, compute_accelerations, make_candidate_rows
+from heuncli.analyses.lagrange.coordinate_rates import compute_accelerations
+from heuncli.analyses.lagrange.coordinates import CoordinateChoice, make_candidate_rows
 from heuncli.analyses.lagrange.freed_scene import FreedScene, Instant
 from heuncli.analyses.lagrange.results import SectionForces
 from heuncli.base.errors import Problem, SolveError
@@ -84,6 +85,30 @@ def invert_inertia(names: Sequence[str], epsilon: Array) -> Array:
         raise SolveError(Problem("no-inertia", message, hint="give a mass to the bodies that it moves")) from None
     half = np.linalg.inv(L)
     return np.asarray(half.T @ half)
+
+
+@record
+class InstantEquations:
+    """The inertial terms of the equations at an instant: ε, η (f, f), and the partials they are made of."""
+
+    instant: Instant
+    choice: CoordinateChoice
+    partials: Partials
+    epsilon: Array
+    eta: Array
+
+
+def make_instant_equations(instant: Instant, choice: CoordinateChoice) -> InstantEquations:
+    """Return the inertial terms. Raises SolveError [no-inertia] if a motion has no inertia."""
+    epsilon = symmetrise(choice.S.T @ instant.linear_equations.mass @ choice.S)
+    eta = invert_inertia(choice.names, epsilon)
+    partials = make_partials(instant.freed_scene.layout, instant.linear_equations, choice.S)
+    return InstantEquations(instant, choice, partials, epsilon, eta)
+
+
+def symmetrise(M: Array) -> Array:
+    """Return the symmetric part of a matrix that is symmetric except for rounding."""
+    return np.asarray(0.5 * (M + M.T))
 
 
 @record
@@ -215,22 +240,6 @@ def subtract_drive_efforts(instant: Instant, drives: DriveRows, remainder: Array
         else:
             is_known &= row == 0.0
     return remainder, is_known
-
-
-def compute_section_forces(block: Mapping[str, Array], k: int, partials: Partials, body: int) -> SectionForces:
-    """Return the generalised forces of a section of a body at instant k.
-
-    block: its `point`, `force` and `moment`, (n_t, 3), for several cuts (n_t, cuts, 3); nan where indeterminate
-    """
-    points, force, moment = (np.atleast_2d(block[name][k]) for name in ("point", "force", "moment"))
-    s = [
-        F @ partials.point_partials(body, P) + M @ partials.turn_partials(body)
-        for P, F, M in zip(points, force, moment, strict=True)
-    ]
-    shift, turn = (np.sqrt(np.sum(of**2, axis=1)).max(axis=0) for of in (partials.shift, partials.turn))
-    largest = [np.nanmax(np.sqrt(np.sum(load**2, axis=1)), initial=0.0) for load in (force, moment)]
-    scale = largest[0] * shift + largest[1] * turn
-    return SectionForces(np.array(s), scale, block["force"][k].ndim > 1)
 
 
 def to_lists(section: SectionForces) -> Any:

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import compute_accelerations, compute_length, compute_rates
+from heuncli.analyses.lagrange.coordinate_rates import compute_accelerations, compute_length, compute_rates
 from heuncli.analyses.lagrange.equations import get_velocity_motion
 from heuncli.analyses.lagrange.freed_scene import FreedScene, free_drives, get_start_time, make_start_state
 from heuncli.analyses.lagrange.results import InertiaCurve
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.joint_kinds import RATES
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.actions import Action, collect_applied_loads
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
@@ -31,10 +32,11 @@ from heuncli.results.results import Array
 from heuncli.scene.expressions.grammar import compile_expression
 from heuncli.scene.expressions.scope import Scope
 from heuncli.scene.file_format.models import Analysis, Drive, Spec
-from heuncli.study.model.setup import attach_locations, set_up
+from heuncli.study.model.setup import Setup, attach_locations, set_up
 
 MEAN_TOLERANCE = 1e-7  # of the mean of e: permitted change with half as many values, below the six digits shown
 MIN_VALUES, MAX_VALUES = 17, 4097  # least and largest number of values for the mean
+DRIVE_NAME = "over"  # of the drive that moves the coordinate along the range
 
 
 @record
@@ -61,12 +63,8 @@ def find_inertia_curve(spec: Spec, coordinate_range: CoordinateRange) -> Inertia
         mean, error = compute_mean(curve)
         while error > MEAN_TOLERANCE * abs(mean) and 2 * len(finer.values) <= MAX_VALUES:
             count = max(2 * len(finer.values) - 1, MIN_VALUES)
-            finer = compute_curve(
-                spec,
-                replace(
-                    coordinate_range, values=np.linspace(coordinate_range.values[0], coordinate_range.values[-1], count)
-                ),
-            )
+            values = np.linspace(coordinate_range.values[0], coordinate_range.values[-1], count)
+            finer = compute_curve(spec, replace(coordinate_range, values=values))
             mean, error = compute_mean(finer)
         return replace(curve, mean=mean if error <= MEAN_TOLERANCE * abs(mean) else np.nan)
 
@@ -80,34 +78,36 @@ def compute_mean(curve: InertiaCurve) -> tuple[float, float]:
     """
     e, slope, length = curve.epsilon, 2.0 * curve.half, float(curve.values[-1] - curve.values[0])
 
-    def mean_with_stride(every: int) -> float:
-        """Return the mean by the trapezoidal rule with end correction, over every n-th sample."""
-        f = e[::every]
+    def compute_mean_with_stride(stride: int) -> float:
+        """Return the mean by the trapezoidal rule with end correction, over every `stride`-th value."""
+        f = e[::stride]
         h = length / (len(f) - 1)
         ends = h * (slope[0] - slope[-1]) / 12.0
         return float((0.5 * (f[0] + f[-1]) + f[1:-1].sum() + ends) / (len(f) - 1))
 
     if len(e) < MIN_VALUES or len(e) % 2 == 0:
-        return mean_with_stride(1), np.inf
-    return mean_with_stride(1), abs(mean_with_stride(1) - mean_with_stride(2))
+        return compute_mean_with_stride(1), np.inf
+    mean = compute_mean_with_stride(1)
+    return mean, abs(mean - compute_mean_with_stride(2))
 
 
 def compute_curve(spec: Spec, coordinate_range: CoordinateRange) -> InertiaCurve:
     """Return inertia and forces at the requested values."""
     start, rate = find_start(spec, coordinate_range)
     t = get_start_time(spec)
-    order = np.argsort(coordinate_range.values)
-    values = coordinate_range.values[order]
+    values = np.sort(coordinate_range.values)
+    # each branch leads away from the start
     branches = [values[values < start][::-1], values[values >= start]]
-    parts = [
-        compute_branch(*follow_branch(spec, coordinate_range, start, branch), t, rate, branch)
+    curves = [
+        compute_branch(follow_branch(spec, coordinate_range, start, branch), t, rate)
         for branch in branches
         if len(branch)
     ]
-    parts = [
-        part.reversed_curve if len(part.values) > 1 and part.values[0] > part.values[-1] else part for part in parts
+    curves = [
+        curve.reversed_curve if len(curve.values) > 1 and curve.values[0] > curve.values[-1] else curve
+        for curve in curves
     ]
-    curve = join_branches(parts)
+    curve = join_branches(curves)
     curve = curve if coordinate_range.values[0] < coordinate_range.values[-1] else curve.reversed_curve
     is_driven = any(
         drive.joint == coordinate_range.joint and drive.quantity == coordinate_range.quantity
@@ -126,30 +126,59 @@ def find_start(spec: Spec, coordinate_range: CoordinateRange) -> tuple[float, fl
     rate = float(compute_rates(layout, [f"{coordinate_range.joint}.{coordinate_range.quantity}"], states)[0, 0])
     if coordinate_range.quantity == "length":
         return compute_length(layout, states, coordinate_range.joint), rate
-    return float(
-        evaluate_joint_coordinates(layout, recovered, states)[coordinate_range.joint][coordinate_range.quantity][0]
-    ), rate
+    coordinates = evaluate_joint_coordinates(layout, recovered, states)[coordinate_range.joint]
+    return float(coordinates[coordinate_range.quantity][0]), rate
 
 
-def follow_branch(
-    spec: Spec, coordinate_range: CoordinateRange, start: float, branch: Array
-) -> tuple[FreedScene, Evaluation, float]:
-    """Follow the coordinate along a branch: return the scene without drives, the solutions at the values, and the rate
-    used.
+class FollowedBranch(NamedTuple):
+    """A branch of a range that was followed from the start: its values (n,), and the solutions there.
+
+    scene: the scene without drives
+    span: rate of the coordinate while it was followed, per second
+    """
+
+    values: Array
+    scene: FreedScene
+    solutions: Evaluation
+    span: float
+
+
+def follow_branch(spec: Spec, coordinate_range: CoordinateRange, start: float, values: Array) -> FollowedBranch:
+    """Follow the coordinate from its start along the values of a branch.
 
     Raises SolveError [no-course] if more than the coordinate is free, or if contacts may open and close.
     """
-    span = float(branch[-1]) - start or 1.0
+    span = float(values[-1]) - start or 1.0
     law = compile_expression(f"{start!r} + {span!r}*t", Scope(in_time=True))
-    drives = {"over": Drive("over", coordinate_range.joint, coordinate_range.quantity, law)}  # type: ignore[arg-type]
+    drive = Drive(DRIVE_NAME, coordinate_range.joint, coordinate_range.quantity, law)  # type: ignore[arg-type]
     joints = dict(spec.joints)
     if coordinate_range.quantity in RATES:
         joints[coordinate_range.joint] = replace(
             joints[coordinate_range.joint], **{RATES[coordinate_range.quantity]: None}
         )
-    times = np.maximum((branch - start) / span, 0.0)
+    times = np.maximum((values - start) / span, 0.0)
     analysis = Analysis("motion", tuple(times.tolist()), 1.0, spec.analysis.tolerance, "auto", None)
-    setup = set_up(spec._replace(drives=drives, joints=joints, impulses={}, analysis=analysis), reduce=False)
+    driven_spec = spec._replace(drives={DRIVE_NAME: drive}, joints=joints, impulses={}, analysis=analysis)
+    setup = set_up(driven_spec, reduce=False)
+    require_determined(setup, coordinate_range)
+    try:
+        run = setup.runner.run(MotionTask(times, spec.analysis.tolerance, DRIVE_DETERMINED))
+    except LimitError as error:
+        if error.problems[0].code != "step-limit":
+            raise
+        raise make_refusal(coordinate_range, "following it this far takes too many steps", "a shorter range") from None
+    except SolveError as error:
+        ends = "" if error.reached is None else f" past {start + span * error.reached:.6g}"
+        reason = error.problems[0].message
+        message = f"it cannot be followed{ends}: {reason.partition(' s: ')[2] or reason}"
+        raise make_refusal(
+            coordinate_range, message, "a shorter range, or a coordinate that makes full revolutions"
+        ) from None
+    return FollowedBranch(values, free_drives(setup.scene), setup.runner.evaluate_run(run, times), span)
+
+
+def require_determined(setup: Setup, coordinate_range: CoordinateRange) -> None:
+    """Raise SolveError [no-course] if the driven coordinate does not determine the motion and the loads."""
     layout = setup.scene.layout
     for load in layout.mechanism.joint_friction:
         joint_path = layout.mechanism.describe_friction(load)
@@ -168,61 +197,60 @@ def follow_branch(
         raise make_refusal(
             coordinate_range, message, "heun lagrange SPEC gives all of them at one instant; --at T at a later one"
         )
-    try:
-        run = setup.runner.run(MotionTask(times, spec.analysis.tolerance, DRIVE_DETERMINED))
-    except LimitError as error:
-        if error.problems[0].code != "step-limit":
-            raise
-        raise make_refusal(coordinate_range, "following it this far takes too many steps", "a shorter range") from None
-    except SolveError as error:
-        ends = "" if error.reached is None else f" past {start + span * error.reached:.6g}"
-        reason = error.problems[0].message
-        message = f"it cannot be followed{ends}: {reason.partition(' s: ')[2] or reason}"
-        raise make_refusal(
-            coordinate_range, message, "a shorter range, or a coordinate that makes full revolutions"
-        ) from None
-    return free_drives(setup.scene), setup.runner.evaluate_run(run, times), span
 
 
-def compute_branch(
-    scene: FreedScene, recovered: Evaluation, span: float, t: float, rate: float, values: Array
-) -> InertiaCurve:
-    """Return inertia and forces at the values of a branch."""
-    layout, runner = scene.layout, scene.runner
+def compute_branch(branch: FollowedBranch, t: float, rate: float) -> InertiaCurve:
+    """Return inertia and forces along a branch, with loads of time t at a rate of the coordinate."""
+    scene, layout = branch.scene, branch.scene.layout
     rate_places = rate_indices(layout)
     rate_places = rate_places[rate_places >= 0]
-    unit, moving = scene.convert_states(recovered), scene.convert_states(recovered)
-    unit[:, rate_places] /= span
-    moving[:, rate_places] *= rate / span
-    times, holding = np.full(len(values), t), layout.open_contacts
-    unit_recovered = runner.evaluate(times, unit, causes=True, holding=holding)
-    states = make_body_states(layout, unit_recovered)
+    unit_rate_states, states_at_rate = (scene.convert_states(branch.solutions) for _ in range(2))
+    unit_rate_states[:, rate_places] /= branch.span
+    states_at_rate[:, rate_places] *= rate / branch.span
+    times = np.full(len(branch.values), t)
+    unit_recovered = scene.runner.evaluate(times, unit_rate_states, causes=True, holding=layout.open_contacts)
+    load_recovered = scene.runner.evaluate(times, states_at_rate, holding=layout.open_contacts)
+    unit_states = make_body_states(layout, unit_recovered)
+    epsilon, half = compute_inertia(scene, unit_recovered, unit_states)
+    forces, force_scale = compute_forces(layout, unit_states, load_recovered)
+    return InertiaCurve("", "", False, 0.0, branch.values, rate, epsilon, half, forces, force_scale)
+
+
+def compute_inertia(scene: FreedScene, unit_recovered: Evaluation, states: BodyStates) -> tuple[Array, Array]:
+    """Return e and de/dq / 2, (n,) each, from solutions at unit rate of the coordinate and their body states."""
+    layout = scene.layout
+    masses = np.array([body.mass for body in layout.mechanism.bodies])
     angular_momentum = np.einsum("tnij,tnj->tni", states.R, compute_body_spins(layout, states))
-    m = np.array([body.mass for body in layout.mechanism.bodies])
-    epsilon = np.sum(m * np.sum(states.v_centre**2, axis=2), axis=1) + np.sum(
+    epsilon = np.sum(masses * np.sum(states.v_centre**2, axis=2), axis=1) + np.sum(
         states.omega * angular_momentum, axis=(1, 2)
     )
     velocity_motion = get_velocity_motion(layout, unit_recovered)
     force, moment = inertia_loads(layout.mechanism, velocity_motion)
-    half = np.sum(force * states.v_centre + moment * states.omega, axis=(1, 2))
-    joint = next(joint for joint in scene.original.mechanism.joints if joint.drive is not None)
-    assert joint.drive is not None
-    half = (
-        half - epsilon * compute_accelerations(layout, [f"{joint.name}.{joint.drive.quantity}"], velocity_motion)[:, 0]
-    )
-    load_recovered = runner.evaluate(times, moving, holding=holding)
-    load_states = make_body_states(layout, load_recovered)
+    power = np.sum(force * states.v_centre + moment * states.omega, axis=(1, 2))
+    (coordinate,) = scene.driven_coordinates
+    # without loads the coordinate may accelerate: that part is no change of e
+    return epsilon, power - epsilon * compute_accelerations(layout, [coordinate], velocity_motion)[:, 0]
+
+
+def compute_forces(layout: Layout, states: BodyStates, load_recovered: Evaluation) -> tuple[dict[str, Array], float]:
+    """Return k (n,) by cause, and the size of its terms.
+
+    states: of the bodies at unit rate of the coordinate
+    load_recovered: solutions at the rate at which the loads act
+    """
+    masses, gravity = np.array([body.mass for body in layout.mechanism.bodies]), layout.mechanism.gravity
     speeds = np.sqrt(np.sum(states.v_centre**2, axis=2)), np.sqrt(np.sum(states.omega**2, axis=2))
-    gravity = layout.mechanism.gravity
-    forces = {GRAVITY: states.v_centre @ gravity @ m} if gravity.any() else {}
-    force_scale = float((speeds[0] @ m).max()) * float(np.sqrt(gravity @ gravity))
-    for load in collect_applied_loads(layout.mechanism, load_states, load_recovered):
-        forces[load.load.name] = forces.get(load.load.name, 0.0) + compute_power(states, load.action)
-        force_scale = max(force_scale, bound_power(speeds, load.action))
-    for action in list_rope_actions(find_coupling_loads(layout, load_recovered, load_states)):
-        forces[action.name] = forces.get(action.name, 0.0) + compute_power(states, action)
+    forces = {GRAVITY: states.v_centre @ gravity @ masses} if gravity.any() else {}
+    force_scale = float((speeds[0] @ masses).max()) * float(np.sqrt(gravity @ gravity))
+    load_states = make_body_states(layout, load_recovered)
+    named_actions = [
+        (load.load.name, load.action) for load in collect_applied_loads(layout.mechanism, load_states, load_recovered)
+    ]
+    ropes = list_rope_actions(find_coupling_loads(layout, load_recovered, load_states))
+    for name, action in [*named_actions, *((action.name, action) for action in ropes)]:
+        forces[name] = forces.get(name, 0.0) + compute_power(states, action)
         force_scale = max(force_scale, bound_power(speeds, action))
-    return InertiaCurve("", "", False, 0.0, values, rate, epsilon, half, forces, force_scale)
+    return forces, force_scale
 
 
 def bound_power(speeds: tuple[Array, Array], action: Action) -> float:

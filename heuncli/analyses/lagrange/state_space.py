@@ -5,7 +5,7 @@ removed and their efforts applied as a constant load, so that the scene without 
 prescribed coordinates are then held, or moved, by a change dQ of that load:
     dq.. = a + n dQ,   a = A_q dq + A_u dq',   dq.._d = w:   dq.._f = a_f + n_fd n_dd^-1 (w - a_d)
 An input force is a change of its value: dq.. = n k, k of a value of 1. A rate v = row q' that is an output also changes
-with dq if something moves: rate_slopes.py.
+with dq if something moves: outputs.py.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import CoordinateChoice, choose_coordinates, make_candidate_rows
+from heuncli.analyses.lagrange.coordinates import CoordinateChoice, choose_coordinates
 from heuncli.analyses.lagrange.equations import compute_forces_by_cause, invert_inertia, make_partials
 from heuncli.analyses.lagrange.freed_scene import FreedScene, Instant, free_drives
-from heuncli.analyses.lagrange.rate_slopes import RateSlopes, compute_rate_slopes
+from heuncli.analyses.lagrange.outputs import PROBLEM_CODE, compute_outputs, compute_rate_slopes
 from heuncli.analyses.lagrange.results import StateSpace, get_units
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import JOINTS, RATES
 from heuncli.base.linear_algebra import solve_least_squares
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.actions import collect_applied_loads
@@ -34,9 +35,7 @@ from heuncli.multibody.tree.layout import rate_indices
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 
-PROBLEM_CODE = "no-state-space"
 UNIT_VALUE = Expression.from_number(1.0)
-AXES = "xyz"
 NO_INPUTS_HINT = "this model has no input: forces, couples, torques, actuators and drives are inputs; bushings are not"
 
 
@@ -69,45 +68,66 @@ def compute_state_space(
     is_moving = bool(np.abs(state[find_rate_indices(scene)]).max(initial=0.0) > 0.0)
     require_tree_coordinates(scene, freed_choice, linear_equations, is_moving)
     free = [i for i, name in enumerate(freed_choice.names) if not freed_choice.is_driven[i] or name in inputs.drives]
-    driven = [i for i, is_driven in enumerate(freed_choice.is_driven) if is_driven]
-    epsilon = freed_choice.S.T @ linear_equations.mass @ freed_choice.S
-    eta = invert_inertia(freed_choice.names, epsilon)
-    drift = compute_drift(linear_equations, freed_choice)
-    by_place = freed_choice.rows @ (linear_equations.by_place @ freed_choice.S + linear_equations.by_rate @ drift)
-    by_rate = freed_choice.rows @ linear_equations.by_rate @ freed_choice.S
-    unit_forces = (compute_unit_force(scene, instant, freed_choice, linear_equations, name) for name in inputs.forces)
-    push = np.array([eta @ force for force in unit_forces]).reshape(len(inputs.forces), len(eta)).T
-    driven_inputs = np.array([[float(freed_choice.names[i] == name) for name in inputs.drives] for i in driven])
-    driven_inputs = driven_inputs.reshape(len(driven), len(inputs.drives))
-    hold = eta[:, driven] @ np.linalg.inv(eta[np.ix_(driven, driven)]) if driven else np.zeros((len(eta), 0))
-    # accelerations of held coordinates are cancelled, prescribed ones are added
-    remaining = np.eye(len(eta))
-    remaining[:, driven] -= hold
-    A21, A22, B2 = remaining @ by_place, remaining @ by_rate, np.hstack([remaining @ push, hold @ driven_inputs])
-    n, m = len(free), B2.shape[1]
+    slopes = compute_acceleration_slopes(scene, instant, freed_choice, linear_equations, inputs)
+    n, m = len(free), slopes.by_input.shape[1]
     free_block = np.ix_(free, free)
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [A21[free_block], A22[free_block]]])
-    B = np.vstack([np.zeros((n, m)), B2[free]])
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [slopes.by_place[free_block], slopes.by_rate[free_block]]])
+    B = np.vstack([np.zeros((n, m)), slopes.by_input[free]])
+    drift = compute_drift(linear_equations, freed_choice)
+    rate_slopes = compute_rate_slopes(scene.layout, instant.t, instant.holding, linear_equations, freed_choice.S, drift)
+    found_outputs = compute_outputs(rate_slopes, instant, freed_choice, free, (A[n:], B[n:]), outputs)
     names = tuple(freed_choice.names[i] for i in free)
-    C, D, output_names, units = compute_outputs(scene, instant, freed_choice, linear_equations, free, (A, B), outputs)
-    units_along = [get_units(freed_choice.names[i]) for i in free]
+    units_along = [get_units(name) for name in names]
     motion = (state[find_rate_indices(scene)], linear_equations.accelerations)
     offset = np.concatenate([(freed_choice.rows @ values)[free] for values in motion])
     return StateSpace(
-        A=A, B=B, C=C, D=D,
+        A=A, B=B, C=found_outputs.C, D=found_outputs.D,
         states=(*names, *(format_rate_name(name) for name in names)),
         inputs=(*inputs.forces, *(f"{name} acceleration" for name in inputs.drives)),
-        outputs=output_names,
+        outputs=found_outputs.names,
         units={
             "states": [*(unit.value for unit in units_along), *(unit.rate for unit in units_along)],
             "inputs": [
                 *(get_load_unit(instant, name) for name in inputs.forces),
                 *(get_units(name).acceleration for name in inputs.drives),
             ],
-            "outputs": units,
+            "outputs": found_outputs.units,
         },
         offset=drop_rounding(offset, instant.setup.scene.layout.size),
     )  # fmt: skip
+
+
+class AccelerationSlopes(NamedTuple):
+    """Derivatives of the accelerations of f coordinates by displacements and rates (f, f), and by m inputs (f, m)."""
+
+    by_place: Array
+    by_rate: Array
+    by_input: Array
+
+
+def compute_acceleration_slopes(
+    scene: FreedScene,
+    instant: Instant,
+    choice: CoordinateChoice,
+    linear_equations: LinearisedEquations,
+    inputs: StateSpaceInputs,
+) -> AccelerationSlopes:
+    """Return the derivatives of the accelerations, with driven coordinates held or moved as the inputs prescribe."""
+    driven = [i for i, is_driven in enumerate(choice.is_driven) if is_driven]
+    eta = invert_inertia(choice.names, choice.S.T @ linear_equations.mass @ choice.S)
+    drift = compute_drift(linear_equations, choice)
+    by_place = choice.rows @ (linear_equations.by_place @ choice.S + linear_equations.by_rate @ drift)
+    by_rate = choice.rows @ linear_equations.by_rate @ choice.S
+    unit_forces = (compute_unit_force(scene, instant, choice, linear_equations, name) for name in inputs.forces)
+    by_force = np.array([eta @ force for force in unit_forces]).reshape(len(inputs.forces), len(eta)).T
+    driven_inputs = np.array([[float(choice.names[i] == name) for name in inputs.drives] for i in driven])
+    driven_inputs = driven_inputs.reshape(len(driven), len(inputs.drives))
+    hold = eta[:, driven] @ np.linalg.inv(eta[np.ix_(driven, driven)]) if driven else np.zeros((len(eta), 0))
+    # accelerations of held coordinates are cancelled, prescribed ones are added
+    remaining = np.eye(len(eta))
+    remaining[:, driven] -= hold
+    by_input = np.hstack([remaining @ by_force, hold @ driven_inputs])
+    return AccelerationSlopes(remaining @ by_place, remaining @ by_rate, by_input)
 
 
 def require_driven_chosen(instant: Instant, choice: CoordinateChoice) -> None:
@@ -290,79 +310,3 @@ def make_unit_load(load: Load) -> Load:
         raise SolveError(Problem(PROBLEM_CODE, message, hint="split it into several forces, each along one axis"))
     x, y, z = (Expression.from_number(float(value)) for value in values)
     return replace(load, vector=(x, y, z))
-
-
-Matrices = tuple[Array, Array]
-
-
-@record
-class OutputRow:
-    """An output by its rows on the coordinates (f,).
-
-    by_place: of a position; of a rate, its change by a displacement at fixed rates
-    by_rate: of a rate
-    by_acceleration: of the acceleration of a coordinate
-    """
-
-    by_place: Array
-    by_rate: Array
-    by_acceleration: Array
-    unit: str
-
-
-def compute_outputs(
-    scene: FreedScene,
-    instant: Instant,
-    choice: CoordinateChoice,
-    linear_equations: LinearisedEquations,
-    free: Sequence[int],
-    matrices: Matrices,
-    requested: Sequence[str],
-) -> tuple[Array, Array, tuple[str, ...], list[str]]:
-    """Return C, D, the names and the units of the outputs; by default the coordinates."""
-    A, B = matrices
-    n = len(free)
-    names = tuple(requested) or tuple(choice.names[i] for i in free)
-    slopes = compute_rate_slopes(
-        scene.layout, instant.t, instant.holding, linear_equations, choice.S, compute_drift(linear_equations, choice)
-    )
-    all_rows = make_candidate_rows(scene.layout, linear_equations)
-    outputs = [make_output(slopes, instant, choice, all_rows, name) for name in names]
-    C = [np.concatenate([o.by_place[free], o.by_rate[free]]) + o.by_acceleration[free] @ A[n:] for o in outputs]
-    D = [o.by_acceleration[free] @ B[n:] for o in outputs]
-    shape = len(names), B.shape[1]
-    return np.array(C).reshape(len(names), 2 * n), np.array(D).reshape(shape), names, [o.unit for o in outputs]
-
-
-def make_output(
-    slopes: RateSlopes, instant: Instant, choice: CoordinateChoice, rows: dict[str, Array], name: str
-) -> OutputRow:
-    """Return an output by its name. Raises SolveError [no-state-space] if nothing has this name."""
-    owner, _, quantity = name.rpartition(".")
-    base = {rate: place for place, rate in RATES.items()}
-    zero = np.zeros(len(choice.names))
-    if name in rows:
-        return OutputRow(rows[name] @ choice.S, zero, zero, get_units(name).value)
-    mechanism = slopes.layout.mechanism
-    coordinate = f"{owner}.{base.get(quantity, quantity)}"
-    if coordinate in rows:
-        joint = next(joint for joint in mechanism.joints if joint.name == owner)
-        by_place = zero if coordinate in choice.names else slopes.compute_joint_slope(joint, base[quantity])
-        return OutputRow(by_place, rows[coordinate] @ choice.S, zero, get_units(coordinate).rate)
-    if quantity == "acceleration":
-        place = next((f"{owner}.{q}" for q in ("angle", "travel") if f"{owner}.{q}" in rows), None)
-        if place in choice.names:
-            return OutputRow(zero, zero, rows[place] @ choice.S, get_units(place).acceleration)
-    axis = AXES.find(quantity[-1:])
-    for i, body in enumerate(mechanism.bodies):
-        point = owner.removeprefix(f"{body.name}.")
-        if owner.startswith(f"{body.name}.") and point in body.points and axis >= 0 and quantity[:-1] in ("", "v"):
-            position = make_body_states(instant.freed_scene.layout, instant.freed_recovered).point_position(
-                i, body.points[point]
-            )[0]
-            X = make_partials(slopes.layout, slopes.linear_equations, choice.S).point_partials(i, position)[axis]
-            if not quantity[:-1]:
-                return OutputRow(X, zero, zero, "m")
-            return OutputRow(slopes.compute_point_slope(i, position)[axis], X, zero, "m/s")
-    hint = suggest(name, list(rows), "outputs") or "coordinates, their rates, BODY.POINT.x or .vx"
-    raise SolveError(Problem(PROBLEM_CODE, f"--outputs {name}: no coordinate and no point has this name", hint=hint))

@@ -1,43 +1,35 @@
-"""Lagrange's equations of a spec's scene at an instant (no. 18 to 24 of the paper), and its impulses.
-    e [q'] = h + H      (32)
-An impulse meets the apparent inertia of the point where it acts.
-"""
+"""Lagrange's equations of a spec's scene at an instant (no. 18 to 24 of the paper), and its impulses."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from heuncli.analyses.lagrange.coordinates import (
-    CoordinateChoice,
-    choose_coordinates,
+from heuncli.analyses.lagrange.coordinate_rates import (
+    RODRIGUES_NAMES,
     compute_accelerations,
     compute_length,
     compute_rates,
-    make_candidate_rows,
+    compute_rodrigues_vector,
 )
+from heuncli.analyses.lagrange.coordinates import CoordinateChoice, choose_coordinates
 from heuncli.analyses.lagrange.equations import (
-    DriveRows,
+    InstantEquations,
     Partials,
     VelocityTerms,
     compute_forces_by_cause,
-    compute_section_forces,
     estimate_term_sizes,
-    invert_inertia,
     make_drive_rows,
-    make_partials,
+    make_instant_equations,
     subtract_drive_efforts,
 )
 from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
-from heuncli.analyses.lagrange.results import ApparentInertia, ImpulseResults, LagrangeResults, SectionForces, get_units
-from heuncli.analyses.lagrange.rodrigues import RODRIGUES_NAMES, compute_rodrigues_vector
+from heuncli.analyses.lagrange.responses import compute_apparent_inertias, compute_impulses, compute_section_forces
+from heuncli.analyses.lagrange.results import LagrangeResults, SectionForces
 from heuncli.analyses.lagrange.state_space import compute_state_space
-from heuncli.base.errors import Problem, SolveError
 from heuncli.base.joint_kinds import is_length
 from heuncli.base.records import record
-from heuncli.base.spelling import suggest
 from heuncli.loads.kinetostatics.actions import Action, collect_applied_loads, list_whole_joint_actions
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
@@ -46,128 +38,7 @@ from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.blocks import make_blocks
-from heuncli.study.compose.impulses import Impulses
-from heuncli.study.model.options import Options
 from heuncli.study.model.setup import attach_locations
-from heuncli.study.workflow import solve
-
-
-def compute_impulses(
-    spec: Spec,
-    instant: Instant,
-    drives: DriveRows,
-    choice: CoordinateChoice,
-    partials: Partials,
-    epsilon: Array,
-    eta: Array,
-) -> tuple[ImpulseResults, ...]:
-    """Return the impulses of an impulse analysis; empty for other analyses."""
-    if spec.analysis.type != "impulse":
-        return ()
-    impulses = solve(spec, Options(reduce=False)).impulse_results
-    count = 0 if impulses is None else len(impulses.jumps)
-    return tuple(
-        compute_impulse(impulses, k, instant, drives, choice, partials, epsilon, eta)
-        for k in range(count)
-        if impulses is not None
-    )
-
-
-def compute_impulse(
-    impulses: Impulses,
-    k: int,
-    instant: Instant,
-    drives: DriveRows,
-    choice: CoordinateChoice,
-    partials: Partials,
-    epsilon: Array,
-    eta: Array,
-) -> ImpulseResults:
-    """Return one impulse of the analysis."""
-    recovery = impulses.recovery
-    states = make_body_states(recovery.setup.scene.layout, recovery.solutions.select(np.array([k])))
-    jumps = compute_accelerations(instant.freed_scene.layout, choice.names, states)[0]
-    h = np.zeros(len(eta))
-    for action in recovery.given_actions:
-        for end, force, moment in action.iter_ends():
-            h = (
-                h
-                + force[k] @ partials.point_partials(end.body, end.position[k])
-                + moment[k] @ partials.turn_partials(end.body)
-            )
-    total = epsilon @ jumps
-    drive_impulses = drives.project_on_drives(total - h)
-    section_blocks = impulses.all_blocks["sections"]
-    return ImpulseResults(
-        t=impulses.jumps[k].time,
-        h=h,
-        drives=drive_impulses,
-        jumps=jumps,
-        reciprocal_energy=float(0.5 * h @ eta @ h),
-        sections={
-            cuts.name: compute_section_forces(section_blocks[cuts.name], k, partials, cuts.body)
-            for cuts in instant.setup.cuts
-        },
-    )
-
-
-IMMOBILE = 1e-12  # of the largest inverse inertia: below, the place does not move
-
-
-def compute_apparent_inertias(
-    instant: Instant, choice: CoordinateChoice, partials: Partials, epsilon: Array, eta: Array, requested: Sequence[str]
-) -> tuple[ApparentInertia, ...]:
-    """Return the apparent inertias along all coordinates, or at the requested places: coordinates, or
-    POINT:nx,ny,nz.
-    """
-    inertias = {
-        name: ApparentInertia(name, get_units(name).inertia, float(epsilon[i, i]), float(1.0 / eta[i, i]))
-        for i, name in enumerate(choice.names)
-    }
-    if not requested:
-        return tuple(inertias.values())
-    return tuple(
-        inertias[name] if name in inertias else compute_apparent_inertia(instant, choice, partials, eta, name)
-        for name in requested
-    )
-
-
-def compute_apparent_inertia(
-    instant: Instant, choice: CoordinateChoice, partials: Partials, eta: Array, name: str
-) -> ApparentInertia:
-    """Return the apparent inertia along a coordinate that was not chosen, or at a point. Raises SolveError if nothing
-    moves there.
-    """
-    place, colon, direction = name.partition(":")
-    if colon:
-        row, unit = make_point_row(instant, partials, place, direction, name), "kg"
-    else:
-        rows = make_candidate_rows(instant.freed_scene.layout, instant.linear_equations)
-        if name not in rows:
-            hint = suggest(name, list(rows), "coordinates") or "or BODY.POINT:nx,ny,nz"
-            raise SolveError(Problem("no-coordinate", f"--seen {name}: there is no such coordinate", hint=hint))
-        row, unit = rows[name] @ choice.S, get_units(name).inertia
-    inverse = float(row @ eta @ row)
-    if inverse <= IMMOBILE * float(np.abs(eta).max()) * max(float(row @ row), IMMOBILE):
-        message = f"--seen {name}: it cannot move there: the apparent inertia is infinite"
-        raise SolveError(Problem("no-coordinate", message, hint="use another instant or another direction"))
-    return ApparentInertia(name, unit, None, 1.0 / inverse)
-
-
-def make_point_row(instant: Instant, partials: Partials, place: str, direction: str, option_text: str) -> Array:
-    """Return the row (f,) of the velocity of a point along a direction."""
-    mechanism = instant.freed_scene.layout.mechanism
-    points = {
-        f"{body.name}.{name}": (i, p) for i, body in enumerate(mechanism.bodies) for name, p in body.points.items()
-    }
-    if place not in points:
-        hint = suggest(place, list(points), "points") or ""
-        raise SolveError(Problem("no-coordinate", f"--seen {option_text}: there is no point {place}", hint=hint))
-    n = np.array([float(word) for word in direction.split(",")])
-    body, point = points[place]
-    states = make_body_states(instant.freed_scene.layout, instant.freed_recovered)
-    return np.asarray(n / np.sqrt(n @ n) @ partials.point_partials(body, states.point_position(body, point)[0]))
-
 
 QUASI_VELOCITY_NOTE = (
     "{names}: rates are quasi-velocities (components of angular velocity and velocity along the world axes), "
@@ -202,57 +73,54 @@ def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> Lagran
     choice = choose_coordinates(
         instant.freed_scene.scene, instant.linear_equations, instant.freed_scene.driven_coordinates, options.coordinates
     )
-    epsilon = symmetrise(choice.S.T @ instant.linear_equations.mass @ choice.S)
-    eta = invert_inertia(choice.names, epsilon)
-    partials = make_partials(layout, instant.linear_equations, choice.S)
+    equations = make_instant_equations(instant, choice)
+    epsilon, eta, partials = equations.epsilon, equations.eta, equations.partials
     states = make_body_states(instant.setup.scene.layout, instant.driven_recovered, instant.setup.steady_spin_axes)
-    q1 = compute_rates(layout, choice.names, states)[0]
-    q2 = compute_accelerations(layout, choice.names, states)[0]
+    rates = compute_rates(layout, choice.names, states)[0]
+    accelerations = compute_accelerations(layout, choice.names, states)[0]
     terms = VelocityTerms(instant.freed_scene, choice, partials, epsilon, instant.t, instant.state, instant.holding)
-    C = terms.compute_terms(q1[None, :])[0]
+    C = terms.compute_terms(rates[None, :])[0]
     freed_states = make_body_states(layout, instant.freed_recovered)
     applied_actions = list_applied_actions(layout, instant, states)
     k = compute_forces_by_cause(layout, partials, applied_actions)
     scale = estimate_term_sizes(layout, partials, [*applied_actions, *list_constraint_actions(instant)], states)
-    scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
-    total = sum(k.values(), np.zeros(len(q1)))
+    scale = scale + np.abs(epsilon) @ np.abs(accelerations) + np.abs(C)
     drives = make_drive_rows(instant, choice)
-    remainder = epsilon @ q2 + C - total
+    remainder = epsilon @ accelerations + C - sum(k.values(), np.zeros(len(rates)))
     Q = drives.project_on_drives(remainder)
     linear = compute_state_space(instant, choice, Q, options.inputs, options.outputs) if options.state_space else None
     gamma = terms.compute_christoffel_symbols() if options.christoffel and not any(choice.is_quasi_velocity) else None
+    are_drives_chosen = all(name in choice.names for name in drives.names)
     return LagrangeResults(
-        energy=float(0.5 * q1 @ epsilon @ q1),
         title=spec.title,
         t=instant.t,
         instant_text=instant.heading,
         names=choice.names,
         is_driven=choice.is_driven,
         values=compute_values(instant, choice, freed_states),
-        rates=q1,
-        accelerations=q2,
+        rates=rates,
+        accelerations=accelerations,
         epsilon=epsilon,
         eta=eta,
-        momenta=epsilon @ q1,
+        momenta=epsilon @ rates,
         forces=k,
         drives=Q,
         coriolis=C,
-        coriolis_matrix=terms.coriolis_matrix(q1),
+        coriolis_matrix=terms.coriolis_matrix(rates),
         gamma=gamma,
         alpha=None if gamma is None else -np.einsum("ij,jlk->ilk", eta, gamma),
-        energies=split_energy(
-            epsilon, q1, np.array(choice.is_driven), all(name in choice.names for name in drives.names)
-        ),
-        reciprocal_energy=float(0.5 * (epsilon @ q1) @ eta @ (epsilon @ q1)),
+        energy=float(0.5 * rates @ epsilon @ rates),
+        energies=split_energy(epsilon, rates, np.array(choice.is_driven), are_drives_chosen),
+        reciprocal_energy=float(0.5 * (epsilon @ rates) @ eta @ (epsilon @ rates)),
         scale=scale,
         residual=compute_residual(choice, *subtract_drive_efforts(instant, drives, remainder), scale),
-        apparent_inertias=compute_apparent_inertias(instant, choice, partials, epsilon, eta, options.seen),
+        apparent_inertias=compute_apparent_inertias(equations, options.seen),
         sections=list_section_forces(instant, partials),
-        partials=make_partials_block(instant, choice, partials),
+        partials=make_partials_block(equations),
         left_out=choice.left_out,
         notes=tuple(make_notes(choice)),
         state_space=linear,
-        impulses=compute_impulses(spec, instant, drives, choice, partials, epsilon, eta),
+        impulses=compute_impulses(spec, equations, drives),
     )
 
 
@@ -269,11 +137,6 @@ def list_constraint_actions(instant: Instant) -> list[Action]:
         *list_whole_joint_actions(instant.recovery.kernel_joint_loads),
         *list_coupling_actions(constraint_couplings),
     ]
-
-
-def symmetrise(M: Array) -> Array:
-    """Return the symmetric part of a matrix that is symmetric except for rounding."""
-    return np.asarray(0.5 * (M + M.T))
 
 
 def compute_values(instant: Instant, choice: CoordinateChoice, states: BodyStates) -> Array:
@@ -305,12 +168,12 @@ def compute_body_value(instant: Instant, states: BodyStates, name: str) -> float
     return float(states.centre[0, body, axis]) if quantity.startswith("d") else np.nan
 
 
-def split_energy(epsilon: Array, q1: Array, is_driven: Array, is_split: bool) -> tuple[float, float, float]:
+def split_energy(epsilon: Array, rates: Array, is_driven: Array, are_drives_chosen: bool) -> tuple[float, float, float]:
     """Return the free, mixed and driven parts of E; nan if the driven rates are not among the coordinates."""
-    if not is_split:
+    if not are_drives_chosen:
         return np.nan, np.nan, np.nan
-    a, b = np.where(is_driven, 0.0, q1), np.where(is_driven, q1, 0.0)
-    return float(0.5 * a @ epsilon @ a), float(a @ epsilon @ b), float(0.5 * b @ epsilon @ b)
+    free, driven = np.where(is_driven, 0.0, rates), np.where(is_driven, rates, 0.0)
+    return float(0.5 * free @ epsilon @ free), float(free @ epsilon @ driven), float(0.5 * driven @ epsilon @ driven)
 
 
 def compute_residual(choice: CoordinateChoice, remainder: Array, is_known: Array, scale: Array) -> float:
@@ -333,8 +196,9 @@ def list_section_forces(instant: Instant, partials: Partials) -> dict[str, Secti
     return {cuts.name: compute_section_forces(block[cuts.name], 0, partials, cuts.body) for cuts in instant.setup.cuts}
 
 
-def make_partials_block(instant: Instant, choice: CoordinateChoice, partials: Partials) -> dict[str, Any]:
+def make_partials_block(equations: InstantEquations) -> dict[str, Any]:
     """Return the partials of the velocities of named points, and of the bodies, (29) and (30)."""
+    instant, partials = equations.instant, equations.partials
     mechanism = instant.freed_scene.layout.mechanism
     states = make_body_states(instant.freed_scene.layout, instant.freed_recovered)
     block: dict[str, Any] = {"points": {}, "bodies": {}}

@@ -18,6 +18,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.linear_algebra import compute_null_space
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.motion.integration.contacts.impulses import schedule_impulses, solve_impulse
@@ -33,18 +34,25 @@ from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import quaternion_product
 
 DISTURBANCE = 1e-8  # rad, or parts of the size: root of EPS, where the square of a disturbance equals its rounding
-IMPLICIT_TOLERANCE = (
-    1e-12  # local tolerance of implicit steps: 1e-4 of DISTURBANCE; below, stages of large rates are rounding
-)
-MAX_DIRECTIONS = 24  # directions; a few more than usually grow
-STEPS_PER_PIECE = (
-    16  # steps of the run: several growth times of most motions, but few enough to rescale fast growth in time
-)
+# local tolerance of implicit steps: 1e-4 of DISTURBANCE; below, stages of large rates are rounding
+IMPLICIT_TOLERANCE = 1e-12
+MAX_DIRECTIONS = 24  # a few more than usually grow
+# steps of the run: several growth times of most motions, but few enough to rescale fast growth in time
+STEPS_PER_PIECE = 16
 STEP_OFFSETS = (0, -1, 1, -2, 2)  # offsets of nearby steps, the nearest first, among which a long one is chosen
 MIN_PIECES = 100  # least number of pieces of a run, to resolve its growth
 MAX_GROWTH = 1e4  # times DISTURBANCE: squares are then 1e-4 of it; a piece with more growth is halved
 STEPS_PER_CHUNK = 256  # steps for which memory is allocated at a time
 MAX_CHUNKS = 400  # of a piece
+SEED = 1901  # of the random directions: the same in every run
+
+
+class GrowthSample(NamedTuple):
+    """The growth at an instant of the run [s]: ln G, and the number of steps up to there."""
+
+    time: float
+    logarithm: float
+    steps: float
 
 
 @record
@@ -60,11 +68,15 @@ class DisturbanceGrowth:
     stop_reason: str | None = None
 
 
-class RunPiece:
-    """A part of a run between two instants, without impulses: begin, end, and the last instant before the end."""
+class RunPiece(NamedTuple):
+    """A part of a run between two instants [s], without impulses.
 
-    def __init__(self, begin: float, before_end: float, end: float) -> None:
-        self.begin, self.before_end, self.end = begin, before_end, end
+    before_end: the last instant before the end
+    """
+
+    begin: float
+    before_end: float
+    end: float
 
     def split(self) -> tuple[RunPiece, RunPiece]:
         """Return its two halves."""
@@ -107,9 +119,10 @@ def move_into_steps(ends: Array, marks: Array) -> Array:
 
 
 class DisturbanceScale:
-    """Converts small disturbances of states to scaled numbers, displacements first, and back."""
+    """Converts small disturbances of states to scaled numbers, n displacements first, then n rates, and back."""
 
     def __init__(self, layout: Layout, rate: float) -> None:
+        """rate [1/s]: rate that counts as 1"""
         self.layout, self.coordinates = layout, make_coordinates(layout)
         weights = self.coordinates.weights
         self.n = len(weights)
@@ -172,7 +185,7 @@ class DisturbedRuns:
     def apply_impulses(self, t: float, states: Array) -> Array:
         """Return the states after the impulses at an instant."""
         moving = self.moving
-        for impulse in (one for one in self.impulses if one.before_time <= t <= one.after_time):
+        for impulse in (impulse for impulse in self.impulses if impulse.before_time <= t <= impulse.after_time):
             for k, state in enumerate(states):
                 jump = solve_impulse(self.runner, impulse, moving.embed_state(t, state), t)
                 if jump is not None:
@@ -215,14 +228,16 @@ class DisturbedRuns:
         start.
         """
         Q, factor = sample_directions(self.find_directions() if Q is None else Q)
-        n, C, log = self.scale.n, np.eye(Q.shape[1]), 0.0
-        rows, steps = [(0.0, 0.0, 0.0)], 0
+        n = self.scale.n
+        # the product R_m ... R_1, divided by e^log so that its largest number is 1
+        C, log = np.eye(Q.shape[1]), 0.0
+        samples, steps = [GrowthSample(0.0, 0.0, 0.0)], 0
         remaining = self.list_pieces()[::-1] if Q.shape[1] else []
         while remaining:
             piece, base = remaining.pop()
             propagated = self.propagate_disturbances(piece, base, Q)
             if propagated is None:
-                return make_growth(rows, f"a neighbouring run does not reach t = {piece.end:.6g} s")
+                return make_growth(samples, f"a neighbouring run does not reach t = {piece.end:.6g} s")
             D, piece_steps = propagated
             if np.abs(D).max() > MAX_GROWTH and piece.before_end - piece.begin > DISTURBANCE * piece.end:
                 first, second = piece.split()
@@ -232,11 +247,11 @@ class DisturbedRuns:
             C, steps = R @ C, steps + piece_steps
             size = float(np.abs(C).max())
             if size == 0.0:
-                return make_growth(rows, f"a disturbance dies out by t = {piece.end:.6g} s")
+                return make_growth(samples, f"a disturbance dies out by t = {piece.end:.6g} s")
             C, log = C / size, log + math.log(size)
             G = factor * float(np.linalg.norm(Q[:n] @ C, 2))
-            rows.append((piece.end, log + math.log(max(G, tolerances.EPS)), float(steps)))
-        return make_growth(rows, None)
+            samples.append(GrowthSample(piece.end, log + math.log(max(G, tolerances.EPS)), float(steps)))
+        return make_growth(samples, None)
 
     def list_pieces(self) -> list[tuple[RunPiece, Array]]:
         """Return the pieces of the run, and the states at which they begin."""
@@ -245,9 +260,9 @@ class DisturbedRuns:
         return list(zip(pieces, states, strict=True))
 
 
-def make_growth(rows: list[tuple[float, float, float]], stop_reason: str | None) -> DisturbanceGrowth:
-    """Return the growth from its rows (instant, ln G, steps)."""
-    times, logarithm, steps = np.array(rows).T
+def make_growth(samples: list[GrowthSample], stop_reason: str | None) -> DisturbanceGrowth:
+    """Return the growth from its samples."""
+    times, logarithm, steps = np.array(samples).T
     return DisturbanceGrowth(times, logarithm, steps, stop_reason)
 
 
@@ -256,7 +271,7 @@ def sample_directions(Q: Array) -> tuple[Array, float]:
     N = Q.shape[1]
     if N <= MAX_DIRECTIONS:
         return Q, 1.0
-    random_basis, _ = np.linalg.qr(np.random.default_rng(1901).standard_normal((N, MAX_DIRECTIONS)))
+    random_basis, _ = np.linalg.qr(np.random.default_rng(SEED).standard_normal((N, MAX_DIRECTIONS)))
     return Q @ random_basis, math.sqrt(N / MAX_DIRECTIONS)
 
 

@@ -1,4 +1,4 @@
-"""Events along a motion: half turns, gimbal locks and dead centres.
+"""Events along a motion: the search of zeros, half turns and gimbal locks of attitudes.
 
 Each follows from a vector with an arbitrary sign: a quaternion, or the shares of a loop's coordinates. It is continued
 from instant to instant, which are so close that no body turns far between them; a component passes zero where its sign
@@ -11,29 +11,21 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from heuncli.analyses.motion_diagnostics.results import DEAD_CENTRE, GIMBAL, HALF_TURN, AttitudeResults, Event
-from heuncli.analyses.motion_diagnostics.twists import (
-    SEQUENCES,
-    Loop,
-    compute_condition,
-    compute_loop_motions,
-    continue_signs,
-    find_loops,
-    project_axis,
-    to_quaternions,
-)
+from heuncli.analyses.motion_diagnostics.results import GIMBAL, HALF_TURN, AttitudeResults, Event
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.loads.redundancy.self_stress import find_neighbour_poses
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array, Indices, Mask
+from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import choose_search_times
 from heuncli.study.search.crossings import Bracket, find_roots
 from heuncli.study.solve.history import resample
 
 MAX_BODY_INSTANTS = 200_000  # bodies times instants whose results are in memory at a time
+SEQUENCES = {"zxz": 2, "zyx": 0}  # Euler angles: the body axis that is parallel to the world's z at gimbal lock
 NEWTON_STEPS = 12  # steps towards the closest approach
+MAX_SIMULTANEOUS = 8  # latest events that an event is compared with
 Track = Callable[[Evaluation], Array]  # maps recovered instants to a vector (n_t, d) of arbitrary sign
 
 
@@ -81,9 +73,9 @@ def find_zeros(motion: MotionSearch, track: Track, x: Array, component: int) -> 
 
         def evaluate_aligned(instants: Array) -> Array:
             """Return the component at instants, with the sign it has at the preceding instant of the grid."""
-            intervals = track(motion.recover(instants))
-            left = x[np.searchsorted(times, instants, side="right") - 1]
-            return np.asarray(intervals[:, component] * np.where(np.sum(intervals * left, axis=1) < 0.0, -1.0, 1.0))
+            vectors = track(motion.recover(instants))
+            previous = x[np.searchsorted(times, instants, side="right") - 1]
+            return np.asarray(vectors[:, component] * np.where(np.sum(vectors * previous, axis=1) < 0.0, -1.0, 1.0))
 
         zero_times = find_roots(evaluate_aligned, Bracket(times[k], times[k + 1], h[k], h[k + 1]), np.zeros(len(k)))
         intervals += [ZeroInterval(t, t) for t in zero_times.tolist()]
@@ -114,7 +106,7 @@ def find_attitude_events(motion: MotionSearch) -> tuple[list[Event], list[Attitu
 
 def make_attitude_track(place: int) -> Track:
     """Return a function that gives the quaternion of the body at a place of the tree."""
-    return lambda at: to_quaternions(at.bodies["R"][:, place])
+    return lambda recovered: to_quaternions(recovered.bodies["R"][:, place])
 
 
 def make_half_turn_event(name: str, interval: ZeroInterval, motion: MotionSearch) -> Event:
@@ -203,73 +195,35 @@ def make_lock_event(name: str, sequence: str, lock: LockApproach, motion: Motion
     return Event(lock.interval.begin, GIMBAL, f"bodies.{name}", message)
 
 
-def find_dead_centres(motion: MotionSearch) -> tuple[list[Event], list[str]]:
-    """Return the dead centres of the closed chains, and the reasons why loops were skipped."""
-    loops = find_loops(motion.layout)
-    if not loops:
-        return [], []
-    parts = motion.recover_in_parts()
-    events, skipped = [], []
-    neighbour_poses = find_adjacent_poses(motion)
-    for loop in loops:
-        part_motions = [compute_loop_motions(motion.layout, loop, part) for part in parts]
-        shares, count = (np.concatenate([part[i] for part in part_motions]) for i in (0, 1))
-        neighbour_shares = (
-            shares if neighbour_poses is None else compute_loop_motions(motion.layout, loop, neighbour_poses)[0]
-        )
-        if np.median(count) != 1:
-            skipped.append(explain_skipped(motion, loop, int(np.median(count))))
-            continue
-        c = len(loop.coordinates)
-        largest = np.max(np.abs(np.nan_to_num(np.vstack([shares, neighbour_shares])[:, :c])), axis=0)
-        events += find_loop_dead_centres(motion, loop, continue_signs(shares), largest > tolerances.REMAINING_RATE)
-    return events, skipped
+def to_quaternions(R: Array) -> Array:
+    """Return the quaternions (n_t, 4) of attitudes along a motion, (n_t, 3, 3), with continuous signs."""
+    trace = np.trace(R, axis1=1, axis2=2)
+    diagonal = np.diagonal(R, axis1=1, axis2=2)
+    squares = np.concatenate([1.0 + trace[:, None], 1.0 - trace[:, None] + 2.0 * diagonal], axis=1)  # 4 q_i^2
+    K = np.empty((len(R), 4, 4))  # 4 q_i q_j
+    K[:, range(4), range(4)] = squares
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        K[:, 0, 1 + i] = K[:, 1 + i, 0] = R[:, k, j] - R[:, j, k]
+        K[:, 1 + i, 1 + j] = K[:, 1 + j, 1 + i] = R[:, i, j] + R[:, j, i]
+    best = np.argmax(squares, axis=1)
+    rows = np.arange(len(R))
+    q = K[rows, best] / (2.0 * np.sqrt(squares[rows, best]))[:, None]
+    is_turned = np.sum(q[1:] * q[:-1], axis=1) < 0.0
+    sign = np.cumprod(np.concatenate([[1.0], np.where(is_turned, -1.0, 1.0)]))
+    return np.asarray(q * sign[:, None])
 
 
-def explain_skipped(motion: MotionSearch, loop: Loop, count: int) -> str:
-    """Explain why no dead centre of a loop is searched."""
-    names = format_joints(motion, loop)
-    if count == 0:
-        return f"the coordinates of {names} do not move"
-    return f"the coordinates of {names} have {count} degrees of freedom together: no single one drives the others"
+def project_axis(R: Array, omega: Array, axis: int) -> tuple[Array, Array]:
+    """Return the horizontal part (n_t, 2) of a body's axis, and its rate; its length is sin delta."""
+    c = R[:, :, axis]
+    return c[:, :2], cross_rows(omega, c)[:, :2]
 
 
-def format_joints(motion: MotionSearch, loop: Loop) -> str:
-    """Return the names of the joints of a loop."""
-    return ", ".join(dict.fromkeys(motion.layout.mechanism.joints[k].name for k, _ in loop.coordinates))
-
-
-def find_adjacent_poses(motion: MotionSearch) -> Evaluation | None:
-    """Return poses close to the only one of a scene, to see which coordinates move; None for a motion."""
-    if len(motion.times) > 1:
-        return None
-    recovered = motion.study.history.solutions
-    return find_neighbour_poses(
-        motion.study.setup.runner,
-        float(recovered.times[0]),
-        recovered.states[0],
-        (tolerances.NEIGHBOUR,),
-        holding=recovered.holding[0],
-    )
-
-
-def find_loop_dead_centres(motion: MotionSearch, loop: Loop, shares: Array, moves: Mask) -> list[Event]:
-    """Return the dead centres of one loop; moves: which of its coordinates move at all."""
-    joints, events = motion.layout.mechanism.joints, []
-    for i, (k, name) in enumerate(loop.coordinates):
-        if not moves[i]:
-            continue
-        for interval in find_zeros(motion, lambda at: compute_loop_motions(motion.layout, loop, at)[0], shares, i):
-            others = [f"{joints[j].name}.{what}" for j, what in loop.coordinates if (j, what) != (k, name)]
-            coordinate = f"{joints[k].name}.{name}"
-            motion_text = f"{' and '.join(others[:2])} {'moves' if len(others) == 1 else 'move'}"
-            message = f"{coordinate} stops while {motion_text}: it cannot drive the mechanism there"
-            events.append(
-                Event(
-                    interval.begin, DEAD_CENTRE, f"joints.{joints[k].name}", message + format_duration(interval, motion)
-                )
-            )
-    return events
+def compute_condition(sine: Array | float) -> Array:
+    """Return the condition cot(delta / 2) of the angle matrix, from sin delta."""
+    s = np.asarray(sine, dtype=float)
+    with np.errstate(divide="ignore"):
+        return np.asarray((1.0 + np.sqrt(np.maximum(1.0 - s * s, 0.0))) / s)
 
 
 def distinct_events(events: Sequence[Event], span: float) -> list[Event]:
@@ -277,7 +231,10 @@ def distinct_events(events: Sequence[Event], span: float) -> list[Event]:
     distinct: list[Event] = []
     for event in sorted(events):
         recent = [
-            e for e in distinct[-8:] if e[1:3] == event[1:3] and event.time - e.time <= tolerances.SAME_INSTANT * span
+            earlier
+            for earlier in distinct[-MAX_SIMULTANEOUS:]
+            if (earlier.kind, earlier.where) == (event.kind, event.where)
+            and event.time - earlier.time <= tolerances.SAME_INSTANT * span
         ]
         if not recent or recent[-1].message != event.message:
             distinct.append(event)

@@ -29,11 +29,15 @@ class Event(NamedTuple):
 
 
 class AttitudeResults(NamedTuple):
-    """A body that rotates freely: its name, number of half turns, and the largest conditions of its Euler angles."""
+    """A body that rotates freely.
+
+    half_turns: number of its half turns
+    euler: largest condition of its Euler angles, and its instant [s], by their sequence
+    """
 
     body: str
     half_turns: int
-    euler: dict[str, tuple[float, float]]  # by sequence: condition, and when
+    euler: dict[str, tuple[float, float]]
 
     def to_block(self) -> dict[str, Any]:
         """Return the results as a JSON block."""
@@ -84,18 +88,22 @@ class StiffnessResults:
 class GrowthResults:
     """Growth of disturbances.
 
-    rate [1/s]: of the growth; logarithm: ln of the factor up to `end_time`; exponential: whether it is exponential
+    rate [1/s]: mean rate over the second half of the run
+    logarithm: ln of the factor up to `end_time` [s]
+    exponential: whether the growth is exponential
     directions: number of independent disturbances
-    horizon [s]: of double precision; expected_horizon: the horizon after the run if the growth goes on
+    horizon [s]: of double precision
+    expected_horizon [s]: the horizon after the run if the growth goes on
+    stop_reason: why the growth is not known up to the end of the run, or None
     """
 
     rate: float
-    logarithm: float  # ln of it
+    logarithm: float
     exponential: bool
     directions: int
     horizon: float | None
     expected_horizon: float | None
-    end_time: float  # [s]
+    end_time: float
     stop_reason: str | None = None
 
 
@@ -103,15 +111,21 @@ class GrowthResults:
 class Probe:
     """Results of a probe.
 
+    run_horizon [s]: up to which the run is reliable, None: to its end
+    error: estimate of the error of the run's motion
+    status: why the run ended early, empty if it did not
+    mass, closure: largest conditions of the mass matrix and of the closures
+    growth, out_of_plane: growth of disturbances within the integrated freedoms, and out of the plane of the motion
     reasons: why results are missing, by JSON key
-    further_events: numbers of events beyond those listed
+    further_events: kind and place of events beyond those listed, with their number
+    trouble, others: sentences on what is difficult for the default method, worst first, and for others
     """
 
     title: str
     duration: float
     model: dict[str, Any]
     run_horizon: float | None
-    error: float  # estimate of the run's motion
+    error: float
     status: str
     events: tuple[Event, ...]
     attitudes: tuple[AttitudeResults, ...]
@@ -119,11 +133,11 @@ class Probe:
     closure: LargestCondition | None
     stiffness: StiffnessResults | None
     growth: GrowthResults | None
-    out_of_plane: GrowthResults | None  # out of the plane
+    out_of_plane: GrowthResults | None
     reasons: dict[str, str]
     further_events: tuple[tuple[str, str, int], ...]
-    trouble: tuple[str, ...] = ()  # of the default method, worst first
-    others: tuple[str, ...] = ()  # of other methods
+    trouble: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
 
     @property
     def implicit_method(self) -> str | None:
@@ -156,12 +170,7 @@ class Probe:
             "growth": to_growth_block(growth),
             "out_of_plane": to_growth_block(self.out_of_plane),
             "rates": to_rates_block(stiffness),
-            "steps": {
-                s.method: {"stability": to_json_number(s.stability), "accuracy": to_json_number(s.accuracy)}
-                for s in stiffness.steps
-            }
-            if stiffness is not None
-            else {},
+            "steps": {} if stiffness is None else to_steps_block(stiffness),
             "condition_at": {
                 name: at._asdict() | {"value": to_json_number(at.value)} for name, at in self.list_conditions()
             },
@@ -210,4 +219,12 @@ def to_rates_block(stiffness: StiffnessResults | None) -> dict[str, Any] | None:
         "time": stiffness.time,
         "motion": to_json_number(stiffness.motion_rate),
         "share": stiffness.share,
+    }
+
+
+def to_steps_block(stiffness: StiffnessResults) -> dict[str, Any]:
+    """Return the limits of the steps by method as a JSON block."""
+    return {
+        limits.method: {"stability": to_json_number(limits.stability), "accuracy": to_json_number(limits.accuracy)}
+        for limits in stiffness.steps
     }

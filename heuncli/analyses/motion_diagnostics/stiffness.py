@@ -25,10 +25,16 @@ from heuncli.multibody.response import jacobian, tangent
 from heuncli.results.results import Array
 from heuncli.scene.shapes.rotations import quaternion_product
 
+EXPLICIT_METHODS = ("RK4", "DOPRI5", "DOP853")
+MAX_INSTANTS = 60  # instants at which eigenvalues are computed
+MAX_STATE_SIZE = 600  # largest size of the state for which the matrix is formed
+WINDOW_COUNT = 100  # of the run, over which the speeds change
+NO_SLOPE_REASON = "a force law has no derivative there (such as sqrt at 0): no tangent matrix exists"
 RAY = np.arange(0.005, 40.0, 0.005)  # |z| along a ray, beyond the stability boundary of any method with few stages
-MAX_AMPLIFICATION = (
-    1.01  # of |R| per step: more than rounding of R, and enough for the error estimate to notice after some steps
-)
+# of |R| per step: more than rounding of R, and enough for the error estimate to notice after some steps
+MAX_AMPLIFICATION = 1.01
+MAX_EXPONENT = 700.0  # e to this power is still a number
+TINY = 1e-300  # smallest divisor
 
 
 def compute_eigenvalues(evaluator: Evaluator, t: float, state: Array, holding: Array) -> Array | None:
@@ -45,11 +51,8 @@ def compute_eigenvalues(evaluator: Evaluator, t: float, state: Array, holding: A
     workspace.hold(layout.closed_contacts(holding).tolist())
     recovered = evaluator.evaluate(np.array([t]), state[None], holding=holding)
     projected_state = recovered.states[0]
-    A = np.asarray(
-        convert_to_disturbances(
-            scale, projected_state, tangent(workspace, t, projected_state) @ make_state_matrix(scale, projected_state)
-        )
-    )
+    slopes = tangent(workspace, t, projected_state) @ make_state_matrix(scale, projected_state)
+    A = np.asarray(convert_to_disturbances(scale, projected_state, slopes))
     if layout.rows:
         T, S = find_admitted_motions(evaluator, scale, recovered)
         f = T.shape[1]
@@ -86,7 +89,7 @@ def make_state_matrix(scale: DisturbanceScale, state: Array) -> Array:
 
 
 def convert_to_disturbances(scale: DisturbanceScale, state: Array, columns: Array) -> Array:
-    """Apply L to columns (n_state, k): return scaled disturbances (2 n, k)."""
+    """Convert small changes of a state, columns (n_state, k), to scaled disturbances (2 n, k)."""
     n, coordinates = scale.n, scale.coordinates
     disturbances = np.zeros((2 * n, columns.shape[1]))
     disturbances[coordinates.numbers] = columns[scale.q_at]
@@ -122,7 +125,7 @@ def find_admitted_motions(evaluator: Evaluator, scale: DisturbanceScale, recover
 
 
 def stability_polynomial(method: Method) -> Array:
-    """Return the coefficients of R(z), ascending."""
+    """Return the coefficients of R(z), ascending: 1 + z b·1 + z² b·A 1 + ... of an explicit method."""
     s = len(method.stages) + 1
     A, b = np.zeros((s, s)), np.zeros(s)
     for i, row in enumerate(method.stages):
@@ -141,7 +144,7 @@ def find_stable_distance(method: Method, direction: complex) -> float:
     """Return how far |z| may go along a direction of the complex plane; infinite if there is no limit."""
     z = RAY * direction
     R = np.abs(np.polynomial.polynomial.polyval(z, stability_polynomial(method)))
-    is_unstable = R > MAX_AMPLIFICATION * np.maximum(1.0, np.exp(np.minimum(z.real, 700.0)))
+    is_unstable = R > MAX_AMPLIFICATION * np.maximum(1.0, np.exp(np.minimum(z.real, MAX_EXPONENT)))
     return float(RAY[np.argmax(is_unstable)]) if is_unstable.any() else math.inf
 
 
@@ -166,14 +169,7 @@ def compute_motion_rate(scale: DisturbanceScale, times: Array, states: Array) ->
     rates = states[:, scale.coordinates.rates] * scale.coordinates.weights
     largest = float(np.sqrt(np.sum(rates**2, axis=1)).max(initial=0.0))
     differences = np.sqrt(np.sum(np.diff(rates, axis=0) ** 2, axis=1))
-    return np.asarray(differences / np.maximum(np.diff(times), 1e-300) / max(largest, 1e-300))
-
-
-EXPLICIT = ("RK4", "DOPRI5", "DOP853")
-MAX_INSTANTS = 60  # instants at which eigenvalues are computed
-MAX_STATE_SIZE = 600  # largest size of the state for which the matrix is formed
-WINDOW_COUNT = 100  # of the run, over which the speeds change
-NO_SLOPE_REASON = "a force law has no derivative there (such as sqrt at 0): no tangent matrix exists"
+    return np.asarray(differences / np.maximum(np.diff(times), TINY) / max(largest, TINY))
 
 
 def find_stiffness(motion: MotionSearch) -> tuple[StiffnessResults | None, str]:
@@ -221,7 +217,7 @@ def make_results(times: Array, values: list[Array], rate: float, local: float) -
             find_stable_step(method, values[worst]),
             compute_accurate_step(method.order, local, rate),
         )
-        for name in EXPLICIT
+        for name in EXPLICIT_METHODS
         if find_method(name) is not None
         for method in [load_method_by_name(name)]
     ]

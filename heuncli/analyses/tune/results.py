@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from heuncli.analyses.variants.measures import Comparison, Reason, VariantResult
+from heuncli.analyses.variants.conditions import Comparison
+from heuncli.analyses.variants.measures import Reason, VariantResult
 from heuncli.analyses.variants.parameters import DesignVariable
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
@@ -82,8 +83,8 @@ class ToleranceMove(NamedTuple):
     """How far a variable may move to one side before the goal is worse by some amount.
 
     distance: in the variable's unit
-    limit: what ends it, `worse`, `bound`, `jump`, the measure of a constraint or a code; or `less` and `more`, if the
-    true distance is smaller or larger
+    limit: what ends the move: `worse`, `bound`, `jump`, the measure of a constraint, or the code of a failure; `less`
+    and `more` say that the true distance is smaller or larger
     jumps: the measure of the goal or a constraint that jumps there, in the words of the task; empty if none does
     """
 
@@ -93,10 +94,13 @@ class ToleranceMove(NamedTuple):
 
 
 class ToleranceRange(NamedTuple):
-    """How far one variable may move, down and up: until the goal is worse by the floor, and by a hundredth of it."""
+    """How far one variable may move, down and up: until the goal is worse by the floor, and by a hundredth of itself.
 
-    of_floor: tuple[ToleranceMove | None, ToleranceMove | None] = (None, None)
-    of_hundredth: tuple[ToleranceMove | None, ToleranceMove | None] = (None, None)
+    None where no evaluation was left
+    """
+
+    floor_moves: tuple[ToleranceMove | None, ToleranceMove | None] = (None, None)
+    hundredth_moves: tuple[ToleranceMove | None, ToleranceMove | None] = (None, None)
 
 
 @record
@@ -106,10 +110,13 @@ class TuneResults:
     spec_outcome: the scene with its own values
     best: the best variant that satisfies all constraints, or, if not `is_feasible`, the one with the least violation;
     None if nothing was solved
-    gain: improvement of the goal by the last two restarts; floor: smallest improvement searched for
+    ending: why the search ended
+    gain: improvement of the goal by the last two restarts, None if it did not converge
+    floor: smallest improvement searched for
     tolerance_ranges: of each variable, empty if no evaluation was left
     active_constraints: which constraints limit the goal
     scales: scale of each constraint's margin over the box
+    failures: number of unsolved variants by code
     """
 
     task: TuneTask

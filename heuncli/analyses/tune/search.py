@@ -19,10 +19,13 @@ from heuncli.analyses.tune.results import Trial
 from heuncli.analyses.tune.trials import Trials
 from heuncli.results.results import Array
 
-FIRST_STEP, MAX_STEP, MIN_STEP = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box
-MIN_STEP_RATIO = 0.1  # of the step before, at least; otherwise twice the distance that the last run moved
-FINAL_STEP_FACTOR = 0.01  # of the root of the floor: COBYLA's last step
-NOISE_FACTOR = 3.0  # of the floor: the least such step
+# phases of the search, as the history names them
+OVERVIEW_PHASE, DESCENT_PHASE, MOVES_PHASE, ELSEWHERE_PHASE = "overview", "descent", "moves", "elsewhere"
+FIRST_STEP, MAX_STEP, MIN_STEP = 0.1, 0.1, 1e-4  # steps that a method begins with, relative to the width of the box
+DISTANCE_FACTOR = 2.0  # step of the next run, relative to the distance that the last run moved
+MIN_STEP_RATIO = 0.1  # smallest ratio of a run's first step to that of the run before
+FINAL_STEP_FACTOR = 0.01  # COBYLA's last step, relative to the root of the floor
+NOISE_FACTOR = 3.0  # smallest such step, relative to the floor
 SIMPLEX_TOLERANCE = 1e-3  # distance of the simplex's corners when it ends; their values differ by less than the floor
 COBYLA_TRIALS, SIMPLEX_TRIALS = 30, 40  # most evaluations of one run, per variable plus one
 FIRST_WEIGHT, WEIGHT_FACTOR = 3.0, 4.0  # weight of violations: at first; the factor by which it rises while they last
@@ -38,7 +41,7 @@ def descend(trials: Trials) -> float | None:
 
     Returns the improvement of f by the last runs, or None if the descent did not converge. Impure: tries variants.
     """
-    trials.phase = "descent"
+    trials.phase = DESCENT_PHASE
     weight, step = FIRST_WEIGHT, FIRST_STEP
     gains: list[float] = []
     stalled_runs = STALLED_RUNS_FEW if len(trials.task.variables) <= FEW_VARIABLES else STALLED_RUNS_MANY
@@ -55,7 +58,7 @@ def descend(trials: Trials) -> float | None:
         assert end is not None
         gains.append(trials.compute_merit(start, merit_weight) - trials.compute_merit(end, merit_weight))
         distance = float(np.abs(np.subtract(end.place, start.place)).max())
-        step = min(MAX_STEP, max(2.0 * distance, MIN_STEP_RATIO * step, MIN_STEP))
+        step = min(MAX_STEP, max(DISTANCE_FACTOR * distance, MIN_STEP_RATIO * step, MIN_STEP))
         if merit_weight is not None and trials.compute_violation(end) > MAX_VIOLATION:
             weight *= WEIGHT_FACTOR
         elif (
@@ -69,7 +72,7 @@ def descend(trials: Trials) -> float | None:
 
 def descend_from(trials: Trials, start: Trial) -> None:
     """Run each method once from a variant that is not the best. Impure: tries variants."""
-    trials.phase = "elsewhere"
+    trials.phase = ELSEWHERE_PHASE
     weight = FIRST_WEIGHT if trials.has_feasible else None
     trial_count = len(trials.history)
     run_cobyla(trials, start, FIRST_STEP, weight)
@@ -86,7 +89,11 @@ def find_best(trials: Trials, weight: float | None, first: int = 0) -> Trial | N
 
 
 def run_cobyla(trials: Trials, start: Trial, step: float, weight: float | None) -> None:
-    """Run COBYLA from a variant; step: the first, relative to the box. Impure: tries variants."""
+    """Run COBYLA from a variant. Impure: tries variants.
+
+    step: the first, relative to the box
+    weight: of violations in the merit; None: search a feasible variant only, whatever its goal
+    """
     from scipy.optimize import NonlinearConstraint, minimize
 
     worst_goal = trials.find_worst_value(trials.compute_scaled_goal)
@@ -123,8 +130,10 @@ def compute_last_step(floor: float) -> float:
 
 
 def run_simplex(trials: Trials, start: Trial, step: float, weight: float | None, is_mirrored: bool) -> None:
-    """Run Nelder-Mead from a variant.
+    """Run Nelder-Mead from a variant. Impure: tries variants.
 
+    step: distance of the first corners, relative to the box
+    weight: of violations in the merit; None: search a feasible variant only, whatever its goal
     is_mirrored: the first simplex extends to the opposite sides; it may collapse along a kink, and does so less from
     there
     """
@@ -156,10 +165,10 @@ def make_simplex(place: Array, step: float) -> Array:
     return corners
 
 
-OVERVIEW_PHASE = "overview"
-EVALUATION_SHARE = 0.4  # of all evaluations
-MEMBERS_PER_VARIABLE, MIN_MEMBERS = 4, 8  # members of a generation per variable plus one; at least
-MUTATION, RECOMBINATION = (0.4, 0.9), 0.8  # mutation: factors of the difference of others; share of changed variables
+EVALUATION_SHARE = 0.4  # share of all evaluations that the overview may use
+MEMBERS_PER_VARIABLE, MIN_MEMBERS = 4, 8  # members of a generation per variable plus one; and the smallest number
+FEWEST_PLACES = 5  # members that SciPy's differential evolution needs
+MUTATION, RECOMBINATION = (0.4, 0.9), 0.8  # factors of the difference of two others; share of changed variables
 CONVERGENCE = 1e-3  # spread of the ranks below which the descent takes over
 
 
@@ -198,7 +207,7 @@ def make_first_generation(trials: Trials) -> Array:
     n = len(task.variables)
     members = max(MIN_MEMBERS, MEMBERS_PER_VARIABLE * (n + 1))
     sobol_points = qmc.Sobol(n, seed=np.random.default_rng(task.seed)).random_base2(math.ceil(math.log2(members)))
-    places: Array = sobol_points[: max(min(members, task.max_variants), 5)]
+    places: Array = sobol_points[: max(min(members, task.max_variants), FEWEST_PLACES)]
     spec_places = [variable.spec_place for variable in task.variables]
     if all(place is not None for place in spec_places):
         places[0] = np.array(spec_places, dtype=float)

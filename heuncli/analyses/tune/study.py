@@ -13,24 +13,26 @@ import numpy as np
 
 from heuncli.analyses.sweep_rows import is_jump
 from heuncli.analyses.tune.results import Ending, ToleranceMove, ToleranceRange, Trial, TuneResults
-from heuncli.analyses.tune.search import OVERVIEW_PHASE, descend, descend_from, search_globally
+from heuncli.analyses.tune.search import MOVES_PHASE, OVERVIEW_PHASE, descend, descend_from, search_globally
 from heuncli.analyses.tune.trials import Trials
 from heuncli.analyses.variants.measures import VariantResult
 
-HUNDREDTH = 0.01
-FIRST_DISTANCE = 0.01  # of the width of the box
-MIN_DISTANCE = 1e-8  # of the width, as a distance: ten of the digits in which values are shown
-MIN_SHARE = 0.8  # of the amount: a distance that reaches this is accepted
+HUNDREDTH = 0.01  # relative worsening of the goal up to which variables may move
+FIRST_DISTANCE = 0.01  # first distance that is tried, relative to the width of the box
+MIN_DISTANCE = 1e-8  # smallest one: ten times the last digit in which values are shown
+MIN_SHARE = 0.8  # share of the amount: a distance at which the goal is worse by this is accepted
+AIMED_SHARE = 0.9  # share of the amount at which the next distance aims
+MIN_FACTOR = 1.02  # smallest ratio of the next distance to those that bracket it
 POWER_RANGE = (1.0, 2.0)  # least and largest power of the distance with which the goal rises
 MAX_TRIALS = 7  # evaluations for one amount to one side
 MAX_RATIO, MIN_POWER = 1e20, 0.1  # limits of the extrapolation
-# powers of the distance: a steeper rise is a jump within it, a flatter one a jump before it
-JUMP_POWER, STEEP_POWER = (6.0, 0.5)
+# If the goal rises by a higher power of the distance, it jumps within it; if by a lower one, it jumps before it:
+JUMP_POWER, STEEP_POWER = 6.0, 0.5
 
 
 def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, ...]:
     """Find the tolerance range of each variable. Impure: tries variants."""
-    trials.phase = "freedom"
+    trials.phase = MOVES_PHASE
     floor, hundredth = trials.floor * trials.scale, HUNDREDTH * abs(best.goal)
     if hundredth <= floor:
         hundredth = 0.0
@@ -43,21 +45,27 @@ def find_tolerance_ranges(trials: Trials, best: Trial) -> tuple[ToleranceRange, 
 
 
 class _SideSearch:
-    """Search along one variable to one side of the best: the distances tried, and by how much the goal was worse
-    there.
+    """Search along one variable to one side of the best: how far it may move before the goal is worse by an amount.
+
+    max_distance: up to the variable's bound; distances are relative to the width of the box
+    worsening: by how much the goal was worse, by distance; infinite where a constraint is violated or nothing is solved
+    reasons: of the infinite ones, the code of the failure or the measure of the constraint
+    tried: the solved variants, by distance
     """
 
     def __init__(self, trials: Trials, best: Trial, index: int, sign: float) -> None:
+        """index: of the variable; sign: 1 to move up, -1 down"""
         self.trials, self.best, self.index, self.sign = trials, best, index, sign
         place = best.place[index]
         self.max_distance = place if sign < 0.0 else 1.0 - place
-        self.worsening: dict[float, float] = {}  # by distance [of the box]; infinite if infeasible or unsolved
+        self.worsening: dict[float, float] = {}
         self.reasons: dict[float, str] = {}
-        self.tried: dict[float, Trial] = {0.0: best}  # solved ones
+        self.tried: dict[float, Trial] = {0.0: best}
 
     def find_move(self, amount: float) -> ToleranceMove | None:
-        """Return the distance at which the goal is worse by an amount; None if no evaluation is left, or the amount is
-        0.
+        """Find the distance at which the goal is worse by an amount; None if no evaluation is left, or the amount is 0.
+
+        Impure: tries variants.
         """
         if self.max_distance <= 0.0:
             return ToleranceMove(0.0, "bound")
@@ -83,11 +91,13 @@ class _SideSearch:
         return ToleranceMove(self._to_unit(low), "worse") if low else ToleranceMove(self._to_unit(high), "less")
 
     def _bracket(self, amount: float) -> tuple[float, float]:
-        """Return the longest distance at which the goal is not worse by the amount, and the shortest at which it is
-        (infinite: none).
+        """Return the longest distance at which the goal is not worse by the amount, and the shortest at which it is.
+
+        They are 0 and infinite where none is known.
         """
         high = min((s for s, increase in self.worsening.items() if increase > amount), default=math.inf)
-        return max((s for s, increase in self.worsening.items() if increase <= amount and s < high), default=0.0), high
+        low = max((s for s, increase in self.worsening.items() if increase <= amount and s < high), default=0.0)
+        return low, high
 
     def _choose_distance(self, low: float, high: float, amount: float) -> float:
         """Return the next distance to try."""
@@ -99,12 +109,12 @@ class _SideSearch:
             return min(low * ratio, self.max_distance)
         if low in rises and high in rises:
             power = math.log(rises[high] / rises[low]) / math.log(high / low)
-            guess = scale_step(low, 0.9 * amount / rises[low], power)
-            return guess if 1.02 * low < guess < high / 1.02 else math.sqrt(low * high)
+            guess = scale_step(low, AIMED_SHARE * amount / rises[low], power)
+            return guess if MIN_FACTOR * low < guess < high / MIN_FACTOR else math.sqrt(low * high)
         if low > 0.0:
             return math.sqrt(low * high)
         if high in rises:
-            return max(scale_step(high, 0.9 * amount / rises[high], self._estimate_power()), MIN_DISTANCE)
+            return max(scale_step(high, AIMED_SHARE * amount / rises[high], self._estimate_power()), MIN_DISTANCE)
         return max(0.1 * high, MIN_DISTANCE)
 
     def _estimate_power(self) -> float:
@@ -118,7 +128,7 @@ class _SideSearch:
         return min(max(power, POWER_RANGE[0]), POWER_RANGE[1])
 
     def _try_distance(self, s: float) -> bool:
-        """Try the variant at a distance; return False if no more may be tried."""
+        """Try the variant at a distance; return False if no more may be tried. Impure: tries a variant."""
         place = np.array(self.best.place)
         place[self.index] += self.sign * s
         trial = self.trials.try_place(place)
@@ -184,9 +194,9 @@ def scale_step(step: float, ratio: float, power: float) -> float:
     return step * math.pow(min(ratio, MAX_RATIO), 1.0 / max(power, MIN_POWER))
 
 
-MIN_SEPARATION = 0.2  # of the box: distance at which another minimum may lie
+MIN_SEPARATION = 0.2  # distance at which another minimum may lie, relative to the width of the box
 MAX_DESCENTS = 4  # descents at most
-ACTIVE_MARGIN = 1e-5  # scales: a constraint with a smaller margin is active
+ACTIVE_MARGIN = 1e-5  # margin up to which a constraint is active, in scales
 
 
 class Tuning:

@@ -1,6 +1,8 @@
 """Try variants, each once, and compute the quantities by which they compare.
+
     goal     f = ± goal / scale            to be least
     excess   c_i = excess_i / scale_i      0 or less where constraint i is met
+
 The scales are those of a first sample over the whole box: half of it lies within one scale of the best. Impure: stores
 the trials.
 """
@@ -14,20 +16,27 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from heuncli.analyses.tune.results import Trial, TuneTask, make_values
-from heuncli.analyses.variants.evaluation import Values
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.results.results import Array
 from heuncli.scene.file_format.quantity import NumberWithUnit
 
 SolveVariants = Callable[[Sequence[Values]], Iterable[VariantResult]]
 ReportProgress = Callable[[int, int, str], None]
 PlaceKey = tuple[NumberWithUnit, ...]  # the values at a place: places that round to the same ones are one variant
-SNAP_DISTANCE = 1e-9  # of the width of a variable's interval: closer to a bound means at it
-UNSOLVED_PENALTY = 1.0  # scales above the worst solved value: the value of unsolved variants for the optimiser
+SNAP_DISTANCE = 1e-9  # distance up to which a place counts as at its bound, relative to the width of the box
+UNSOLVED_PENALTY = 1.0  # value of unsolved variants for the optimiser, in scales above the worst solved one
+UNSOLVED_RANK, INFEASIBLE_RANK = 4.0, 2.0  # ranks of unsolved variants; of those that violate constraints, at least
 
 
 class Trials:
-    """Tries variants, up to the permitted number; repeated variants are not solved again."""
+    """Tries variants, up to the permitted number; repeated variants are not solved again.
+
+    history: the trials, in their order
+    phase: of the search, noted in each trial
+    time_is_up: whether the time limit ended a trial
+    scale: of the goal; scales: of the constraints
+    """
 
     def __init__(self, task: TuneTask, solve_variants: SolveVariants, report_progress: ReportProgress) -> None:
         self.task, self.solve_variants, self.report_progress = task, solve_variants, report_progress
@@ -119,11 +128,11 @@ class Trials:
         median_goal: value of f about which differences are resolved best
         """
         if trial is None or not trial.is_solved:
-            return 4.0
+            return UNSOLVED_RANK
         if self.satisfies_all(trial):
             return math.atan(self.compute_scaled_goal(trial) - median_goal) / math.pi
         violation = self.compute_violation(trial)
-        return 2.0 + violation / (1.0 + violation)
+        return INFEASIBLE_RANK + violation / (1.0 + violation)
 
     def compute_merit(self, trial: Trial, weight: float | None) -> float:
         """Return f plus the weighted violation of a solved variant; without a weight the violation alone."""

@@ -12,14 +12,13 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from heuncli.analyses.variants.measures import MeasureValue, VariantResult, make_failed_result
-from heuncli.analyses.variants.parameters import CASE, DesignVariable, format_value
+from heuncli.analyses.variants.parameters import CASE, DesignVariable, Values, format_value
 from heuncli.analyses.variants.solver import VariantSolver
 from heuncli.base.errors import HeunError, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results_schema import EVENTS, IMPULSES
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.named_files import NamedFile, PreloadedFiles
-from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.study.model.options import Options
 from heuncli.study.queries.measure import MeasureRequest, NotInThisRun, Peak, find_exceeded_horizon, measure_value
 from heuncli.study.queries.measure_uncertainty import measure_uncertainty
@@ -29,7 +28,6 @@ EXTREME_REDUCERS = ("max", "min", "abs")
 SAMPLE_PLACES = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which its values are checked
 EVENT_BLOCKS = (IMPULSES, EVENTS)  # their number differs from run to run
 SPELLING_CODES = ("set-in-si",)  # warnings about how values are written: shown once for an axis, not for variants
-Values = Mapping[str, ParameterValue]  # of a variant: what is set in it, by name
 
 
 class Recipe(NamedTuple):
@@ -86,8 +84,9 @@ class VariantEvaluator:
         return variants.load(overrides)
 
     def load_samples(self, variable: DesignVariable) -> list[Spec]:
-        """Load the scenes at some places between the bounds of a variable, without those that are invalid. Raises
-        SpecError if all are.
+        """Load the scenes at some places between the bounds of a variable, without those that are invalid.
+
+        Raises SpecError if all are invalid.
         """
         specs: list[Spec] = []
         errors: list[SpecError] = []
@@ -131,7 +130,7 @@ class VariantEvaluator:
 
 
 def varies_cases(spec: Spec) -> bool:
-    """Whether `case` means the load case: a spec may have a parameter of that name."""
+    """Return whether `case` means the load case: a spec may have a parameter of that name."""
     return bool(spec.cases) and CASE not in spec.parameters
 
 
@@ -155,10 +154,9 @@ def measure_study(request: MeasureRequest, study: Study) -> MeasureValue:
 
 
 def is_near_left_out(peak: Peak, study: Study) -> bool:
-    """Whether an extreme is next to instants that its search left out because rounding decides them: it may be exceeded
-    there.
+    """Return whether an extreme is next to instants that its search left out, where it may be exceeded.
 
-    The search leaves these instants out together with the intervals to their neighbours.
+    The search leaves out instants at which rounding decides numbers, with the intervals to their neighbours.
     """
     if peak.time is None or not study.left_out:
         return False

@@ -20,8 +20,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from heuncli.analyses.variants.evaluation import Recipe, Values
-from heuncli.analyses.variants.parameters import CASE, format_value
+from heuncli.analyses.variants.evaluation import Recipe
+from heuncli.analyses.variants.parameters import CASE, Values, format_value
 from heuncli.base.errors import Finding, SourceLocation
 from heuncli.base.method_rows import canonical_name
 from heuncli.base.named_tuples import NamedTuple

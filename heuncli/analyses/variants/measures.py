@@ -1,28 +1,28 @@
-"""The measures of a variant: each is a number with its instant and stated error, or a reason; compared with a value.
+"""The measures of a variant: each is a number with its instant and stated error, or the reason why there is none.
 
-A value is written as in a spec: with a unit of the measure's kind, in SI without one, or by parameters.
+`find`, `tune` and `sensitivity` ask for some variants again, so their results are cached by the values.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Literal
 
-from heuncli.analyses.variants.parameters import AxisError
-from heuncli.base.errors import Finding, HeunError
+from heuncli.analyses.variants.parameters import Values
+from heuncli.base.errors import HeunError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.tolerances import EPS
-from heuncli.base.units import parse_unit
-from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.quantity import Scope, parse_number_with_unit, read_number
+from heuncli.scene.file_format.quantity import ParameterValue
 from heuncli.study.quantities.digits import OPEN, UNKNOWN
 
 MissingWord = Literal["", "open", "unknown", "beyond", "absent"]
 TIME_LIMIT_CODE = "time-limit"  # the code of a variant that was not solved for lack of time
 WORKER_DIED = "worker-died"  # the code of a variant that ends the processes that solve it
-ROUNDING = 8.0 * EPS  # of a measure: rounding of sums of a run's last step, where the run states no larger error
+ROUNDING = 8.0 * EPS  # smallest relative error of a measure: its sums are rounded, whatever error the run states
+NUMBERS = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+NUMBER_LISTS = re.compile(r"#(?:(?:, | to )#)+(?: \.\.\.)?")
 
 
 class MeasureLabel(NamedTuple):
@@ -99,7 +99,7 @@ class VariantResult(NamedTuple):
         return bool(self.measures) and all(reading.value is not None for reading in self.measures)
 
     def get_measure(self, index: int) -> MeasureValue:
-        """Return a measure; of a variant that could not be solved one without a number."""
+        """Return a measure; it has no number if the variant could not be solved."""
         return self.measures[index] if self.measures else NO_VALUE
 
     def find_noisy_value(self, index: int, magnitude: float = 0.0) -> NoisyValue:
@@ -133,114 +133,50 @@ def make_failed_result(error: HeunError) -> VariantResult:
     return VariantResult(code=problem.code, reason=problem.message)
 
 
-Relation = Literal["=", "<", ">", "<=", ">="]
-SPELLINGS: dict[str, Relation] = {
-    "=": "=", "==": "=", "<": "<", ">": ">", "<=": "<=", ">=": ">=", "≤": "<=", "≥": ">=", "=<": "<=", "=>": ">=",
-}  # fmt: skip
-PARTS = re.compile(r"([^<>=≤≥]*)([<>=≤≥]+)([^<>=≤≥]*)\Z", re.DOTALL)
+# results of variants by their values, sorted by name
+KnownResults = dict[tuple[tuple[str, ParameterValue], ...], VariantResult]
 
 
-SIDES: dict[Relation, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
+class CachedEvaluator:
+    """The results of variants by their values: no variant is solved twice."""
 
-
-class WrittenCondition(NamedTuple):
-    """A condition as it is written: the words of a measure, the relation, and the value."""
-
-    measure: str
-    relation: Relation
-    value: str
-
-    @property
-    def text(self) -> str:
-        """The whole condition."""
-        return f"{self.measure} {self.relation} {self.value}"
-
-
-class Comparison(NamedTuple):
-    """A condition on a measure, in SI.
-
-    measure: its words
-    unit: its SI unit; empty if it has none
-    given_unit: the unit in which the value was given; empty if it has none, or is an expression
-    """
-
-    measure: str
-    relation: Relation
-    value: float
-    unit: str
-    given_unit: str = ""
+    def __init__(
+        self, answer: Callable[[Values], VariantResult], report_run: Callable[[int], None] = lambda runs: None
+    ) -> None:
+        """answer: evaluates a variant
+        report_run: called before a variant is solved and after others are added, with the number of those known
+        """
+        self._answer, self._report_run = answer, report_run
+        self.known: KnownResults = {}
 
     @property
-    def side(self) -> int:
-        """The side of the value where an inequality is met: 1 above, -1 below; 0 of an equation."""
-        return SIDES[self.relation]
+    def runs(self) -> int:
+        """How many variants were evaluated, including those that could not be solved."""
+        return len(self.known)
 
-    @property
-    def includes_value(self) -> bool:
-        """Whether the value itself meets the condition."""
-        return "=" in self.relation
+    def evaluate(self, values: Values) -> VariantResult:
+        """Return the result of a variant."""
+        key = tuple(sorted(values.items()))
+        if key not in self.known:
+            self._report_run(self.runs)
+            self.known[key] = self._answer(values)
+        return self.known[key]
 
-    def compute_excess(self, number: float) -> float:
-        """Return by how much an inequality is violated; negative: the margin."""
-        return number - self.value if self.side < 0 else self.value - number
+    def add_known(self, results: KnownResults) -> None:
+        """Add results of variants that were evaluated elsewhere."""
+        self.known.update(results)
+        self._report_run(self.runs)
 
-    def is_met(self, number: float) -> bool:
-        """Return whether a number meets an inequality."""
-        excess = self.compute_excess(number)
-        return excess < 0.0 or (excess == 0.0 and self.includes_value)
-
-
-def parse_condition(text: str, form: str, hint: str) -> WrittenCondition:
-    """Parse a text such as `max joints.main.force < 10 kN`; form, hint: the message where it is not understood.
-
-    Raises AxisError.
-    """
-    found = PARTS.match(text)
-    relation = SPELLINGS.get(found[2]) if found is not None else None
-    if found is None or relation is None:
-        raise AxisError(text, form, hint)
-    if not found[1].strip() or not found[3].strip():
-        what = "no measure before" if not found[1].strip() else "no value after"
-        raise AxisError(text, f"{form}; there is {what} the '{found[2]}'", hint)
-    if parse_number_with_unit(found[1]) is not None:
-        raise AxisError(text, "put the measure first", hint)
-    return WrittenCondition(found[1].strip(), relation, found[3].strip())
+    def count_warnings(self) -> dict[str, int]:
+        """Return the first warning of each kind, and how many variants gave one."""
+        warnings_by_kind: dict[str, tuple[str, int]] = {}
+        for result in self.known.values():
+            for kind, text in {strip_numbers(text): text for text in result.warnings}.items():
+                first, so_far = warnings_by_kind.get(kind, (text, 0))
+                warnings_by_kind[kind] = first, so_far + 1
+        return dict(warnings_by_kind.values())
 
 
-def resolve_condition(condition: WrittenCondition, unit: str, specs: Sequence[Spec], hint: str) -> Comparison:
-    """Return a condition in SI, whose value must be the same in all specs.
-
-    unit: the measure's own, empty where it is unknown
-
-    Raises AxisError.
-    """
-    number = parse_number_with_unit(condition.value)
-    value = find_si_value(condition, unit, specs, hint)
-    return Comparison(condition.measure, condition.relation, value, unit, number.unit if number is not None else "")
-
-
-def find_si_value(condition: WrittenCondition, unit: str, specs: Sequence[Spec], hint: str) -> float:
-    """Return the value of a condition in SI, the same in all specs; unit: the measure's own, empty where it is unknown.
-
-    Raises AxisError.
-    """
-    dimension = parse_unit(unit)[1] if unit else None
-    values: set[float] = set()
-    for spec in specs:
-        try:
-            values.add(read_number(_parse_plain(condition.value), dimension, Scope(spec.parameters)))
-        except Finding as finding:
-            raise AxisError(condition.text, finding.message, finding.hint or hint, finding.code) from None
-    if len(values) > 1:
-        raise AxisError(
-            condition.text, f"the value '{condition.value}' depends on what is varied", "give it as a number"
-        )
-    return values.pop()
-
-
-def _parse_plain(text: str) -> float | str:
-    """Return a number if the text is one, because in a spec a plain number is no text."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
+def strip_numbers(text: str) -> str:
+    """Return a warning with its numbers replaced by `#`: they differ from variant to variant."""
+    return NUMBER_LISTS.sub("#", NUMBERS.sub("#", text))

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, get_args
 
 import numpy as np
@@ -29,7 +29,8 @@ from heuncli.scene.file_format.source import parse_plain_scalar
 
 Law = Literal["normal", "uniform", "lhs", "sobol"]
 CASE = "case"  # the name by which an axis varies the load case
-RESOLUTION_DIGITS = 9  # of a design variable, relative to the width of its interval
+RESOLUTION_DIGITS = 9  # digits of a design variable, relative to the width of its interval
+Values = Mapping[str, ParameterValue]  # what is set in a variant, by name
 
 
 class ParameterAxis(NamedTuple):
@@ -101,7 +102,7 @@ class RandomVariable(NamedTuple):
 
 
 def make_axis(name: str, texts: Sequence[str]) -> ParameterAxis:
-    """Make an axis of values in the form of `--set`: of numbers, if all are numbers of one unit."""
+    """Make an axis of values in the form of `--set`: of numbers if all have one unit, or else of the texts."""
     numbers: list[float] = []
     unit: str | None = None
     for text in texts:
@@ -133,7 +134,7 @@ def _parse_plain_number(text: str, value: float) -> float:
     return scalar if type(scalar) is int else value
 
 
-MAX_VALUES = 10_000_000  # of one axis, which are stored as numbers
+MAX_VALUES = 10_000_000  # values of one axis: it holds them all in memory
 
 EVEN_AXIS = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
 RANDOM_AXIS = re.compile(rf"\s*({'|'.join(get_args(Law))})\s*\((.*)\)([^(),]*)\Z", re.DOTALL)

@@ -23,12 +23,13 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
 from heuncli.analyses.variants.parameters import HINT, AxisError, ParameterAxis, RandomVariable
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.results.results import Array
+from heuncli.results.results import Array, Indices
 from heuncli.scene.file_format.quantity import NumberWithUnit, ParameterValue
 
 MAX_VARIANTS = 10_000_000
@@ -39,7 +40,7 @@ class Draws(NamedTuple):
 
     seed: with which the same draws are repeated
     each: number of consecutive variants of one sample
-    repetitions: the k-th sample belongs to the k-th of so many plans, taken in turn, each drawn by itself (`Draws`)
+    repetitions: number of plans that are drawn independently; the samples belong to them in turn
     """
 
     laws: tuple[RandomVariable, ...]
@@ -47,6 +48,17 @@ class Draws(NamedTuple):
     seed: int
     each: int = 1
     repetitions: int = 1
+
+
+class PlanPlaces(NamedTuple):
+    """The places that variants have in a plan: for one variant numbers, for several (n,) each.
+
+    row: of the table; axes: which value each axis has; draw: row of the draws
+    """
+
+    row: Any
+    axes: tuple[Any, ...]
+    draw: Any
 
 
 class Plan(NamedTuple):
@@ -83,25 +95,51 @@ class Plan(NamedTuple):
             return rows * (len(self.axes[0].values) if self.axes else 1)
         return rows * math.prod(len(axis.values) for axis in self.axes)
 
-    def find_values(self, number: int) -> dict[str, ParameterValue]:
-        """Return the values of a variant."""
-        drawn_values: dict[str, ParameterValue] = {}
+    @property
+    def course_length(self) -> int:
+        """How many successive variants differ only in the draws, or else in the last axis (all if they vary
+        together).
+        """
         if self.draws is not None:
-            number, row = divmod(number, len(self.draws.values))
-            drawn = zip(self.draws.laws, self.draws.values[row].tolist(), strict=True)
-            drawn_values = {law.name: NumberWithUnit(value, law.unit) for law, value in drawn}
-        axis_values: dict[str, ParameterValue] = {}
+            return len(self.draws.values)
+        return self.size if self.together or not self.axes else len(self.axes[-1].values)
+
+    @property
+    def course_axis(self) -> ParameterAxis | None:
+        """The last axis, where it alone changes fastest; None otherwise."""
+        varies_alone = self.draws is None and (not self.together or len(self.axes) == 1)
+        return self.axes[-1] if self.axes and varies_alone else None
+
+    def find_places(self, number: Any) -> PlanPlaces:
+        """Split the number of a variant, or (n,) of several: the draw changes fastest, the row of the table slowest."""
+        number, draw = divmod(number, len(self.draws.values)) if self.draws is not None else (number, None)
         if self.together and self.axes:
             number, place = divmod(number, len(self.axes[0].values))
-            axis_values = {axis.name: axis.find_value(place) for axis in self.axes}
-        for axis in reversed(self.axes) if not self.together else ():
+            return PlanPlaces(number, (place,) * len(self.axes), draw)
+        places = []
+        for axis in reversed(self.axes):
             number, place = divmod(number, len(axis.values))
-            axis_values[axis.name] = axis.find_value(place)
-        row_values = {axis.name: axis.find_value(number) for axis in self.columns}
-        return row_values | {axis.name: axis_values[axis.name] for axis in self.axes} | drawn_values
+            places.append(place)
+        return PlanPlaces(number, tuple(reversed(places)), draw)
+
+    def find_axis_places(self, axis: ParameterAxis, numbers: Indices) -> Indices:
+        """Return which value of an axis, or of a column, each of some variants has, (n,)."""
+        places = self.find_places(numbers)
+        found: Indices = places.axes[self.axes.index(axis)] if axis in self.axes else places.row
+        return found
+
+    def find_values(self, number: int) -> dict[str, ParameterValue]:
+        """Return the values of a variant."""
+        row, places, draw = self.find_places(number)
+        values = {column.name: column.find_value(row) for column in self.columns}
+        values |= {axis.name: axis.find_value(place) for axis, place in zip(self.axes, places, strict=True)}
+        if self.draws is not None:
+            drawn = zip(self.draws.laws, self.draws.values[draw].tolist(), strict=True)
+            values |= {law.name: NumberWithUnit(value, law.unit) for law, value in drawn}
+        return values
 
     def iter_numbers(self, shard: tuple[int, int] = (1, 1)) -> Iterator[int]:
-        """Iterate over the numbers of the variants; of a shard k of n: every n-th one, from the k-th on."""
+        """Iterate over the numbers of the variants; shard (k, n): over every n-th one, from the k-th on."""
         k, n = shard
         return iter(range(k - 1, self.size, n))
 
@@ -131,10 +169,10 @@ def make_axes_plan(
     return plan
 
 
-BITS = 52  # of a random number: (k + 1/2) / 2^52 is neither 0 nor 1, and exact
-JOINT_LAWS = ("lhs", "sobol")
-REPETITIONS = 16  # of a plan for Sobol indices
-MIN_SHARE = 0.5 * 2.0**-BITS  # of them
+BITS = 52  # bits of a random number: (k + 1/2) / 2^52 is neither 0 nor 1, and exact
+JOINT_LAWS = ("lhs", "sobol")  # all parameters of them are drawn together
+REPETITIONS = 16  # independent plans for Sobol indices
+MIN_SHARE = 0.5 * 2.0**-BITS  # least random number
 SAMPLES_HINT = "for example --samples 1000"
 
 
@@ -157,7 +195,10 @@ def make_draws(laws: Sequence[RandomVariable], samples: int, seed: int = 0, *, i
 
 
 def make_saltelli_plan(A: Array, B: Array) -> Array:
-    """Make Saltelli's plan: of each sample A, B, and A with its i-th parameter from B, (samples (d + 2), d)."""
+    """Make Saltelli's plan, (samples (d + 2), d).
+
+    Each sample gives d + 2 rows: A, B, and for each parameter A with that parameter from B.
+    """
     samples, d = A.shape
     rows = np.repeat(A[:, None, :], d + 2, axis=1)
     rows[:, 1] = B

@@ -15,8 +15,12 @@ SINGULAR = Reason(
 )
 
 
+BELOW, AT_VALUE, ABOVE = -1, 0, 1  # the side of the value on which a sample lies; the numbers are signs of its gap
+LEFT, RIGHT = -1, 1  # the direction from a sample to others; the numbers are steps of its index
+
+
 class Sample(NamedTuple):
-    """What is known at a place.
+    """What is known of a measure at a place.
 
     gap: how far the measure lies above the value, None where there is none
     error: of the gap
@@ -34,10 +38,10 @@ class Sample(NamedTuple):
 
     @property
     def side(self) -> int | None:
-        """1 above the value, -1 below it, 0 not distinguishable from it; None where there is no measure."""
+        """ABOVE or BELOW the value, AT_VALUE if not distinguishable from it; None where there is no measure."""
         if self.gap is None:
             return None
-        return 0 if abs(self.gap) <= self.error else 1 if self.gap > 0.0 else -1
+        return AT_VALUE if abs(self.gap) <= self.error else ABOVE if self.gap > 0.0 else BELOW
 
     @property
     def gap_or_zero(self) -> float:
@@ -73,13 +77,13 @@ def restore(sample: Sample) -> Sample:
     )
 
 
-def find_intersection(first: Sample, one: Sample, other: Sample, last: Sample) -> float:
+def find_intersection(first: Sample, left: Sample, right: Sample, last: Sample) -> float:
     """Return where the line through two samples meets that through two others, clipped to the middle interval."""
-    before, after = ((b.gap_or_zero - a.gap_or_zero) / (b.x - a.x) for a, b in ((first, one), (other, last)))
+    before, after = ((b.gap_or_zero - a.gap_or_zero) / (b.x - a.x) for a, b in ((first, left), (right, last)))
     if before == after:
-        return 0.5 * (one.x + other.x)
-    x = (other.gap_or_zero - one.gap_or_zero + before * one.x - after * other.x) / (before - after)
-    return min(max(x, one.x), other.x)
+        return 0.5 * (left.x + right.x)
+    x = (right.gap_or_zero - left.gap_or_zero + before * left.x - after * right.x) / (before - after)
+    return min(max(x, left.x), right.x)
 
 
 def interpolate_corner(left_samples: list[Sample], right_samples: list[Sample], x: Array, smooth: Array) -> Array:

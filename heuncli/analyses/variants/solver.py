@@ -15,6 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from heuncli.base.errors import HeunError
+from heuncli.base.process import keep_freed_memory
 from heuncli.base.records import replace
 from heuncli.multibody.stage_cache import RecordingStages, ReusingStages
 from heuncli.scene.file_format.incremental_loader import SpecVariants
@@ -51,6 +52,7 @@ class VariantSolver:
 
         Raises SpecError.
         """
+        keep_freed_memory()
         self.options = options or Options()
         self._specs = SpecVariants(path, text, overrides, checking=False, case=case, files=files)
         if measures:

@@ -53,7 +53,7 @@ class SpecNumbers:
         self._spec = spec
 
     def find_number(self, name: str) -> SpecNumber:
-        """Return the number under a name; of an expression its value in SI. Raises AxisError."""
+        """Return the number under a name; an expression counts by its value in SI. Raises AxisError."""
         path = parse_path(name, self._data)
         entry = get_value(self._data, path)
         if entry is None:

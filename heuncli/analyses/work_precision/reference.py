@@ -3,153 +3,35 @@
 Both start from the same scene, the second from a start perturbed by rounding, so that the growth of rounding shows.
 Twice their difference bounds the reference's error. Where they diverge, in a chaotic motion, the chart compares runs up
 to where they still agree to half the digits: later differences show the growth, not the methods.
-
-Compare runs with a reference, at the instants up to which the reference is valid: points, reactions and sections.
-
-Reactions and sections are those of `accuracy.estimate` (study/solve/load_errors.py), relative to the reference's
-largest. Indeterminate components of joints are left out, and all sections if one of them is indeterminate.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from heuncli.analyses.work_precision.plan import TIME_LIMIT_TEXT, MotionProblem
+from heuncli.analyses.work_precision.reference_comparison import ReferenceComparison, make_comparison
 from heuncli.analyses.work_precision.results import KINDS, Errors, Reference
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.base.method_rows import DEFAULT, find_method
-from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.reactions import JointLoads
-from heuncli.motion.integration.check.estimate import estimate_errors, evaluate_run, evaluate_together
-from heuncli.motion.integration.check.run_comparison import (
-    find_angle_difference,
-    find_point_distance,
-    is_between_impulses,
-    replace_nan_errors,
-)
+from heuncli.base.records import record
+from heuncli.motion.integration.check.estimate import estimate_errors
 from heuncli.motion.integration.check.runs import Runs
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED, load_method_by_name
 from heuncli.motion.integration.trajectory import Trajectory
-from heuncli.results.results import Array, Mask
-from heuncli.study.compose.blocks import make_blocks
-from heuncli.study.compose.recovery import recover
-from heuncli.study.model.selection import Selection
-from heuncli.study.model.setup import Setup
-from heuncli.study.solve.error_estimates import DIFFERENCE_ONLY, ESTIMATED, BalanceTerms, Weights
+from heuncli.results.results import Array
+from heuncli.study.solve.error_estimates import ESTIMATED
 from heuncli.study.solve.history import require_followed
-from heuncli.study.solve.load_errors import LoadErrors, Quantity
-
-LOAD_SELECTION = Selection(frozenset({"joints", "sections"}))
-# by joint: which components of its force and moment are always determinate
-DeterminateComponents = Mapping[str, tuple[Mask, Mask]]
-
-
-class DeterminateLoadErrors(LoadErrors):
-    """The differences of loads, without the indeterminate components of joints."""
-
-    def __init__(self, setup: Setup, certain: DeterminateComponents, weights: Weights) -> None:
-        super().__init__(setup, weights=weights)
-        self.determinate = certain
-
-    def add_values(
-        self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, more: Array | None = None
-    ) -> None:
-        """Use the reference's terms only: with those of a diverged run its own loads would count as rounding."""
-        super().add_values(name, values, rounding, np.repeat(terms[0::2], 2), more)
-
-    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Quantity], terms: BalanceTerms) -> None:
-        """Add the determinate components of the joints, and the couplings if nothing is indeterminate."""
-        selected = []
-        for load in joints:
-            force, moment = self.determinate[load.joint.name]
-            selected.append(replace(load, force=load.force * force, moment=load.moment * moment))
-        all_determinate = all(bool(np.all(whole)) for pair in self.determinate.values() for whole in pair)
-        super().add_joints(selected, coupled if all_determinate else (), terms)
-
-
-@record
-class ReferenceComparison:
-    """A reference solution and the runs compared with it.
-
-    runs: runs by the reference's method
-    times (n,): the instants that are compared
-    determinate: the components of joints that are compared
-    has_sections: whether there are sections and none is indeterminate
-    """
-
-    runs: Runs
-    setup: Setup
-    reference: Trajectory
-    times: Array
-    determinate: DeterminateComponents
-    has_sections: bool
-
-    def compute_differences(self, other: Trajectory, weights: Weights = DIFFERENCE_ONLY) -> Errors:
-        """Return the largest differences of another run from the reference, by kind; None where a kind cannot be
-        compared.
-        """
-        n = len(self.times)
-        states = (self.reference.states[:n], other.states[:n])
-        is_compared = ~is_between_impulses((self.reference, other), self.times)
-        kinds = DeterminateLoadErrors(self.setup, self.determinate, weights)
-        layout, places, angles, largest = self.setup.scene.layout, 0.0, 0.0, 1.0
-        with np.errstate(all="ignore"):  # a diverged run may have any values
-            for part, bodies_pair in evaluate_together(self.runs, self.reference, self.times, states):
-                distances = find_point_distance(self.runs.motion_points, bodies_pair.bodies, 2, layout.size)
-                turn_angles, angle = find_angle_difference(layout, bodies_pair, 2)
-                places, angles = max(places, _find_largest(distances)), max(angles, _find_largest(turn_angles))
-                largest = max(largest, float(angle.max(initial=1.0)))
-                mask = is_compared[part]
-                if mask.any():
-                    compared = bodies_pair if mask.all() else bodies_pair.select(np.repeat(mask, 2))
-                    kinds.add(compared, *np.ones((2, int(mask.sum())), dtype=bool))
-            return {"motion": max(places, angles / largest), **self.estimate_load_differences(kinds)}
-
-    def estimate_load_differences(self, kinds: LoadErrors) -> Errors:
-        """Return the collected differences of loads, relative to the largest."""
-        estimate = kinds.estimate()
-        reactions = estimate["reactions"] if any(f.any() or m.any() for f, m in self.determinate.values()) else None
-        return {"reactions": reactions, "sections": estimate.get("sections") if self.has_sections else None}
-
-
-def _find_largest(values: Array) -> float:
-    """Return the largest error; nan counts as unknown."""
-    return float(replace_nan_errors(values).max(initial=0.0))
-
-
-def make_comparison(runs: Runs, setup: Setup, reference: Trajectory, count: int) -> ReferenceComparison:
-    """Return the comparison of runs with a reference, at the first `count` of its instants."""
-    setup = replace(setup, selection=LOAD_SELECTION)
-    times, states = reference.times[:count], reference.states[:count]
-    result_blocks: dict[str, Any] = {}
-    if setup.scene.layout.rows:  # in a tree everything is determinate
-        recovered = evaluate_run(runs.runner, reference, times, states, runs.jumps)
-        result_blocks = make_blocks(recover(setup, recovered, False), LOAD_SELECTION.reports)
-    names = [joint.name for joint in setup.scene.mechanism.joints]
-    joints = {name: result_blocks.get("joints", {}).get(name) for name in names}
-    certain = {name: _find_determinate(block) for name, block in joints.items()}
-    sections = result_blocks.get("sections", {}).values()
-    is_indeterminate = any(np.isnan(block[key]).any() for block in sections for key in ("force", "moment"))
-    return ReferenceComparison(runs, setup, reference, times, certain, bool(setup.cuts) and not is_indeterminate)
-
-
-def _find_determinate(block: Mapping[str, Any] | None) -> tuple[Mask, Mask]:
-    """Return which components of a joint's force and moment are determinate at all instants."""
-    if block is None:
-        return np.ones(3, dtype=bool), np.ones(3, dtype=bool)
-    force, moment = (~np.isnan(block[key]).any(axis=0) for key in ("force", "moment"))
-    return force, moment
-
 
 # Pairs of methods, the first the reference; the second pair where the first does not agree, as in stiff scenes
 PAIRS = (("Verner98", "DOP853"), ("Radau9", "Radau5"))
 # local tolerances, the first by which the motion can be run
 FINEST_TOLERANCES = (tolerances.LEAST_TOLERANCE, 1e-12, 1e-10)
 MAX_SECONDS = 20.0  # time limit of one of these runs
+SAME_METHOD_RATIO = 30.0  # of the tolerances of a run and of its check by the same method
 AGREEMENT = 1e-9  # relative: if two runs agree so well, no other pair is tried
 TOO_SHORT_TEXT = "the references agree only up to t = {:.6g} s, before the first output time: no errors can be found"
 TOO_SHORT_HINT = "more samples, or a shorter duration"
@@ -230,14 +112,14 @@ def iter_method_pairs(motion: MotionProblem, stiff: bool) -> Iterator[tuple[str,
     yield from (available[::-1] if stiff else available) or [(DEFAULT, DEFAULT)]
 
 
-def run_pair(motion: MotionProblem, first: str, second: str) -> ReferencePair:
+def run_pair(motion: MotionProblem, first_name: str, second_name: str) -> ReferencePair:
     """Run the motion by two methods. Raises SolveError, LimitError."""
-    runs, a = run_finest(motion, first)
-    b = run_check(motion, second, a)
-    n = count_common_instants(a, b)
+    runs, first = run_finest(motion, first_name)
+    second = run_check(motion, second_name, first)
+    n = count_common_instants(first, second)
     with np.errstate(all="ignore"):
-        error, _ = estimate_errors(runs, a, a.times[:n], (a.states[:n], b.states[:n]))
-    return ReferencePair(runs, a, b, error)
+        error, _ = estimate_errors(runs, first, first.times[:n], (first.states[:n], second.states[:n]))
+    return ReferencePair(runs, first, second, error)
 
 
 def run_finest(motion: MotionProblem, name: str) -> tuple[Runs, Trajectory]:
@@ -266,11 +148,12 @@ def run_check(motion: MotionProblem, name: str, a: Trajectory) -> Trajectory:
     for other in names:
         method = a.method if other == a.method.name else load_method_by_name(other)
         runs = motion.make_runs(method, MAX_SECONDS, a.times)
-        ratio = 30.0 if method is a.method else 1.0  # the same method once more has to differ in its steps
+        # the same method once more has to differ in its steps
+        tolerance_ratio = SAME_METHOD_RATIO if method is a.method else 1.0
         for start in (runs.perturbed_start, None):
             for local in FINEST_TOLERANCES:
                 try:
-                    return runs.run(max(local, a.local) * ratio, a.times, start)
+                    return runs.run(max(local, a.local) * tolerance_ratio, a.times, start)
                 except SolveError as error:
                     first_failure = first_failure or error
                 except LimitError as error:

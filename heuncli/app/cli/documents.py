@@ -66,7 +66,7 @@ def make_terminal_style(style: TextStyle = PLAIN) -> TextStyle:
 
 def _draw_on_terminal(figure: Figure) -> str:
     """Draw a figure in letters, without colours."""
-    from heuncli.app.cli.target import render_text  # where a figure is drawn
+    from heuncli.app.cli.figure_output import render_text  # where a figure is drawn
 
     return render_text(figure, None, allows_colours=False)
 

@@ -27,9 +27,9 @@ from heuncli.base.text_safety import escape
 from heuncli.scene.file_format.reading import forget_files_read
 from heuncli.version import VERSION
 
-INTERRUPTED = 130
-Given = TypeVar("Given")
-BUG = 70
+INTERRUPTED = 130  # exit code
+BUG = 70  # exit code
+Result = TypeVar("Result")
 EXIT_CODE_PRIORITY = (BUG, 5, 2, 3, 4, 1)  # manual/commands.md, "Exit codes": which exit code stands for several files
 MIN_MEMORY = 160e6  # bytes of address space for the modules of Python, NumPy and the kernel
 UNMAPPED = ("failed to map segment", "cannot allocate memory", "Cannot allocate memory")  # messages of system loaders
@@ -58,11 +58,12 @@ def enter(argv: Sequence[str]) -> int:
         return INTERRUPTED
 
 
-def run_contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
+def run_contained(work: Callable[[], Result], argv: Sequence[str]) -> Result:
     """Run the work of a command line and return its result; every failure becomes a HeunError.
 
-    An unexpected exception becomes Bug, lack of memory becomes LimitError. It is raised outside of the `except`, so
-    that the caught exception and all that its frames hold are freed first.
+    Lack of memory becomes LimitError, any other unexpected exception KernelError where the compiled kernel is not of
+    these sources, else Bug. The error is raised outside of the `except`, so that the caught exception and all that its
+    frames hold are freed first.
     """
     error: HeunError
     try:
@@ -73,7 +74,7 @@ def run_contained(work: Callable[[], Given], argv: Sequence[str]) -> Given:
         error = LimitError(OUT_OF_MEMORY)
     except Exception as mishap:
         _print_traceback()
-        error = LimitError(OUT_OF_MEMORY) if _is_memory_error(mishap) else Bug(_make_bug_problem(mishap, argv))
+        error = _make_error(mishap, argv)
     raise error
 
 
@@ -144,6 +145,16 @@ def _is_memory_error(error: Exception) -> bool:
     return isinstance(error, ImportError) and any(words in str(error) for words in UNMAPPED)
 
 
+def _make_error(mishap: Exception, argv: Sequence[str]) -> HeunError:
+    """Make the error that an unexpected exception becomes."""
+    if _is_memory_error(mishap):
+        return LimitError(OUT_OF_MEMORY)
+    from heuncli.kernel.form import KernelError, find_stale_problem  # all else has it by now, or does not need it
+
+    stale = find_stale_problem()
+    return Bug(_make_bug_problem(mishap, argv)) if stale is None else KernelError(stale)
+
+
 def _print_traceback() -> None:
     """Print the traceback of the current exception, if HEUN_DEBUG is 1."""
     if os.environ.get("HEUN_DEBUG") == "1":
@@ -164,7 +175,7 @@ def _make_bug_problem(bug: Exception, argv: Sequence[str]) -> Problem:
     return Problem("bug", f"this is a bug in heun: {type(bug).__name__}: {bug}{where}", hint=hint)
 
 
-NUMBERS: dict[object, Callable[[str], float]] = {float | None: float, int | None: int}
+NUMBER_PARSERS: dict[object, Callable[[str], float]] = {float | None: float, int | None: int}
 
 
 def read_command_line(argv: Sequence[str]) -> ParsedCommand | int:
@@ -198,23 +209,43 @@ def read_plain(argv: Sequence[str]) -> ParsedCommand | None:
             values[field.name] = True
         elif field.type == tuple[str, ...]:
             values[field.name] = (*values.get(field.name, ()), text)
-        elif field.type in NUMBERS:
+        elif field.type in NUMBER_PARSERS:
             try:
-                values[field.name] = NUMBERS[field.type](text)
+                values[field.name] = NUMBER_PARSERS[field.type](text)
             except ValueError:
                 return None
         else:
             values[field.name] = text
-    targets = [field for field in fields if not field.option.words]
-    if any(target.type == tuple[str, ...] for target in targets):
-        values |= {targets[0].name: tuple(arguments)} if arguments else {}
-    elif len(arguments) > len(targets):
+    positional_fields = [field for field in fields if not field.option.words]
+    if any(target.type == tuple[str, ...] for target in positional_fields):
+        values |= {positional_fields[0].name: tuple(arguments)} if arguments else {}
+    elif len(arguments) > len(positional_fields):
         return None
     else:
-        values |= {target.name: argument for target, argument in zip(targets, arguments, strict=False)}
-    if any(target.name not in values and target.default is REQUIRED for target in targets):
+        values |= {target.name: argument for target, argument in zip(positional_fields, arguments, strict=False)}
+    if any(target.name not in values and target.default is REQUIRED for target in positional_fields):
         return None
     return ParsedCommand(command, make_request(request, values))
+
+
+# Options of other programs: what they are called here.
+FOREIGN_OPTIONS = {
+    **{f"--{form}": f"--format {form}" for form in ("json", "csv", "markdown", "table")}, "--md": "--format markdown",
+    "--out": "--output FILE", "--outfile": "--output FILE", "--save": "--output FILE", "--param": "--set NAME=VALUE",
+    "--times": "--at WHEN", "--verbose": "--full", "--short": "--summary", "--silent": "--quiet",
+    "--tol": "--tolerance NUMBER", "--dt": "--step SECONDS", "--solver": "--method NAME", "--timeout": "--time-limit S",
+}  # fmt: skip
+
+
+def find_option_hints(argv: Sequence[str]) -> list[str]:
+    """Return a hint for each option of another program, where the command has such an option under heun's name."""
+    command = find_command(argv[0]) if argv else None
+    if command is None:
+        return []
+    words = {word for field in list_fields(command.request) for word in field.option.words}
+    typed = [word.partition("=")[0] for word in argv[1:]]
+    found = {word: FOREIGN_OPTIONS[word] for word in typed if word in FOREIGN_OPTIONS and word not in words}
+    return [f"hint: write {known} for {word}" for word, known in found.items() if known.split()[0] in words]
 
 
 def _read_with_typer(argv: list[str]) -> ParsedCommand | int:
@@ -233,7 +264,7 @@ def _read_with_typer(argv: list[str]) -> ParsedCommand | int:
         if not isinstance(parsed, int):
             parsed = typer_reader.read(argv)
     if text := errors.getvalue():
-        print_stderr(text.removesuffix("\n"))
+        print_stderr("\n".join([text.removesuffix("\n"), *find_option_hints(argv)]))
     if text := output.getvalue():
         emit(text)
     return parsed

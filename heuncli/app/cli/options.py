@@ -18,7 +18,7 @@ class Option(NamedTuple):
     words: its words; none: an argument
     help: what it does
     metavar: the name of its value in the help
-    completes: the key in app/cli/typer_reader.py of its shell completion
+    completes: the key in app/cli/completion.py of its shell completion
     """
 
     words: tuple[str, ...]

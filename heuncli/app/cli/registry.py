@@ -155,6 +155,7 @@ COMMANDS = (
     Command(
         "diff",
         "Show what changed by more than the stated errors between two specs, golden files or JSON results.",
+        module="diff.command",
         page="pipelines",
     ),
     Command(

@@ -1,4 +1,4 @@
-"""The options of what is written: file, format, units, and of a figure its width, view and file.
+"""The options of what is written: file, format and units of tables. Those of figures are in figure_output.py.
 
 Outputs that would overwrite the command's inputs are refused before anything is solved. Impure: looks at the files.
 """
@@ -10,14 +10,12 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from heuncli.app.cli import terminal
 from heuncli.app.cli.output import print_stderr
-from heuncli.base.errors import Finding, Problem, UsageError
+from heuncli.base.errors import Problem, UsageError
 from heuncli.base.files import STDOUT, find_target
 from heuncli.scene.file_format.reading import find_name_read
 
 if TYPE_CHECKING:
-    from heuncli.output.drawing.figure import Figure
     from heuncli.study.quantities.table_units import Units
 
 ENDINGS = {"json": ".json", "csv": ".csv", "markdown": ".md", "parquet": ".parquet", "m": ".m"}
@@ -37,16 +35,19 @@ def choose_format(requested: str | None, output: str | None, formats: Sequence[s
         return require_choice("--format", requested, formats)
     if output is None or output == STDOUT:
         return formats[0]
-    from pathlib import Path  # 3 ms that only files need
-
     endings = {ENDINGS[form]: form for form in formats if form in ENDINGS} | {".txt": formats[0], "": formats[0]}
-    name = Path(output).name
-    ending = name[name.rfind(".") :].lower() if "." in name else ""
+    ending = find_ending(output)
     if ending not in endings:
         known = ", ".join(f"{end} ({form})" for end, form in endings.items() if end)
         hint = f"accepted: {known}; with --format {'|'.join(formats)} any name is accepted"
         raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension {ending}", hint=hint))
     return endings[ending]
+
+
+def find_ending(name: str) -> str:
+    """Return the ending of a file's name in lower case, as `.csv`, or an empty text."""
+    name = os.path.basename(name)  # noqa: PTH119 - pathlib takes 3 ms
+    return name[name.rfind(".") :].lower() if "." in name else ""
 
 
 def require_writable(output: str, option: str = "-o") -> None:
@@ -129,68 +130,3 @@ def _read_stdout_status() -> os.stat_result | None:
         return os.fstat(sys.stdout.fileno()) if sys.stdout is not None else None
     except (OSError, ValueError):  # a stream without a file descriptor
         return None
-
-
-WIDTH = 100  # columns where there is no terminal
-MIN_WIDTH, MAX_WIDTH = 40, 400
-
-
-def require_width(width: int | None) -> None:
-    """Raise UsageError for a width in which nothing can be drawn."""
-    if width is not None and not MIN_WIDTH <= width <= MAX_WIDTH:
-        message = f"--width {width}: expected {MIN_WIDTH} to {MAX_WIDTH} columns"
-        raise UsageError(Problem("bad-option", message, hint=f"for example --width {WIDTH}"))
-
-
-def render_text(figure: Figure, width: int | None, output: str | None = None, *, allows_colours: bool = True) -> str:
-    """Render the figure as text, for the terminal or for a file."""
-    from heuncli.output.drawing.canvas import make_terminal_style
-    from heuncli.output.drawing.letters import draw_text
-
-    to_terminal = output is None and terminal.is_terminal()
-    columns = width or (terminal.find_width() - 1 if to_terminal else WIDTH)
-    plain = to_terminal and os.environ.get("TERM", "") in terminal.PLAIN_TERMINALS
-    encoding = "ascii" if plain else sys.stdout.encoding if to_terminal else None
-    has_colours = allows_colours and to_terminal and terminal.supports_styles()
-    return draw_text(figure, make_terminal_style(columns, encoding, has_colours=has_colours))
-
-
-def require_view(words: str | None) -> None:
-    """Require that `--view` is valid, before any work. Raises UsageError."""
-    if words is None:
-        return
-    import numpy as np
-
-    from heuncli.output.machine_geometry.views import parse_view  # with all that shows a machine
-
-    try:
-        parse_view(words, np.zeros(3))
-    except Finding as finding:
-        problem = Problem(finding.code, f"--view {words}: {finding.message}", hint=finding.hint)
-        raise UsageError(problem) from None
-
-
-def require_figure_form(name: str, option: str) -> str:
-    """Return the format of a figure file by its ending, and check that it can be written. Raises UsageError, SpecError,
-    OutputError.
-    """
-    from heuncli.output.drawing.drawing_files import find_form, require_encoder  # with all that draws
-
-    form = find_form(name, option)
-    require_writable(name, option)
-    require_encoder(form, f"{option} {name}")
-    return form
-
-
-def require_save_form(name: str | None, output: str | None) -> str | None:
-    """Return the figure format of `--save`, whose file must differ from the table's. Raises as
-    `require_figure_form`.
-    """
-    if name is None:
-        return None
-    form = require_figure_form(name, "--save")
-    if is_output(name, output):
-        raise UsageError(
-            Problem("bad-option", f"--save {name}: the table is written to this file", hint="name another file")
-        )
-    return form

@@ -25,8 +25,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TypeVar
 
-import heuncli
-from heuncli.base import signals
+from heuncli.base import files, signals
 from heuncli.base.errors import HeunError, LimitError, Problem
 
 GRACE = 0.2  # seconds beyond the limit, so that the loops, which know more, report first
@@ -61,7 +60,7 @@ PHASES = (
 )  # fmt: skip
 DEFAULT_PHASE = "before the work was finished"  # of commands without a phase of their own
 Answer = TypeVar("Answer")
-PACKAGE_FOLDER = os.path.join(os.path.dirname(heuncli.__file__), "")  # noqa: PTH118, PTH120 - pathlib takes 3 ms
+OWN_CODE = os.path.join(files.PACKAGE_FOLDER, "")  # noqa: PTH118 - the beginning of the paths of heun's modules
 PROTECTED_FILES = (__file__, signals.__file__)  # an alarm never interrupts code in these files
 # Libraries that let an exception of their callbacks pass unchanged. Not among them: the import system (a half
 # imported module cannot be imported again for the next spec), pydantic, which wraps it, and SciPy, whose Fortran
@@ -77,24 +76,25 @@ class _Clock:
     """State of the time limit.
 
     deadline: when the work must end; None: no limit
+    limit: how long it may take [s]
     phase: what the work does, if the modules at work do not say
-    subject: the file at work, of several
-    interrupted_phase: the phase that an alarm interrupted
+    subject: the file at work, if there are several
+    interrupted_phase: what was being done when an alarm ended the work
     pause_end: no alarm acts before this time
     hard_end: when the process ends
-    end_lock: lock of the thread that ends the process, or that prevents it
-    silent: whether the parent process reports in place of this one
+    end_lock: held by the thread that ends the process, or that ends the limit
+    silent: whether this is a worker process, whose parent reports the limit
     """
 
     deadline: float | None = None
     limit = 0.0
     phase = DEFAULT_PHASE
-    subject = ""  # the file at work, if there are several
-    interrupted_phase: str | None = None  # the phase in which an alarm ended the work
-    pause_end = 0.0  # no alarm acts before this time
+    subject = ""
+    interrupted_phase: str | None = None
+    pause_end = 0.0
     hard_end = 0.0
-    end_lock = _thread.allocate_lock()  # held by the thread that ends the process, or that ends the limit
-    silent = False  # in a worker process, whose parent reports
+    end_lock = _thread.allocate_lock()
+    silent = False
 
 
 def run_with_limit(
@@ -218,13 +218,13 @@ def _is_interruptible(frames: Sequence[FrameType]) -> bool:
     pass.
     """
     file = frames[0].f_code.co_filename if frames else ""
-    if not file.startswith(PACKAGE_FOLDER) or file in PROTECTED_FILES:
+    if not file.startswith(OWN_CODE) or file in PROTECTED_FILES:
         return False
     for frame in frames:
         if frame.f_code is run_interruptible.__code__:
             return True
         package = str(frame.f_globals.get("__name__", "")).partition(".")[0]
-        if not frame.f_code.co_filename.startswith(PACKAGE_FOLDER) and package not in TRANSPARENT:
+        if not frame.f_code.co_filename.startswith(OWN_CODE) and package not in TRANSPARENT:
             return False
     return False
 

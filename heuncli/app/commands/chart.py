@@ -22,11 +22,12 @@ from heuncli.analyses.work_precision.study import chart
 from heuncli.app.cli import timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.figure_output import require_save_form
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, SPEC, Option
 from heuncli.app.cli.output import save
 from heuncli.app.cli.progress import show_progress
 from heuncli.app.cli.solving import load_spec, print_warnings
-from heuncli.app.cli.target import choose_format, require_other_file, require_save_form
+from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.base.errors import Problem
 from heuncli.base.method_rows import AUTO, METHODS, find_method
 from heuncli.base.named_tuples import NamedTuple

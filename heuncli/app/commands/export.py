@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
-from heuncli.analyses.load_cases import model
+from heuncli.analyses.load_cases import unit_systems
 from heuncli.analyses.load_cases.assembly import assemble_load_cases, select_results
-from heuncli.analyses.load_cases.model import LoadCases, convert_load_cases
+from heuncli.analyses.load_cases.model import LoadCases
+from heuncli.analyses.load_cases.unit_systems import convert_load_cases
 from heuncli.app.cli import timeout
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, QUIET, SET, SPEC, TIME_LIMIT, CaptionRequest, Option, SolverRequest
 from heuncli.app.cli.output import emit, print_stderr
 from heuncli.app.cli.solving import apply_captions, load_spec, make_solver_options, print_warnings, require_choice
-from heuncli.app.cli.target import require_other_file, require_writable
+from heuncli.app.cli.target import find_ending, require_other_file, require_writable
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.files import STDOUT
 from heuncli.base.named_tuples import NamedTuple
@@ -182,7 +183,7 @@ def choose_form(request: ExportRequest) -> str:
         return require_choice("--format", request.format, FORMATS)
     if output is None or output == STDOUT:
         return FORMATS[0]
-    ending = output[output.rfind(".") :].lower() if "." in output.rpartition("/")[2] else ""
+    ending = find_ending(output)
     if ending in ENDINGS:
         return ENDINGS[ending]
     if ending == AMBIGUOUS_ENDING:
@@ -193,12 +194,12 @@ def choose_form(request: ExportRequest) -> str:
     raise UsageError(Problem("bad-option", f"-o {output}: unknown file extension", hint=hint))
 
 
-def _parse_units(words: str | None) -> model.UnitSystem:
+def _parse_units(words: str | None) -> unit_systems.UnitSystem:
     """Parse the consistent units of --units; SI by default. Raises UsageError."""
     if words is None:
-        return model.SI
+        return unit_systems.SI
     try:
-        return model.parse_units(words)
+        return unit_systems.parse_units(words)
     except Finding as finding:
         raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
 

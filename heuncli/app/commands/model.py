@@ -74,14 +74,14 @@ def require_sketch(request: ModelRequest, form: str) -> None:
         message = f"{', '.join(drawing_options)}: only for a drawing, which is not requested"
         raise UsageError(Problem("bad-option", message, hint="add --sketch"))
     if request.view is not None:
-        from heuncli.app.cli.target import require_view
+        from heuncli.app.cli.figure_output import require_view
 
         require_view(request.view)
 
 
 def render_sketch(spec: Spec, request: ModelRequest) -> str:
     """Render the drawing of the assembled machine as text. Raises UsageError, and SolveError if it does not close."""
-    from heuncli.app.cli.target import render_text, require_width  # rarely used
+    from heuncli.app.cli.figure_output import render_text, require_width  # rarely used
     from heuncli.output.figures.scenes import make_assembly_figure
     from heuncli.study.model.setup import attach_locations
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Annotated
 
-from heuncli.analyses.modes import compute_spec_modes, exclude_entries
+from heuncli.analyses.modes.study import compute_spec_modes, exclude_entries
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, WITHOUT
 from heuncli.app.cli.solving import find_excluded, load_spec, print_warnings

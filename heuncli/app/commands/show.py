@@ -18,7 +18,7 @@ from heuncli.app.cli.solving import (
     require_cases,
 )
 from heuncli.app.cli.target import is_output, parse_units, require_other_file, require_writable
-from heuncli.app.films import FORMATS, FilmFormat, draw_film, find_format, find_programs, make_film
+from heuncli.app.films import FILM_FORMATS, FilmFormat, FilmPrograms, draw_film, find_format, find_programs, make_film
 from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem
 from heuncli.base.files import STDOUT
@@ -70,8 +70,23 @@ class ShowRequest(NamedTuple):
     quiet: Annotated[bool, QUIET] = False
 
 
+class ShowTarget(NamedTuple):
+    """The files that are written, and how a picture or film is made.
+
+    output: file of the page, the picture or the film; None if none is requested
+    glb: file of the moving bodies as glTF; None if none is requested
+    film_format: format of the picture or film; None for a page
+    programs: the programs that make the picture or film
+    """
+
+    output: str | None
+    glb: str | None
+    film_format: FilmFormat | None = None
+    programs: FilmPrograms | None = None
+
+
 PAGE_ENDINGS = (".html", ".htm")
-ENDINGS = (*PAGE_ENDINGS, *FORMATS)
+ENDINGS = (*PAGE_ENDINGS, *FILM_FORMATS)
 GLB = ".glb"
 MIN_FRAMES, MAX_FRAMES = 2, 5000
 MAX_BODIES = 500  # more cannot be moved smoothly in a browser
@@ -80,38 +95,55 @@ REPORTS = TABLE_DEFAULT | {"motion"}
 
 def main(request: ShowRequest) -> int:
     """Run the command; returns the exit code."""
-    output, glb = _require_output(request), _require_glb(request)
-    form, instant = find_format(output), _parse_instant(request)
-    _require_page(request, form)
-    outputs = [(name, option) for name, option in ((output, "-o"), (glb, "--glb")) if name is not None]
-    for name, option in outputs:
-        require_other_file(name, [request.spec], option)
-    programs = None if form is None else find_programs(form)
-    units_shown, frame_count = parse_units(request.units), _parse_frame_count(request.frames)
+    target = _require_target(request)
+    units, frame_count = parse_units(request.units), _parse_frame_count(request.frames)
     specs = apply_captions_to_cases(_load_cases(request), request.captions)
-    for name, option in outputs:
-        require_other_file(name, [request.spec], option)
+    _require_other_files(target, request.spec)  # than the spec's data files, which are known now
     studies = {case: _solve_case(spec, request) for case, spec in specs.items()}
     case, study = next(iter(studies.items()))
-    moving = make_glb(study) if glb is not None else b""
-    if output is not None and form is not None and programs is not None:
-        page = render_film_page(study, units_shown, make_film(form, instant), case)
-        film = draw_film(page, form, programs, PurePath(output).suffix.lower())
-    elif output is not None:
-        page = render_moving_page(studies, units_shown, frame_count)
+    moving_bodies = make_glb(study) if target.glb is not None else b""
+    page, film = "", b""
+    if target.film_format is not None:
+        film = _draw_film(target, render_film_page(study, units, make_film(target.film_format, request.at), case))
+    elif target.output is not None:
+        page = render_moving_page(studies, units, frame_count)
     for name, solved in studies.items():
         print_warnings(specs[name], solved.results, request.quiet, later=solved.later_warnings)
-    if output is not None and form is not None:
-        save(film, output)
-    elif output is not None:
-        emit(page, output)
-    if glb is not None:
-        save(moving, glb)
+    if target.output is not None and target.film_format is not None:
+        save(film, target.output)
+    elif target.output is not None:
+        emit(page, target.output)
+    if target.glb is not None:
+        save(moving_bodies, target.glb)
     return 0
 
 
+def _require_target(request: ShowRequest) -> ShowTarget:
+    """Return the files to write. Raises UsageError for options that do not fit, OutputError if one cannot be written or
+    a program is missing.
+    """
+    target = ShowTarget(_require_output(request), _require_glb(request))
+    form = find_format(target.output)
+    _require_fitting_options(request, form)
+    _require_other_files(target, request.spec)
+    return target._replace(film_format=form, programs=None if form is None else find_programs(form))
+
+
+def _require_other_files(target: ShowTarget, spec: str) -> None:
+    """Raise UsageError if the output would overwrite the spec or a file read so far."""
+    for name, option in ((target.output, "-o"), (target.glb, "--glb")):
+        if name is not None:
+            require_other_file(name, [spec], option)
+
+
+def _draw_film(target: ShowTarget, page: str) -> bytes:
+    """Draw the picture or film of a page. Raises OutputError."""
+    assert target.output is not None and target.film_format is not None and target.programs is not None
+    return draw_film(page, target.film_format, target.programs, PurePath(target.output).suffix.lower())
+
+
 def _load_cases(request: ShowRequest) -> dict[str, Spec]:
-    """Load the spec in the requested case, or in all, by the names of the cases; "" is the spec as it is."""
+    """Load the spec in the requested case, or in all cases; returns them by name, "" is the spec as it is."""
     settings = parse_overrides(request.set)
     if request.case == ALL_CASES:
         specs = load_with_cases(request.spec, settings, checking=False)[1]
@@ -131,14 +163,6 @@ def _solve_case(spec: Spec, request: ShowRequest) -> Study:
         study = solve(spec, options)
         require_claimed(study)
     return study
-
-
-def _parse_instant(request: ShowRequest) -> float | None:
-    """Return the instant of the picture [s]; None: of the greatest load. Raises UsageError."""
-    if request.at is not None and find_format(request.output) is not FORMATS[".png"]:
-        message = "--at: only for a picture, -o x.png"
-        raise UsageError(Problem("bad-option", message, hint="leave it out; a page shows all instants"))
-    return request.at
 
 
 def _require_output(request: ShowRequest) -> str | None:
@@ -173,8 +197,11 @@ def _require_glb(request: ShowRequest) -> str | None:
     return name
 
 
-def _require_page(request: ShowRequest, form: FilmFormat | None) -> None:
-    """Raise UsageError for options of the page if none is written, and for all cases where one is drawn."""
+def _require_fitting_options(request: ShowRequest, form: FilmFormat | None) -> None:
+    """Raise UsageError for options of a picture or a page if none is written, and for all cases where one is drawn."""
+    if request.at is not None and form is not FILM_FORMATS[".png"]:
+        message = "--at: only for a picture, -o x.png"
+        raise UsageError(Problem("bad-option", message, hint="leave it out; a page shows all instants"))
     if request.case == ALL_CASES and (form is not None or request.glb is not None):
         message = "--case all: a page shows all load cases; a picture, a film or a glTF file shows one"
         raise UsageError(Problem("bad-option", message, hint="name one of the cases"))
@@ -204,7 +231,7 @@ def _require_few_bodies(spec: Spec) -> None:
         raise LimitError(Problem("output-size", message, hint="heun run reports the loads of any number of bodies"))
 
 
-WARNING = "--glb: a body rotates up to {:.0f}° between two instants; the animation between them is not accurate"
+FAST_TURN = "--glb: a body rotates up to {:.0f}° between two instants; the animation between them is not accurate"
 
 
 def make_glb(study: Study) -> bytes:
@@ -213,6 +240,6 @@ def make_glb(study: Study) -> bytes:
     if not study.has_one_instant and len(times) > 1:
         turned = float(find_largest_turns(study.setup, study.history, times).max(initial=0.0))
         if turned > tolerances.MAX_INTERPOLATED_TURN:
-            study.later_warnings[WARNING.format(math.degrees(turned))] = None
+            study.later_warnings[FAST_TURN.format(math.degrees(turned))] = None
     poses = compute_poses(study, times)
     return encode_gltf(make_page_machine(study.spec, study.setup.scene), poses, find_up_direction(study.spec, poses))

@@ -25,7 +25,6 @@ from heuncli.scene.shapes.rotations import (
     instants_first,
     instants_last,
     rotate_components,
-    rotate_components_back,
 )
 
 NO_SPINS: Mapping[int, Array] = MappingProxyType({})
@@ -71,7 +70,8 @@ class BodyStates:
     def turning(self) -> tuple[Array, Array]:
         """omega and alpha in the bodies' own axes, by component, (n, 3, n_t)."""
         w, u = (
-            rotate_components_back(self.component_rows("R"), self.component_rows(name)) for name in ("omega", "alpha")
+            rotate_components(self.component_rows("R"), self.component_rows(name), back=True)
+            for name in ("omega", "alpha")
         )
         return w, u
 

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.auto_properties import CutForm, CutProperties
 
 
-# shortest series of cuts, in plane tolerances: the distance at which corners of a stretch are separate (stretch.py)
-MIN_SERIES_LENGTH = 4.0
+# plane tolerances at which corners of a stretch (stretch.py) are separate: no series of cuts is shorter
+SEPARATE = 4.0
 
 
 class LoadAtPoint(Protocol):
@@ -198,9 +198,9 @@ def list_attachments(mechanism: Mechanism, body: int) -> list[Attachment]:
         if isinstance(load, PointLoad) and load.spread is not None:
             continue
         points += [Attachment("force", load.name, point) for owner, point in load.points if owner == body]
-    for blow in mechanism.impulses:
-        if blow.body == body and blow.point is not None:
-            points.append(Attachment("impulse", blow.name, blow.point))
+    for impulse in mechanism.impulses:
+        if impulse.body == body and impulse.point is not None:
+            points.append(Attachment("impulse", impulse.name, impulse.point))
     for stop in mechanism.stops:
         joint = mechanism.joints[stop.joint]
         if joint.a == body and stop.quantity == "travel":
@@ -248,12 +248,12 @@ def _make_section_cuts(
     n = np.array(section.normal, dtype=float)
     n = n / np.sqrt(n @ n)
     e1 = make_first_axis(n, section.first_axis)
-    points, s = _cut_points(section)
+    points, s = _make_cut_points(section)
     d = points @ n
     attachments, lines = list_attachments(mechanism, body), list_distributed_loads(mechanism, body)
     heights = np.array([attachment.place for attachment in attachments]).reshape(-1, 3) @ n
     ends = np.array([line.place for line in lines]).reshape(-1, 2, 3) @ n
-    plane_tolerance = _plane_tolerance(form, np.append(heights, ends), d)
+    plane_tolerance = _find_plane_tolerance(form, np.append(heights, ends), d)
     # the end of a distributed load in the plane carries nothing, but the whole line may lie there
     distances = np.concatenate([np.abs(heights - d[:, None]), np.abs(ends - d[:, None, None]).max(axis=2)], axis=1)
     in_plane = distances <= plane_tolerance
@@ -265,11 +265,11 @@ def _make_section_cuts(
     if s is None:
         if jumps[0] and section.side is None:
             names = [attachment.label for attachment, lies_in in zip(attachments, in_plane[0], strict=True) if lies_in]
-            raise SpecError(_missing_side_problem(names, location))
+            raise SpecError(_make_missing_side_problem(names, location))
         # kept also where nothing lies in the plane: joints may move into it during the run
         side = np.array([SIDE_SIGNS[section.side]])
     else:
-        if s[-1] <= MIN_SERIES_LENGTH * plane_tolerance:
+        if s[-1] <= SEPARATE * plane_tolerance:
             message = (
                 f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are distinct only beyond "
                 f"{plane_tolerance:.3g} m"
@@ -311,7 +311,7 @@ def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
         ends = np.concatenate([[low], corners[inside], [high]])
         d = np.concatenate([ends[:-1], 0.5 * (ends[1:] + ends[:-1]), ends[1:]])
         side = np.repeat([BEYOND, 0.0, BEFORE], len(ends) - 1)
-        is_long = np.tile(np.diff(ends) > 4.0 * cuts.plane_tolerance, 3)
+        is_long = np.tile(np.diff(ends) > SEPARATE * cuts.plane_tolerance, 3)
         cut_form = replace(cut_form, d=d[is_long], side=side[is_long])
     missing = find_cut_properties(cut_form).missing
     if missing:
@@ -322,7 +322,7 @@ def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
         raise SpecError(Problem("no-properties", message, location, hint=hint))
 
 
-def _cut_points(section: Section) -> tuple[Array, Array | None]:
+def _make_cut_points(section: Section) -> tuple[Array, Array | None]:
     """Return the points of the cuts (k, 3) and their distances along the series (k,), None for a single cut."""
     if section.at is not None:
         return np.array([section.at], dtype=float), None
@@ -333,7 +333,7 @@ def _cut_points(section: Section) -> tuple[Array, Array | None]:
     return points, fraction * float(np.sqrt((last - first) @ (last - first)))
 
 
-def _plane_tolerance(form: CompositeSolid | None, heights: Array, d: Array) -> float:
+def _find_plane_tolerance(form: CompositeSolid | None, heights: Array, d: Array) -> float:
     """Return the distance [m] up to which a point counts as in a plane: rounding of the coordinates."""
     extent = float(np.abs(heights).max(initial=0.0))
     if form is not None:
@@ -341,7 +341,7 @@ def _plane_tolerance(form: CompositeSolid | None, heights: Array, d: Array) -> f
     return tolerances.IN_PLANE * max(extent, float(np.abs(d).max()), tolerances.LEAST_EXTENT)
 
 
-def _missing_side_problem(names: list[str], location: SourceLocation) -> Problem:
+def _make_missing_side_problem(names: list[str], location: SourceLocation) -> Problem:
     """Make the problem of a single cut with something in its plane and no side given."""
     what = " and ".join(names) if names else "a point mass or rod of the body"
     hint = "add side: before (it is then on the far side of the cut) or side: beyond (on the near side)"

@@ -183,20 +183,23 @@ def find_piece_loads(cuts: Cuts, A: Array, attached_loads: Sequence[AttachedLoad
         return find_moving_piece_loads(cuts, A, attached_loads)
     P, p = cuts.pieces.transpose(1, 2, 0), cuts.points.T
     fixed_loads = [a for a in attached_loads if a.point.ndim == 1]
-    shares = [a.find_fraction_on_pieces(cuts) for a in fixed_loads]
-    mask = np.array([part for part, _ in shares]).reshape(-1, len(cuts.points))
-    first = np.array([moment for _, moment in shares]).reshape(-1, len(cuts.points), 3)
-    B = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed_loads)], axis=-1) for i in range(3)]
-    C = np.concatenate([-P[:, 3], mask])
+    fractions_and_moments = [a.find_fraction_on_pieces(cuts) for a in fixed_loads]
+    fractions = np.array([fraction for fraction, _ in fractions_and_moments]).reshape(-1, len(cuts.points))
+    first_moments = np.array([moment for _, moment in fractions_and_moments]).reshape(-1, len(cuts.points), 3)
+    # s'_i = [A_i, F_i] [-P_3; fraction];  M'_i = [A_j, F_j, A_k, F_k, M_i] [levers; fraction],  (i, j, k) cyclic
+    left_factor = [np.concatenate([A[i], *(a.force[..., i : i + 1] for a in fixed_loads)], axis=-1) for i in range(3)]
+    right_factor = np.concatenate([-P[:, 3], fractions])
     force, moment = allocate(2, 3, *A.shape[1:-1], len(cuts.points))
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        np.matmul(B[i], C, out=force[i])
-        left = np.concatenate([B[j], B[k], *(a.moment[..., i : i + 1] for a in fixed_loads)], axis=-1)
+        np.matmul(left_factor[i], right_factor, out=force[i])
+        left = np.concatenate(
+            [left_factor[j], left_factor[k], *(a.moment[..., i : i + 1] for a in fixed_loads)], axis=-1
+        )
         right = (
-            np.concatenate([P[:, k], -first[..., k]]) + p[k] * C,
-            np.concatenate([-P[:, j], first[..., j]]) - p[j] * C,
-            mask,
+            np.concatenate([P[:, k], -first_moments[..., k]]) + p[k] * right_factor,
+            np.concatenate([-P[:, j], first_moments[..., j]]) - p[j] * right_factor,
+            fractions,
         )
         np.matmul(left, np.concatenate(right), out=moment[i])
     for a in attached_loads:

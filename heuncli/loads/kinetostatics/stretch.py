@@ -20,21 +20,21 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.cuts import Cuts, LoadAtPoint
+from heuncli.loads.kinetostatics.cuts import SEPARATE, Cuts, LoadAtPoint
 from heuncli.results.results import BEFORE, BEYOND, SIDE_WORDS, Array, CutPosition, Indices, Mask
 
 DEGREE = 8
 NODES = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 SIDES = np.array([BEYOND, *[0.0] * (DEGREE - 1), BEFORE])
 FINE = -np.cos(np.pi * np.arange(4 * DEGREE + 1) / (4 * DEGREE))  # where the polynomial is sampled first
-HALVINGS = 4
+MAX_PIECE_HALVINGS = 4
 SHORT_PIECE = 64.0  # times the plane tolerance: the first node of a longer piece is 0.038 of its length from the corner
 # times the plane tolerance: closer corners are one, because all there lies in the plane of the first
 CORNER_DISTANCE = 0.25
 # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
 NEWTON_STEPS = 3
 
-MAX_RISE_PER_BEND = 0.25  # of a bend, from a sample to its summit: twice what a parabola rises
+MAX_SUMMIT_RISE = 0.25  # of a bend, from a sample to its summit: twice what a parabola rises
 
 
 def chebyshev_polynomials(x: Array) -> Array:
@@ -139,7 +139,7 @@ class Stretch:
         """Return a place for the output, from its distance and the side on which it lies where a piece ends, else 0."""
         own_cuts, d = self.cuts, float(self.find_height(np.array(s)))
         assert own_cuts.s is not None
-        tolerance = max(4.0 * own_cuts.plane_tolerance, tolerances.IN_PLANE * float(own_cuts.s[-1]))
+        tolerance = max(SEPARATE * own_cuts.plane_tolerance, tolerances.IN_PLANE * float(own_cuts.s[-1]))
         corner = np.flatnonzero(np.abs(self.corners - d) <= tolerance)
         # the end of a piece that is not a corner is a moving one
         jumps = side != 0.0 and (len(corner) == 0 or bool(self.jumps[corner].any()))
@@ -182,20 +182,20 @@ def make_stretch(cuts: Cuts, points: Sequence[Array], lines: Sequence[Array] = (
     low = float(cuts.points[0] @ n)
     high = low + float(cuts.s[-1])
     ends = np.array(lines).reshape(-1, 2, 3) @ n
-    is_in_plane = np.abs(ends[:, 1] - ends[:, 0]) <= 4.0 * cuts.plane_tolerance
+    is_in_plane = np.abs(ends[:, 1] - ends[:, 0]) <= SEPARATE * cuts.plane_tolerance
     acting = np.concatenate([[point @ n for point in points], ends[is_in_plane].mean(axis=1)])
     inside = np.concatenate([acting, ends[~is_in_plane].ravel(), form.corners(n)])
     inside = np.sort(inside[(inside > low + cuts.plane_tolerance) & (inside < high - cuts.plane_tolerance)])
     corners = np.concatenate([[low], inside, [high]])
     corners = corners[np.append(True, np.diff(corners) > CORNER_DISTANCE * cuts.plane_tolerance)]
     corners[-1] = high
-    for round_number in range(HALVINGS):
+    for round_number in range(MAX_PIECE_HALVINGS):
         a, b = corners[:-1], corners[1:]
         needs_halving = np.full(len(a), True) if round_number < min_halvings else ~_is_polynomial(cuts, a, b)
         if not needs_halving.any():
             break
         corners = np.sort(np.concatenate([corners, 0.5 * (a + b)[needs_halving]]))
-    jumps = np.min(np.abs(corners[:, None] - np.append(acting, np.inf)), axis=1) <= 4.0 * cuts.plane_tolerance
+    jumps = np.min(np.abs(corners[:, None] - np.append(acting, np.inf)), axis=1) <= SEPARATE * cuts.plane_tolerance
     return Stretch(cuts, corners, jumps | form.has_mass_in_plane(n, corners) | form.has_rod_in_plane(n, corners))
 
 
@@ -258,7 +258,7 @@ def find_highest_of_pieces(q: Array, fine: Array) -> StretchPeaks:
     before, after = np.abs(place - 1), last - np.abs(last - place - 1)
     tops, a, b = (np.take_along_axis(fine, k, axis=2)[..., 0] for k in (place, before, after))
     highest = np.argmax(tops, axis=1)
-    may_be_higher = tops + MAX_RISE_PER_BEND * (2.0 * tops - a - b) > tops[instants, highest][:, None]
+    may_be_higher = tops + MAX_SUMMIT_RISE * (2.0 * tops - a - b) > tops[instants, highest][:, None]
     may_be_higher[instants, highest] = True
     instant, piece = np.nonzero(may_be_higher)
     summit = find_highest(q[instant, piece], place[instant, piece, 0])

@@ -63,6 +63,8 @@ def map_self_stresses(stress: SelfStress, maps: Sequence[Array]) -> Array:
 
 def find_vanishing(stress: SelfStress, maps: Sequence[Array]) -> list[Array]:
     """Return the maps of what vanishes: for each joint's forces and moments the directions that R contains."""
+    if not any(yield_map.any() for yield_map in maps):
+        return [np.zeros_like(yield_map) for yield_map in maps]
     U, sigma, _ = np.linalg.svd(map_self_stresses(stress, maps), full_matrices=False)
     Q = U * (sigma > tolerances.OPEN_SHARE)[:, None, :]
     maps_found = []

@@ -25,6 +25,8 @@ from heuncli.scene.expressions.discontinuities import find_run_discontinuities
 
 # Integrated scene
 
+EMBEDDED_AT_ONCE = 65_536  # instants; whole blocks of those that BLAS multiplies together
+
 
 @record
 class IntegratedScene:
@@ -40,6 +42,20 @@ class IntegratedScene:
     embed: Callable[[Array, Array], Array]
     restrict: Callable[[float, Array], Array]
 
+    def embed_run(self, times: Array, states: Array) -> Array:
+        """Map the reduced states of a whole run to full states, (n_t, n), in parts, because a reduction's map makes
+        copies.
+        """
+        if len(times) <= EMBEDDED_AT_ONCE or self.embed is keep_states:
+            return self.embed(times, states)
+        first = self.embed(times[:EMBEDDED_AT_ONCE], states[:EMBEDDED_AT_ONCE])
+        full_states = np.empty((len(times), first.shape[1]))
+        full_states[:EMBEDDED_AT_ONCE] = first
+        for begin in range(EMBEDDED_AT_ONCE, len(times), EMBEDDED_AT_ONCE):
+            part = slice(begin, begin + EMBEDDED_AT_ONCE)
+            full_states[part] = self.embed(times[part], states[part])
+        return full_states
+
     def embed_state(self, t: float, state: Array) -> Array:
         """Return the full state of one reduced state."""
         full_state: Array = self.embed(np.array([t]), state[None, :])[0]
@@ -54,9 +70,14 @@ class IntegratedScene:
         return self.layout.mechanism.owner_path(self.layout.rows[row]).partition(".")[2]
 
 
+def keep_states(times: Array, states: Array) -> Array:
+    """Return the states of a scene that is integrated itself; times: unused."""
+    return states
+
+
 def integrate_itself(scene: Evaluator) -> IntegratedScene:
     """Integrate the scene without any reduction."""
-    return IntegratedScene(scene.layout, scene.workspace, lambda times, states: states, lambda t, state: state)
+    return IntegratedScene(scene.layout, scene.workspace, keep_states, lambda t, state: state)
 
 
 def integrate_reduced(scene: Evaluator, reduction: ReducedScene) -> IntegratedScene:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Callable, Mapping
 from functools import cached_property
 
@@ -55,20 +54,17 @@ class StepPolynomials:
             numbers[stored_steps],
         )
 
-    def has_polynomial(self, times: Array, step: Indices, ends: Array) -> Mask:
-        """Return which instants lie within steps whose polynomials are stored, before their ends, (n,)."""
-        return np.asarray((self.spans[step, 0] > 0.0) & (times < ends[step]))
+    def interpolate_states(self, times: Array, ends: Array, n: int) -> tuple[Mask, Array]:
+        """Interpolate states of n numbers at instants within steps whose polynomials are stored, before their ends.
 
-    def interpolate_states(self, times: Array, step: Indices, n: int) -> Array:
-        """Interpolate states of n numbers at instants within such steps, (n_t, n)."""
-        out = np.zeros(len(times) * n)
-        if not n:  # nothing moves, so there is no polynomial
-            return out.reshape(len(times), n)
-        flat = {"spans": self.spans.reshape(-1), "courses": self.numbers.reshape(-1)}
-        integration.interpolate_steps(
-            flat, n, array("d", times.tobytes()), array("i", step.astype(np.intc).tobytes()), out
-        )
-        return out.reshape(len(times), n)
+        ends (n_steps,): of the steps. Returns which of the instants these are, (n_t,), and the states, (n_t, n), those
+        of the other instants undefined.
+        """
+        states, found = np.empty((len(times), n)), np.zeros(len(times))
+        if n:  # if nothing moves, there is no polynomial
+            steps = {"ends": ends, "spans": self.spans.reshape(-1), "courses": self.numbers.reshape(-1)}
+            integration.interpolate_steps(steps, n, times, states.reshape(-1), found)
+        return found > 0.0, states
 
 
 NO_RECORDS = StepRecords(np.zeros(0, dtype=int), np.zeros((0, 0)))

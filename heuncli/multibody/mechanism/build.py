@@ -257,7 +257,7 @@ def build_load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, t
 def build_bushing(name: str, f: loads.Bushing, index: dict[str, int]) -> BushingLoad:
     """Build a bushing: six springs and dampers."""
 
-    def elastic_arrays(elastic: loads.Elastic[m.Vec]) -> Elastic:
+    def elastic_arrays(elastic: loads.Elastic[m.Vec, loads.Matrix]) -> Elastic:
         return Elastic(
             np.array(elastic.stiffness), np.array(elastic.damping), np.array(elastic.preload), elastic.extra_load
         )
@@ -265,7 +265,8 @@ def build_bushing(name: str, f: loads.Bushing, index: dict[str, int]) -> Bushing
     a, b = f.from_, f.to
     return BushingLoad(
         name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
-        np.array(f.to_rotation), elastic_arrays(f.shift), elastic_arrays(f.turn),
+        np.array(f.to_rotation), elastic_arrays(f.shift), elastic_arrays(f.turn), np.array(f.coupling),
+        np.array(f.coupling_damping),
     )  # fmt: skip
 
 

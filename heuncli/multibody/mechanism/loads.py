@@ -22,7 +22,7 @@ from heuncli.scene.file_format import loads, models
 if TYPE_CHECKING:
     Directed = models.FramedVector[Array]
     Body = models.Body[Array, Array]
-    Elastic = loads.Elastic[Array]
+    Elastic = loads.Elastic[Array, Array]
     Joint = models.Joint[int, Array]
     Blow = models.AppliedImpulse[int, Array]
     Stop = models.Stop[int]
@@ -256,6 +256,7 @@ class BushingLoad(TwoPointLoad):
     p, q: the points on the bodies a and b, their axes [m]
     frame (3, 3): its axes in a, as columns
     to_frame (3, 3): the axes in b that coincide with them where it is not turned
+    coupling (3, 3): force by rotation [N/rad], its transpose moment by shift; coupling_damping [N s]: by the rates
     """
 
     name: str
@@ -267,6 +268,8 @@ class BushingLoad(TwoPointLoad):
     to_frame: Array
     shift: Elastic
     turn: Elastic
+    coupling: Array
+    coupling_damping: Array
     kind: str = "bushing"
 
     @property
@@ -277,7 +280,7 @@ class BushingLoad(TwoPointLoad):
     @property
     def is_damped(self) -> bool:
         """Whether some motion is."""
-        return bool(np.any(self.shift.damping) or np.any(self.turn.damping))
+        return bool(np.any(self.shift.damping) or np.any(self.turn.damping))  # semidefinite: none couples alone
 
     def move(self, a: Placement, b: Placement) -> BushingLoad:
         """Return it between other points, its axes turned with those of their bodies."""

@@ -30,7 +30,7 @@ from heuncli.scene.file_format.models import SIMULTANEOUS, Condition, ImpactMode
 if TYPE_CHECKING:
     Directed = models.FramedVector[Array]
     Body = models.Body[Array, Array]
-    Elastic = loads.Elastic[Array]
+    Elastic = loads.Elastic[Array, Array]
     Joint = models.Joint[int, Array]
     Blow = models.AppliedImpulse[int, Array]
     Stop = models.Stop[int]

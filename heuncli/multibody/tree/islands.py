@@ -103,7 +103,7 @@ def find_couples(layout: Layout) -> Mask:
     closures, part_kinds = layout.tables["closures"], layout.tables["parts"]["kind"]
     if not len(closures):
         return np.zeros(0, dtype=bool)
-    is_couple = np.isin(closures["kind"], COUPLES)
+    is_couple = np.asarray(np.logical_or.reduce([closures["kind"] == kind for kind in COUPLES]))
     for r in np.flatnonzero(closures["kind"] == kernel.SUM).tolist():
         first, count = int(closures["part"][r]), int(closures["part_count"][r])
         is_couple[r] = np.isin(part_kinds[first : first + count], COUPLES).all()

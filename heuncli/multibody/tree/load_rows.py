@@ -182,16 +182,22 @@ class _LoadRowBuilder:
 
     def _add_bushing(self, load: BushingLoad, programs: tuple[Program, ...]) -> None:
         """Add the rows of the shift and of the turn."""
-        parts = (load.shift, programs[:3]), (load.turn, programs[3:])
-        for kind, (elastic, part_programs) in zip(law_numbers(load), parts, strict=True):
+        parts = (
+            (load.shift, (load.coupling, load.coupling_damping), programs[:3]),
+            (load.turn, (load.coupling.T, load.coupling_damping.T), programs[3:]),
+        )
+        for kind, (elastic, (stiffness, damping), part_programs) in zip(law_numbers(load), parts, strict=True):
             self.made.append(
                 kernel.Load(
                     kind=kind,
                     length=math.pi - tolerances.TURNED_OVER,
                     frame=load.frame.ravel().tolist(),
                     to_frame=load.to_frame.ravel().tolist(),
-                    stiffnesses=elastic.stiffness,
-                    resistances=elastic.damping,
+                    own_stiffness=elastic.stiffness.ravel().tolist(),
+                    own_damping=elastic.damping.ravel().tolist(),
+                    is_coupled=int(stiffness.any() or damping.any()),
+                    coupled_stiffness=stiffness.ravel().tolist(),
+                    coupled_damping=damping.ravel().tolist(),
                     **self._find_ends(load),
                     **name_components(part_programs),
                 )

@@ -29,7 +29,7 @@ from heuncli.output.tables.table_plans import TablePlan
 from heuncli.results.results import Results
 from heuncli.results.results_schema import MAGNITUDES, XYZ
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.channels import FAMILIES
+from heuncli.study.quantities.channels import DECIMALS_OF
 from heuncli.study.quantities.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE
 
 MAGNITUDE_LABELS = {"force": "|F|", "moment": "|M|"}  # of a vector
@@ -96,7 +96,7 @@ def _iter_numbers(data: ReportData, prefix: str, quantities: Sequence[str]) -> I
     """Yield the numbers of one object; for a vector its components and its magnitude."""
     numbers = data.runs[0].snapshot.numbers
     for quantity in quantities:
-        path, family = f"{prefix}.{quantity}", FAMILIES.get(quantity, quantity)
+        path, family = f"{prefix}.{quantity}", DECIMALS_OF.get(quantity, quantity)
         components = [f"{path}.{axis}" for axis in XYZ]
         is_vector = all(component in numbers for component in components)
         for axis, component in zip(XYZ, components, strict=True):

@@ -27,7 +27,7 @@ from heuncli.output.figures.diagrams import BAND_SENTENCE, make_diagrams
 from heuncli.output.tables.table_plans import SECTIONS
 from heuncli.results.results_schema import MAGNITUDES, RESULTANTS, STRESSES
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.channels import FAMILIES
+from heuncli.study.quantities.channels import DECIMALS_OF
 from heuncli.study.queries.bar_curves import BarExtremes, Extreme
 
 UTIL_NOTE = (
@@ -178,7 +178,7 @@ def _make_group(data: ReportData, name: str) -> LoadGroup:
     paths = [(quantity, f"sections.{name}.{quantity}") for quantity in RESULTANTS]
     paths += [(quantity, f"sections.{name}.stress.{quantity}") for quantity in STRESSES]
     rows = [
-        LoadNumber(quantity.replace("_", " "), path, FAMILIES.get(quantity, "stress"), quantity in MAGNITUDES)
+        LoadNumber(quantity.replace("_", " "), path, DECIMALS_OF.get(quantity, "stress"), quantity in MAGNITUDES)
         for quantity, path in paths
         if any(True for _ in iter_run_extremes(data, path))
     ]

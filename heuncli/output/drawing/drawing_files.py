@@ -18,7 +18,7 @@ from typing import Any
 
 from heuncli.base.errors import Problem, SpecError, UsageError
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.process import BROWSERS, find_program, list_browser_options, run_program
+from heuncli.base.programs import BROWSERS, find_program, list_browser_options, run_program
 from heuncli.output.drawing.shapes import MARKER_SHAPES, Area, Line, Mark, Text, VectorDrawing, find_corners, to_svg
 from heuncli.output.drawing.style import HALO, MARK_EDGE, WHITE
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.analyses.modes import BodyModes
+from heuncli.analyses.modes.study import BodyModes
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.linearisation.oscillations import Mode

@@ -114,7 +114,7 @@ class Page(NamedTuple):
             cuts = self.cut_extremes.get(series.name)
             tables += cut_tables.make_extremes_tables(series, times, search_result, self.stated_errors, cuts)
         share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
-        return [*tables, *share_tables, *self._make_last_tables()]
+        return [*tables, *share_tables, *self._make_closing_tables()]
 
     def _make_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes."""
@@ -179,7 +179,7 @@ class Page(NamedTuple):
             )
         if shares is not None:
             tables += self._make_instants_share_tables(results, stated_errors, search_result, shares)
-        return [*tables, *self._make_last_tables(every_cut)]
+        return [*tables, *self._make_closing_tables(every_cut)]
 
     def _make_instants_share_tables(
         self, results: Results, stated_errors: StatedErrors, search_result: Extremes | None, shares: ShareSource
@@ -214,7 +214,7 @@ class Page(NamedTuple):
         blocks = [block for plan in plans if (block := build_block(plan, results, self.labels, channels)) is not None]
         return [drop_components(block) for block in blocks] if only_searched else blocks
 
-    def _make_last_tables(self, show_all: bool = False) -> list[OutputTable]:
+    def _make_closing_tables(self, show_all: bool = False) -> list[OutputTable]:
         """Make the tables at the end of the page: determinate sums, events, impulses."""
         sums = make_sums_table(self.results, self.stated_errors, self.last_instant)
         return [*([sums] if sums else []), *self._make_event_tables(show_all), *self._make_impulse_tables(show_all)]
@@ -242,7 +242,7 @@ class Page(NamedTuple):
 def make_page(
     results: Results, labels: Labels, magnitudes: Magnitudes, *, details: bool = True, full: bool = True
 ) -> Page:
-    """Make the page of a run, which ends before the run's horizon.
+    """Make the page of a run; instants from the horizon on are left out, except the last, which is kept apart.
 
     magnitudes: what its numbers are summed from
     """
@@ -353,7 +353,7 @@ def make_tables_of_page(study: Study, searched: SearchedPage, query: TablesQuery
 def search_page(page: Page, study: Study, reports: frozenset[str]) -> tuple[Page, Extremes]:
     """Search the extremes of all channels of the page, with their places along its series of cuts.
 
-    Returns the page with the extremes at single cuts of each series, if the run has several instants, and all others.
+    Returns the page, which for several instants now holds the extremes at single cuts, and those of all channels.
     """
     found = study.search_extremes(page.make_search(), reports - {SHARES}, whole=True)
     all_series = collect_cut_series(page.results, page.labels)
@@ -371,6 +371,7 @@ def search_stresses(series: CutSeries, stated_errors: StatedErrors, study: Study
     """Search the extremes of the stresses along a series of cuts."""
 
     def collect(results: Results) -> tuple[Channel, ...]:
+        # the stresses follow the resultants
         return make_section_channels(series.name, results.sections[series.name])[len(RESULTANTS) :]
 
     return study.search_extremes(ChannelSearch(collect, stated_errors.find_error), SECTIONS)
@@ -379,9 +380,10 @@ def search_stresses(series: CutSeries, stated_errors: StatedErrors, study: Study
 def search_cuts(series: CutSeries, stated_errors: StatedErrors, study: Study) -> Extremes:
     """Search the extremes of all quantities at the cuts of a series that are shown."""
 
+    shown_cuts = choose_cuts(series)
+
     def collect(results: Results) -> list[Channel]:
         channels = make_section_channels(series.name, results.sections[series.name])
         return split_into_cuts(channels, shown_cuts)
 
-    shown_cuts = choose_cuts(series)
     return study.search_extremes(ChannelSearch(collect, stated_errors.find_error), SECTIONS, whole=True)

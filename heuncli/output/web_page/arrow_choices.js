@@ -9,13 +9,13 @@ const largestSizes = new WeakMap();
 
 /**
  * @typedef {object} Arrow one force or moment over the frames
- * @property {object} row its components, path, unit and style
+ * @property {import("./data.js").Row} row its components, path, unit and style
  * @property {(poses: object[], frame: number) => number[]|null} at its point of action, world axes [m]
  * @property {string} name of what it acts on
  * @property {(poses: object[], frame: number) => number[]} [vector] where the row has one component alone
  */
 
-/** A vector at a frame, SI. @param {object} row @param {number} frame @returns {number[]} */
+/** A vector at a frame, SI. @param {import("./data.js").Row} row @param {number} frame @returns {number[]} */
 export function readVector(row, frame) {
   return row.parts.map((part) => part.values[row.fixed ? 0 : frame]);
 }
@@ -36,7 +36,7 @@ function findLargest(row) {
   return largest;
 }
 
-/** Whether a row is a moment. @param {object} row */
+/** Whether a row is a moment. @param {import("./data.js").Row} row */
 export function isMoment(row) {
   return row.path.endsWith("moment");
 }
@@ -81,7 +81,7 @@ function dropSmallMoments(applied, forces, radius) {
 
 /**
  * List the sets of arrows to choose from, without empty ones.
- * @param {object} data
+ * @param {import("./data.js").CaseData} data
  * @returns {{key: string, label: string, rows: Arrow[], frame?: number, joints?: boolean}[]}
  *   frame: the only one at which an impulse acts; joints: whether the arrows name the joints
  */

@@ -154,7 +154,7 @@ function drawEnvelope(pen, panel, envelope, { style, unit, path }, colours, labe
 
 /**
  * Draw the curves and return their plot area.
- * @param {HTMLCanvasElement} canvas @param {object} data
+ * @param {HTMLCanvasElement} canvas @param {import("./data.js").CaseData} data
  * @param {import("./histories.js").TimeHistory[]} histories of one unit
  * @param {{label: string, values: Float64Array}} axis
  * @param {import("./envelope.js").Envelope & {names: string[]}|null} envelope of the first curve @param {number} frame

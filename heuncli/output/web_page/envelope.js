@@ -51,7 +51,7 @@ function findExtreme(curves, highest) {
 
 /**
  * Compute the envelope of a number over all cases that have it.
- * @param {object[]} runs ready to be shown
+ * @param {import("./data.js").CaseData[]} runs ready to be shown
  * @param {import("./histories.js").TimeHistory} history of the case that is shown
  * @param {{label: string}} axis over what @returns {Envelope|null} null where fewer than two cases have the number
  */

@@ -13,7 +13,10 @@ const DEGREES = 180 / Math.PI;
  * @property {Float64Array} low in the unit shown @property {Float64Array} high the same, but of a series of cuts
  */
 
-/** Make the histories of a row: its magnitude and its components. @param {object} row @param {number} count frames */
+/**
+ * Make the histories of a row: its magnitude and its components.
+ * @param {import("./data.js").Row} row @param {number} count frames
+ */
 function makeRowHistories(row, count) {
   const history = (path, label, pick) => {
     const make = () => {
@@ -47,7 +50,7 @@ function makeLoadHistory(section, load, count) {
   return { path: load.path, label, unit: load.unit, make };
 }
 
-/** Get all histories; each computes its numbers when it is first drawn. @param {object} data */
+/** Get all histories; each computes its numbers when it is first drawn. @param {import("./data.js").CaseData} data */
 export function getHistories(data) {
   data.histories ??= collectHistories(data);
   return data.histories;

@@ -24,7 +24,7 @@ function getLargest(load) {
 
 /**
  * Get the loads of a frame along a section, SI, as a view of the stored array.
- * @param {object} section @param {object} load @param {number} frame
+ * @param {import("./data.js").PageSection} section @param {object} load @param {number} frame
  */
 export function getLoadsAlong(section, load, frame) {
   const n = section.cuts.length;

@@ -36,19 +36,23 @@ function showRunNotes(data, signal) {
 }
 
 /** Describe the sign conventions of what is drawn. */
-function describeSigns(selection, data) {
+function describeSigns(selection) {
   const parts = [];
   const { choice, section, load } = selection;
   if (choice?.key.startsWith("foundation")) parts.push("Arrows: load of the machine on the ground.");
   else if (choice?.frame !== undefined) parts.push("Arrows: impulses of “from” on “to”, at their frame.");
   else if (choice) parts.push("Arrows: load of “from” on “to”; of gears, belts and ropes on the named body.");
   if (section && load) {
-    const [unit, size] = data.length;
     parts.push(`Section ${section.name}: force of the far side on the near side of the cut; N > 0 is tension.`);
-    const s = section.s?.[selection.getCutNumber(section)];
-    findElement("place").textContent = s === undefined ? "" : `s = ${formatShort(s * size)} ${unit}`;
   }
   return parts.join(" ");
+}
+
+/** Show the position of the chosen cut along its bar. */
+function showPlace(selection, [unit, perSi]) {
+  const { section, load } = selection;
+  const s = section && load ? section.s?.[selection.getCutNumber(section)] : undefined;
+  findElement("place").textContent = s === undefined ? "" : `s = ${formatShort(s * perSi)} ${unit}`;
 }
 
 /** Show the instant as text and on the slider. */
@@ -118,7 +122,7 @@ function showGoverning(envelope, history, goTo) {
 /** A load case while it is shown. */
 class ShownCase {
   /**
-   * @param {object[]} runs all cases @param {number} run the number of this one
+   * @param {import("./data.js").CaseData[]} runs all cases @param {number} run the number of this one
    * @param {object} previous what the case before it left
    * @param {(run: number, frame?: number) => void} change to another case
    */
@@ -142,7 +146,7 @@ class ShownCase {
     this.crank = this.selection.axes[1] ?? null;
     this.findEnvelope = makeEnvelopeFinder(runs);
     this.summary = new SummaryTable(findElement("summary"), data, this.crank, (frame, path) => {
-      if (this.selection.histories.some((history) => history.path === path)) this.show(path);
+      if (this.selection.histories.some((history) => history.path === path)) this.showHistory(path);
       this.player.halt(frame);
     });
     this.listen(previous, runs.length > 1);
@@ -163,7 +167,7 @@ class ShownCase {
     listenToSections(selection, redraw);
     this.tab = listenToTabs(this.table, redraw, previous.tab);
     listenToEnvelope(selection, redraw, hasCases && data.count > 1);
-    this.show = listenToCurve(selection, player, redraw, () => this.panel);
+    this.showHistory = listenToCurve(selection, player, redraw, () => this.panel);
     listenToColours((now) => {
       this.colours = now;
       redraw();
@@ -180,11 +184,13 @@ class ShownCase {
     const options = { frame, share, ...selection.drawOptions };
     drawMachine(findElement("machine"), data, this.view, options, this.colours, this.labels.machine);
     this.drawCurves(frame);
+    // while playing, a large table is written more rarely: CELL_PAUSE for each cell above the limit
     const now = performance.now();
     if (!player.playing || now - this.lastTableTime > CELL_PAUSE * (table.cells.length - MAX_CELLS_AT_ONCE)) {
       this.lastTableTime = now;
       table.show(frame);
-      findElement("signs").textContent = describeSigns(selection, data);
+      findElement("signs").textContent = describeSigns(selection);
+      showPlace(selection, data.length);
       findElement("machine").setAttribute("aria-label", `${data.title}, at ${formatInstant(data.time[frame], 0)} s`);
     }
     this.summary.show(frame);
@@ -215,7 +221,7 @@ class ShownCase {
   }
 }
 
-/** Show the load cases, each in a fresh copy of the page's main part. @param {object[]} runs */
+/** Show the load cases, each in a fresh copy of the page's main part. @param {import("./data.js").CaseData[]} runs */
 function showCases(runs) {
   const blank = document.querySelector("main").cloneNode(true);
   let shown = null;

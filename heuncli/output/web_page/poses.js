@@ -37,7 +37,7 @@ function computePose(body, frame, share) {
 
 /**
  * Compute the poses of all bodies.
- * @param {object} scene @param {number} frame @param {number} share @returns {Pose[]}
+ * @param {import("./data.js").Scene} scene @param {number} frame @param {number} share @returns {Pose[]}
  */
 export function computePoses(scene, frame, share) {
   return scene.bodies.map((body) => computePose(body, frame, share));

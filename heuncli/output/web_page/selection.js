@@ -15,7 +15,7 @@ function findMagnitude(values) {
 /** The selection of one load case; it calls nobody when it changes: whoever changes it redraws. */
 export class Selection {
   /**
-   * @param {object} data of the case
+   * @param {import("./data.js").CaseData} data of the case
    * @param {Selection} [previous] of the case before, which is kept where it can be
    */
   constructor(data, previous) {

@@ -14,7 +14,7 @@ import { drawCorner, drawGroundPoint, paintJoint, paintPath } from "./symbols.js
 import { add, cross, norm, normalize, scale, subtract } from "./vectors.js";
 
 const MANY_JOINTS = 40; // with more of them symbols are dots
-const MAX_THIN = 22; // pixels: half the thickness of a body whose name stands beside it
+const MAX_THIN = 22; // largest half thickness [pixels] of a body whose name stands beside it
 const SLENDER = 4; // its length is more than so many times that
 const NAME_GAP = 8; // pixels between a name and the middle or the edge of its body
 /** @type {WeakMap<object, {middle: number[], axis: number[], thickness: number}>} of each body */
@@ -85,7 +85,7 @@ function paintMachine(pen, scene, poses, view, options, colours) {
 
 /**
  * Draw the machine at a frame.
- * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./view.js").View} view
+ * @param {HTMLCanvasElement} canvas @param {import("./data.js").CaseData} data @param {import("./view.js").View} view
  * @param {object} options the frame and what is chosen to be drawn @param {import("./labels.js").LabelList} labels
  */
 export function drawMachine(canvas, data, view, options, colours, labels) {
@@ -102,12 +102,12 @@ export function drawMachine(canvas, data, view, options, colours, labels) {
     drawNames(labels, scene, poses, view, colours, options.values && options.choice?.joints);
   }
   if (options.load) drawLoad(pen, view, poses, { ...options.load, ...options }, colours, labels);
-  let line = 0;
+  let scaleRow = 0;
   if (options.choice) {
     drawArrows(pen, view, poses, options, colours, labels);
-    line = drawArrowScales(pen, view, options.choice, colours, options.size, labels);
+    scaleRow = drawArrowScales(pen, view, options.choice, colours, options.size, labels);
   }
-  if (options.load) drawLoadScale(pen, view, { ...options.load, size: options.size }, colours, line, labels);
+  if (options.load) drawLoadScale(pen, view, { ...options.load, size: options.size }, colours, scaleRow, labels);
   drawCorner(pen, view, scene.gravity, colours, labels);
   labels.write(colours.panel);
 }

@@ -9,7 +9,11 @@ const COLUMNS = ["", "x", "y", "z", "value", ""];
 
 /** A cell whose number follows the frame. */
 class Cell {
-  /** @param {string} path @param {(frame: number) => number} value SI @param {string} missing what stands for nan */
+  /**
+   * @param {string} path @param {(frame: number) => number} value SI
+   * @param {number} size how many of its unit an SI unit has @param {import("./digits.js").Style} style
+   * @param {string} missing what stands for nan
+   */
   constructor(path, value, size, style, missing = "open") {
     this.element = makeElement("td", "", { "data-path": path });
     this.element.addEventListener("pointerenter", () => this.showDigits());
@@ -31,22 +35,27 @@ class Cell {
   }
 }
 
-/** Add a row that is a heading. */
+/** Add a row that is a heading. @returns {HTMLElement} the element of the note beside its name */
 function addHeading(body, text, kind, note = "") {
   const row = makeElement("tr", "", { class: kind });
   const head = makeElement("th", text, { colspan: "6", scope: "rowgroup" });
-  if (note) head.append(" ", makeElement("span", note));
+  const noteElement = makeElement("span", note);
+  if (note) head.append(" ", noteElement);
   row.append(head);
   body.append(row);
+  return noteElement;
 }
 
-/** The table. */
+/** The table of all numbers. */
 export class NumberTable {
-  /** @param {HTMLTableElement} table @param {object} data @param {import("./selection.js").Selection} selection */
+  /**
+   * @param {HTMLTableElement} table @param {import("./data.js").CaseData} data
+   * @param {import("./selection.js").Selection} selection
+   */
   constructor(table, data, selection) {
     this.table = table;
     this.data = data;
-    /** @type {Cell[]} */
+    /** @type {{show: (frame: number) => void}[]} cells, and ranges along bars */
     this.cells = [];
     this.selection = selection;
     /** @type {Map<object, HTMLElement>} the element beside each section's name */
@@ -117,8 +126,7 @@ export class NumberTable {
   addSection(section, number) {
     const body = makeElement("tbody", "", { "data-kind": "sections" });
     if (number === 0) addHeading(body, this.data.cutting.heading, "heading", this.data.cutting.note);
-    addHeading(body, section.name, "group", section.note);
-    this.sectionNotes.set(section, body.lastChild.firstChild.lastChild);
+    this.sectionNotes.set(section, addHeading(body, section.name, "group", section.note));
     for (const load of section.loads) body.append(this.makeLoadRow(section, load));
     this.table.append(body);
   }

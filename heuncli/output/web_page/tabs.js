@@ -32,7 +32,7 @@ export function formatCaseName(data) {
 
 /**
  * Let the user choose the load case.
- * @param {object[]} runs @param {number} run @param {(run: number) => void} change
+ * @param {import("./data.js").CaseData[]} runs @param {number} run @param {(run: number) => void} change
  */
 export function listenToCases(runs, run, change) {
   const select = findElement("case");

@@ -28,7 +28,7 @@ function findSide(scene, normal) {
 
 /** Where the viewer looks from, by azimuth and elevation [rad]; up stays up on the screen. */
 export class View {
-  /** @param {object} scene */
+  /** @param {import("./data.js").Scene} scene */
   constructor(scene) {
     this.center = scene.center;
     this.radius = scene.radius;

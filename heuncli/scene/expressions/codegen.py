@@ -124,6 +124,7 @@ class Part(NamedTuple):
 
     is_truth: it is 1 or 0, and changes only where a branch in its own code changes
     measure: its dimension
+    is_condition: it is written as a comparison, or with `and`, `or`, `not`
     """
 
     code: Code
@@ -131,6 +132,7 @@ class Part(NamedTuple):
     constant: float | None = None
     is_truth: bool = False
     measure: MeasuredDimension = FREE
+    is_condition: bool = False
 
 
 @cache
@@ -169,7 +171,7 @@ class CodeGenerator:
             source=text, constant=part.constant, uses=tuple(self.variables), time_dependent=0 in part.uses,
             code=part.code, constants=tuple(self.constants), tables=tuple(self.tables),
             switches=tuple(self.switches), held_branches=tuple(self.held_branches), is_truth=part.is_truth,
-            dimension=part.measure.dimension if part.measure.kind == "known" else None,
+            dimension=part.measure.dimension if part.measure.kind == "known" else None, is_condition=part.is_condition,
         )  # fmt: skip
 
     def make_time(self) -> Part:

@@ -128,7 +128,7 @@ class _Parser(TokenReader):
             one, begin = self.codegen.make_number(1.0), self.position
             other = self.parse_and()
             part = self.codegen.make_choice(part, one, self.codegen.make_truth(other, self.text_since(begin)), text)
-        return part
+        return part._replace(is_condition=True)
 
     def parse_and(self) -> Part:
         begin = self.position
@@ -141,7 +141,7 @@ class _Parser(TokenReader):
             other = self.parse_not()
             truth = self.codegen.make_truth(other, self.text_since(begin))
             part = self.codegen.make_choice(part, truth, self.codegen.make_number(0.0), text)
-        return part
+        return part._replace(is_condition=True)
 
     def parse_not(self) -> Part:
         count = 0
@@ -154,7 +154,7 @@ class _Parser(TokenReader):
         text = self.text_since(begin)
         for _ in range(min(count, 2 + count % 2)):
             part = self.codegen.make_truth(part, text, "eq")
-        return part
+        return part._replace(is_condition=True)
 
     def parse_comparison(self) -> Part:
         """Parse a, a < b, or a chain a < b < c, in which b runs once."""
@@ -170,9 +170,9 @@ class _Parser(TokenReader):
             left, right = right, self.parse_binary(1)
             links.append((name, left, right, self.text_since(begin)))
         if len(links) > 1:
-            return self.codegen.make_chain(first, links)
+            return self.codegen.make_chain(first, links)._replace(is_condition=True)
         name, left, right, text = links[0]
-        return self.codegen.make_operation(name, left, right, text=text)
+        return self.codegen.make_operation(name, left, right, text=text)._replace(is_condition=True)
 
     def parse_binary(self, level: int) -> Part:
         part = self.parse_unary()

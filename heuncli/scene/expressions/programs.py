@@ -104,6 +104,7 @@ class Expression:
     held_branches: tuple[str, ...] = ()
     dimension: tuple[int, int, int] | None = None  # if it was written with a unit
     is_truth: bool = False  # it is 1 or 0, and changes only where one of its branches does
+    is_condition: bool = False  # it is written as a condition, such as t > 1: no value for a key that takes a number
 
     @classmethod
     def from_number(cls, value: float, location: SourceLocation | None = None) -> Expression:

@@ -342,6 +342,12 @@ Position = tuple[Length, Length, Length]
 Ratio = Annotated[float, DirectionComponent(u.NUMBER)]
 Direction = tuple[Ratio, Ratio, Ratio]
 Matrix = tuple[Direction, Direction, Direction]
+StiffnessRow = tuple[Stiffness, Stiffness, Stiffness]
+TurningStiffnessRow = tuple[TurningStiffness, TurningStiffness, TurningStiffness]
+CouplingRow = tuple[Force, Force, Force]
+DampingRow = tuple[Damping, Damping, Damping]
+TurningDampingRow = tuple[TurningDamping, TurningDamping, TurningDamping]
+CouplingDampingRow = tuple[Impulse, Impulse, Impulse]
 Tensor = tuple[tuple[Inertia, Inertia, Inertia], tuple[Inertia, Inertia, Inertia], tuple[Inertia, Inertia, Inertia]]
 
 

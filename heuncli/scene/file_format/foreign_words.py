@@ -185,6 +185,11 @@ MISPLACED_KEYS = {  # keys that belong somewhere else, or are expressed differen
     "dt": "the tolerance sets the steps; samples is the number of output times, times lists them",
     "units": "write units with the numbers: 12 mm; numbers without a unit are SI; for tables: --units",
     "mu": "coefficient refers to the joint's own force; for friction of a given size use torque or force",
+    "drive": "a driven joint has an entry in a block of its own: drives: {motor: {joint: NAME, rate: 1500 rpm}}",
+    "friction": "write it as a load: forces: {rubs: {type: friction, joint: NAME, torque: 0.3 N m}}, "
+    "with force in place of torque in a slide",
+    "damping": "write it as a load: forces: {drag: {type: damper, joint: NAME, coefficient: 0.01}}",
+    "spring": "write it as a load: forces: {k: {type: turn_spring, joint: NAME, stiffness: 10}}, or of type spring",
     "motor": "for a driven pin or slide: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
     "efficiency": "give gear losses as a separate load: forces: {rubs: {type: friction, joint: spin, "
     "torque: 0.3 N m}}; a thread has its own friction",

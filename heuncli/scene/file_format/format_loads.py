@@ -10,7 +10,10 @@ from heuncli.scene.file_format.fields import (
     AnEnd,
     Angle,
     BodyOrEnd,
+    CouplingDampingRow,
+    CouplingRow,
     Damping,
+    DampingRow,
     Either,
     EitherInTime,
     Force,
@@ -32,8 +35,11 @@ from heuncli.scene.file_format.fields import (
     Rate,
     ShiftLaw,
     Stiffness,
+    StiffnessRow,
     TurningDamping,
+    TurningDampingRow,
     TurningStiffness,
+    TurningStiffnessRow,
     TurnLaw,
 )
 from heuncli.scene.file_format.format_shapes import Frame, Orientation
@@ -94,6 +100,7 @@ class BushingEntry(PairEntry):
         Annotated[
             Annotated[ShiftLaw, Tag("single")]
             | Annotated[tuple[ShiftLaw, ShiftLaw, ShiftLaw], Tag("list")]
+            | Annotated[tuple[StiffnessRow, StiffnessRow, StiffnessRow], Tag("rows")]
             | Annotated[ShiftLaws, Tag("mapping")],
             FORM,
         ]
@@ -103,23 +110,32 @@ class BushingEntry(PairEntry):
         Annotated[
             Annotated[TurnLaw, Tag("single")]
             | Annotated[tuple[TurnLaw, TurnLaw, TurnLaw], Tag("list")]
+            | Annotated[tuple[TurningStiffnessRow, TurningStiffnessRow, TurningStiffnessRow], Tag("rows")]
             | Annotated[TurnLaws, Tag("mapping")],
             FORM,
         ]
         | None
     ) = None
+    coupling: tuple[CouplingRow, CouplingRow, CouplingRow] | None = None
     damping: (
-        Annotated[Annotated[Damping, Tag("single")] | Annotated[tuple[Damping, Damping, Damping], Tag("list")], FORM]
+        Annotated[
+            Annotated[Damping, Tag("single")]
+            | Annotated[DampingRow, Tag("list")]
+            | Annotated[tuple[DampingRow, DampingRow, DampingRow], Tag("rows")],
+            FORM,
+        ]
         | None
     ) = None
     turning_damping: (
         Annotated[
             Annotated[TurningDamping, Tag("single")]
-            | Annotated[tuple[TurningDamping, TurningDamping, TurningDamping], Tag("list")],
+            | Annotated[TurningDampingRow, Tag("list")]
+            | Annotated[tuple[TurningDampingRow, TurningDampingRow, TurningDampingRow], Tag("rows")],
             FORM,
         ]
         | None
     ) = None
+    coupling_damping: tuple[CouplingDampingRow, CouplingDampingRow, CouplingDampingRow] | None = None
     preload: tuple[Force, Force, Force] | None = None
     turning_preload: tuple[Moment, Moment, Moment] | None = None
     orientation: Orientation | None = None

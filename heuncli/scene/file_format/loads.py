@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 Matrix = tuple[Vec, Vec, Vec]
+ZERO_MATRIX: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 Vector = tuple[Expression, Expression, Expression]
@@ -27,6 +28,7 @@ Frame = Literal["world", "body"]
 
 
 V = TypeVar("V")  # a vector
+M = TypeVar("M")  # a matrix
 
 
 class PointForce(NamedTuple):
@@ -113,17 +115,17 @@ class Distributed(NamedTuple):
 
 
 @record
-class Elastic(Generic[V]):
-    """Three springs and dampers of a bushing, for its translation or for its rotation, along its axes.
+class Elastic(Generic[V, M]):
+    """The springs and dampers of a bushing, for its translation or for its rotation, in its axes.
 
-    stiffness: [N/m] or [N m/rad], 0 where a table replaces it
+    stiffness: symmetric [N/m] or [N m/rad], 0 where a table replaces it
     damping: [N s/m] or [N m s]
     preload: [N] or [N m]
     extra_load: load besides the stiffness: the preload, plus a table over the deflection (with its areas)
     """
 
-    stiffness: V
-    damping: V
+    stiffness: M
+    damping: M
     preload: V
     extra_load: Vector
 
@@ -132,14 +134,17 @@ class Bushing(NamedTuple):
     """Six springs and dampers between two bodies, in axes fixed in the body of from_.
 
     to_rotation: the orientation of these axes in the body of `to`
+    coupling, coupling_damping: force by rotation [N/rad], by its rate [N s]; the transpose is moment by displacement
     """
 
     from_: End
     to: End
-    shift: Elastic[Vec]
-    turn: Elastic[Vec]
+    shift: Elastic[Vec, Matrix]
+    turn: Elastic[Vec, Matrix]
     rotation: Matrix
     to_rotation: Matrix
+    coupling: Matrix = ZERO_MATRIX
+    coupling_damping: Matrix = ZERO_MATRIX
     type: Literal["bushing"] = "bushing"
 
 

@@ -90,9 +90,12 @@ def read_number(value: Any, dimension: Dimension | None, scope: Scope) -> float:
 
 def read_function(value: Any, dimension: Dimension | None, scope: Scope) -> Expression:
     """Read a value of a spec as an expression in time, in SI; its dimension is known if it has a unit. Raises
-    Finding.
+    Finding, also for a condition.
     """
     expression = read_unbounded_function(value, dimension, scope)
+    if expression.is_condition:
+        text = expression.source.strip()
+        raise Finding("wrong-kind", f"'{text}' is a condition, not a number", f"write 1 if {text} else 0")
     if expression.constant is not None:
         require_in_range(expression.constant)
     return expression

@@ -117,7 +117,10 @@ def resolve_bushing(resolver: ReferenceResolver, name: str, load: fl.BushingEntr
     to_rotation = orientation_matrix(load.to_orientation) if load.to_orientation is not None else rotation
     shift = make_elastic(resolver, name, "shift", load.stiffness, load.damping, load.preload)
     turn = make_elastic(resolver, name, "turn", load.turning, load.turning_damping, load.turning_preload)
-    return loads.Bushing(resolver.end(load.from_), resolver.end(load.to), shift, turn, rotation, to_rotation)
+    return loads.Bushing(
+        resolver.end(load.from_), resolver.end(load.to), shift, turn, rotation, to_rotation,
+        load.coupling or loads.ZERO_MATRIX, load.coupling_damping or loads.ZERO_MATRIX,
+    )  # fmt: skip
 
 
 MEANINGS: dict[str, Callable[..., m.Force]] = {
@@ -145,15 +148,15 @@ def bind_law(resolver: ReferenceResolver, law: Expression | None, path: str, own
 
 def make_elastic(
     resolver: ReferenceResolver, name: str, motion: str, stiffness: Any, damping: Any, preload: m.Vec | None
-) -> loads.Elastic[m.Vec]:
-    """Make the three springs of a bushing's translation or rotation.
+) -> loads.Elastic[m.Vec, loads.Matrix]:
+    """Make the springs of a bushing's translation or rotation.
 
-    motion: "shift" or "turn". An axis without a constant stiffness has a table.
+    motion: "shift" or "turn". An axis without a constant stiffness has a table; a matrix has none.
     """
-    laws = add_table_areas(expand_to_axes(stiffness))
+    laws = [] if is_matrix(stiffness) else add_table_areas(expand_to_axes(stiffness))
     preload = preload or m.ZERO
     extra_load = [Expression.from_number(x) for x in preload]
-    numbers = tuple(0.0 if isinstance(law, Expression) else law for law in laws)
+    numbers = stiffness if is_matrix(stiffness) else tuple(0.0 if isinstance(x, Expression) else x for x in laws)
     path = f"forces.{name}.{'stiffness' if motion == 'shift' else 'turning'}"
     for i, law in enumerate(laws):
         if isinstance(law, Expression):
@@ -162,8 +165,8 @@ def make_elastic(
             )
             extra_load[i] = add_expressions(extra_load[i], law_of_axis)
     return loads.Elastic(
-        (numbers[0], numbers[1], numbers[2]),
-        expand_to_axes(damping),
+        make_symmetric_matrix(numbers),
+        make_symmetric_matrix(damping),
         preload,
         (extra_load[0], extra_load[1], extra_load[2]),
     )
@@ -186,6 +189,20 @@ def expand_to_axes(value: Any) -> tuple[Any, Any, Any]:
     if isinstance(value, fl.ShiftLaws | fl.TurnLaws):
         return value.x, value.y, value.z
     return value if isinstance(value, tuple) else (value, value, value)
+
+
+def is_matrix(value: Any) -> bool:
+    """Whether a value of a bushing is given in rows."""
+    return isinstance(value, tuple) and isinstance(value[0], tuple)
+
+
+def make_symmetric_matrix(value: Any) -> loads.Matrix:
+    """Make the matrix of a stiffness or damping without tables: the symmetric part of one, or a diagonal one."""
+    if is_matrix(value):
+        rows = tuple(tuple(0.5 * (value[i][j] + value[j][i]) for j in range(3)) for i in range(3))
+        return rows[0], rows[1], rows[2]
+    x, y, z = expand_to_axes(value)
+    return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
 
 
 def constant_value(value: Expression) -> float:

@@ -101,7 +101,7 @@ def prepare_signal(table: TableFunction, entry: TableEntry) -> tuple[TableFuncti
 
 
 def smooth_table(table: TableFunction, entry: TableEntry, cut_off: float) -> tuple[TableFunction, str]:
-    """Smooth a table by a cut-off [as x]; also returns a note on what this removed."""
+    """Smooth a table by a cut-off period, in the unit of x; also returns a note on what this removed."""
     x, y = np.frombuffer(table.x), np.frombuffer(table.y)
     smoothed = smooth_points(x, y, cut_off, entry.period is not None)
     removed = format_amount(float(np.sqrt(np.mean((y - smoothed) ** 2))), table.dimensions[1])
@@ -115,7 +115,7 @@ def differentiate_entry(
     """Differentiate a table; also returns a note on the error, and a warning if that is large.
 
     measured: the table before smoothing, from which the error is estimated
-    cut_off: of the smoothing [as x], None without it
+    cut_off: period of the smoothing, in the unit of x; None without it
     """
     order, curve, is_periodic = entry.derivative or 1, table.interpolation, entry.period is not None
     x = np.frombuffer(table.x)
@@ -165,7 +165,7 @@ def rebuild_integral(table: TableFunction, entry: TableEntry, integrals: Integra
     values = integrals.values
     if entry.period is not None:
         values = np.append(values[:-1], values[0])
-    is_spline = entry.interpolation == "cubic"
+    is_spline = entry.interpolation == "cubic"  # whatever its ends: as a table's word `cubic` means not-a-knot
     source = replace(table, interpolation="cubic") if is_spline else table
     return rebuild_table(source, entry, values, None if is_spline else integrals.slopes)
 

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.kernel.choose import components
 from heuncli.results.results import Array
 
 # Rotations
@@ -188,16 +189,18 @@ def bodies_contiguous(values: Array) -> Array:
     return np.ascontiguousarray(values.transpose(0, last, *range(1, last))).swapaxes(0, 1)
 
 
-# the next and the second next component, cyclic
-NEXT_COMPONENT, AFTER_NEXT_COMPONENT = (np.array([1, 2, 0]), np.array([2, 0, 1]))
-
-
 def cross_components(a: Array, b: Array) -> Array:
     """Compute a x b, (n, 3, n_t)."""
-    return np.asarray(
-        a.take(NEXT_COMPONENT, 1) * b.take(AFTER_NEXT_COMPONENT, 1)
-        - a.take(AFTER_NEXT_COMPONENT, 1) * b.take(NEXT_COMPONENT, 1)
-    )
+    result = np.empty(a.shape)
+    if result.size:
+        components.cross_bodies(as_flat(a), as_flat(b), len(a), result.reshape(-1))
+    return result
+
+
+def as_flat(values: Array) -> Array:
+    """Return values as one row that the kernel may take for its own."""
+    flat = values.reshape(-1)
+    return flat if flat.flags.writeable else flat.copy()
 
 
 def cross_first_axis(a: Array, b: Array) -> Array:
@@ -205,25 +208,24 @@ def cross_first_axis(a: Array, b: Array) -> Array:
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def rotate_components(R: Array, vectors: Array) -> Array:
-    """Compute R v, (n, 3, n_t)."""
-    products = R * vectors[:, None]
-    return np.asarray(products[:, :, 0] + products[:, :, 2] + products[:, :, 1])
+def rotate_components(R: Array, vectors: Array, *, back: bool = False) -> Array:
+    """Compute R v, (n, 3, n_t), summed over the first, the last, then the second component; back: R^T v, summed in
+    order.
 
-
-def rotate_components_back(R: Array, vectors: Array) -> Array:
-    """Compute R^T v, (n, 3, n_t)."""
-    products = R * vectors[:, :, None]
-    return np.asarray(products[:, 0] + products[:, 1] + products[:, 2])
+    One of the two may be the same at all instants: (n, 3, 3, 1) or (n, 3, 1).
+    """
+    result = np.empty((len(R), 3, max(R.shape[-1], vectors.shape[-1])))
+    if result.size:
+        components.rotate_bodies(as_flat(R), as_flat(vectors), len(R), back, result.reshape(-1))
+    return result
 
 
 def quadratic_form(x: Array, J: Array) -> Array:
     """Compute x . J x of vectors (n, 3, n_t) and matrices (n, 3, 3), (n, n_t)."""
-    products = (x[:, :, None] * J[..., None] * x[:, None]).reshape(len(x), 9, x.shape[2])
-    total = products[:, 0] + products[:, 1]
-    for k in range(2, 9):
-        total += products[:, k]
-    return np.asarray(total)
+    result = np.empty((len(x), x.shape[-1]))
+    if result.size:
+        components.square_bodies(as_flat(x), as_flat(J), len(x), result.reshape(-1))
+    return result
 
 
 def squared_lengths(vectors: Array) -> Array:

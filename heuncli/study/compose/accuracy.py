@@ -188,7 +188,7 @@ def is_wrong(keys: tuple[str, ...], value: Array | float, block: Mapping[str, An
     path = row.path.removeprefix("impulses.NUMBER.")
     if row.is_timed and keys[0] != IMPULSES and len(array) == len(is_known):
         array = array[is_known]
-    if not path.startswith(MAY_BE_NAN):  # of loads only frictions that stick as one
+    if not path.startswith(MAY_BE_NAN):  # a load may be nan only if it is friction that sticks together with others
         return bool(np.isnan(array).any()) and not (path == "forces.FORCE.value" and "value" in block.get("open", ()))
     return (
         "open" in block

@@ -11,17 +11,18 @@ What a joint and its reaction pass through, from the file to a cell. Up to the n
     tables of a Layout        multibody/tree/layout.py               the arrays that the kernel reads
     History                   study/solve/history.py                 finds the kernel's solutions at the instants
     Evaluation                motion/integration/evaluator.py        the kernel's forces of tree joints and multipliers
+    Recovery                  study/compose/recovery.py              computes each of the following at its first use
     Resolution                loads/redundancy/resolve.py            in redundant scenes: what is determined
-    JointLoads                loads/kinetostatics/reactions.py       force and moment ON `to`; split where redundant
-    JointBlock of the Results results/results.py, made here          with components, shares, axes, indeterminate marks
+    JointLoads                loads/kinetostatics/reactions.py       by find_joint_loads: force and moment ON `to`
+    JointBlock of the Results results/results.py, made here          by make_joint_block: components, shares, marks
 
 JSON is written of that block (output/tables/export.py). After it:
 
     StoredArray               results/stored_arrays.py               stands for its arrays where a file holds long ones
-    Channel                   study/quantities/channels.py           path, unit, kind of error; its numbers are channels
+    Channel                   study/quantities/channels.py           by iter_channels: path, unit, kind of error
     Extremes                  results/results.py                     least and greatest value, each with its instant
-    RowGroup, TableBlock      output/tables/table_blocks.py          channels that share rows of a table
-    NumberCell                output/documents/document.py           in display units, with the digits of its error
+    RowGroup, TableBlock      output/tables/table_blocks.py          by build_block: channels that share rows of a table
+    NumberCell                output/documents/document.py           by make_cells: display units, digits of its error
     OutputTable               output/documents/document.py           its cells, placed; no other form of the number
 
 A section goes the same way: SectionEntry, Section, Cuts (loads/kinetostatics/cuts.py), its block, its channels. Those
@@ -131,7 +132,7 @@ def make_reaction_blocks(recovery: Recovery, by_cause: bool) -> dict[str, Any]:
 
 
 def make_requested_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
-    """Make the blocks of some reports; of a report with requested entries, these alone."""
+    """Make the blocks of some reports, each with its requested entries only."""
     return select_blocks(make_blocks(recovery, reports), recovery.setup.selection)
 
 
@@ -241,9 +242,7 @@ def find_open_section(recovery: Recovery, cuts: Cuts) -> Mapping[str, Mask]:
 
 
 def make_bushing_block(load: BushingLoad, applied_load: AppliedLoad, states: BodyStates) -> ForceBlock:
-    """Make the block of a bushing: its shift and turn, and the load it exerts on `to`, in its own axes, which are fixed
-    in `from`.
-    """
+    """Make the block of a bushing: its shift, its turn, and its load on `to`, in axes fixed in `from`."""
     assert applied_load.strain is not None
     shift, turn = applied_load.strain[:, 0], applied_load.strain[:, 1]
     R = np.eye(3) if load.a == GROUND else states.R[:, load.a]

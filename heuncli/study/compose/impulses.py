@@ -33,7 +33,7 @@ from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
 
 UNTIMED = frozenset({"about", "s", "side"})  # keys of blocks that are the same at all impulses
-OPEN_KEY = "open"  # of a block: the list of its open components
+OPEN_KEY = "open"  # the key of a block under which its open components are listed
 IMPULSE_BLOCKS = frozenset({"foundation", "joints", "sections"})
 WRENCH = {"N·s": ("force", *SECTION_FORCES), "N·m·s": ("moment", *SECTION_MOMENTS)}
 COUPLING_QUANTITIES = {
@@ -42,7 +42,8 @@ COUPLING_QUANTITIES = {
     )
     for unit, struck in IMPULSE_UNITS.items()
 }
-ERROR_KINDS = (  # of estimated errors, the block they are of, and its numbers by unit; a drive's unit is its joint's
+# Kind of estimated error, block of the results, and the block's numbers by unit; a drive's unit is its joint's.
+ERROR_KINDS = (
     ("foundation", "foundation", WRENCH),
     ("reactions", "joints", WRENCH),
     ("reactions", "couplings", COUPLING_QUANTITIES),
@@ -297,7 +298,7 @@ def are_shares(name: str, value: Any) -> bool:
 
 
 def find_largest_difference(values: Array, check_values: Array, matched_pairs: Sequence[tuple[int, int]]) -> float:
-    """Return the largest difference of numbers over the impulses that both runs have; of others the number itself."""
+    """Return the largest difference of numbers between two runs over the impulses; a missing number counts as 0."""
     reference = np.zeros_like(values)
     for i, k in matched_pairs:
         reference[i] = check_values[k]

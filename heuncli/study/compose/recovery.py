@@ -329,8 +329,9 @@ def compute_vector_magnitudes(velocities: Array) -> Array:
 def recover(
     setup: Setup, solutions: Evaluation, least_norm: bool, state_instants: ComparedInstants | None = None
 ) -> Recovery:
-    """Make the recovery of the kernel's solutions; state_instants: as of `Recovery`. Raises SolveError where no
-    acceleration exists.
+    """Make the recovery of the kernel's solutions. Raises SolveError where no acceleration exists.
+
+    state_instants: see `Recovery`
     """
     if state_instants is None:  # otherwise it was checked before
         require_solvable(setup.scene, solutions)

@@ -13,7 +13,6 @@ Composed at once, as where they fit into memory:
 
     closed chains         where something is indeterminate, or an instant is close to a singular pose: marks,
                           determinate sums and the sentences on singular poses depend on all instants
-    loads by cause        the list of causes depends on all instants
     events on results     searched for in the solutions at all instants
     one instant           there are no parts
 """
@@ -39,9 +38,9 @@ from heuncli.study.compose.accuracy import Balance, make_accuracy, require_finit
 from heuncli.study.compose.blocks import make_requested_blocks
 from heuncli.study.compose.recovery import Recovery, find_determinate_sums, recover
 from heuncli.study.compose.warnings import (
+    PartialSamples,
     collect_warnings,
-    describe_partial_samples,
-    has_smoothed_friction,
+    find_partial_samples,
     make_status,
     warn_near_singular,
 )
@@ -62,6 +61,7 @@ class ComposedInstants(NamedTuple):
 
     recovery: what they were composed of, or the last part of it
     unknown: the instants at which some numbers are unknown
+    partial_friction: those at which smoothed friction is below its full value, if there are any
     """
 
     times: Array
@@ -69,6 +69,7 @@ class ComposedInstants(NamedTuple):
     blocks: Block
     unknown: Array
     balance: Balance
+    partial_friction: PartialSamples | None
 
 
 def compose(
@@ -90,9 +91,7 @@ def compose(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
-        model=make_model_block(
-            setup, history, recovery, is_complete=len(composed.times) == len(recovery.solutions.times)
-        ),
+        model=make_model_block(setup, history, recovery, composed),
         status=make_status(history, setup.scene.mechanism) if rest is None else rest.status,
         time=composed.times,
         **composed.blocks,
@@ -111,9 +110,7 @@ def compose(
                 setup, history, recovery, composed.blocks.get("joints", {}), accuracy["balance_residual"]
             ),
             *warn_near_singular(composed.unknown),
-            *warn_of_wheels(setup, history, composed.blocks, impulses),
-            *warn_of_belts(setup, recovery, composed.blocks, impulses),
-            *warn_of_threads(setup, impulses),
+            *warn_of_couplings(setup, history, recovery, composed.blocks, impulses),
             *(rest.warnings if rest is not None else ()),
             *setup.start_warnings,
         ),
@@ -125,7 +122,8 @@ def compose_at_once(setup: Setup, history: History, recovery: Recovery, reports:
     """Compose all the instants of `recovery`."""
     blocks, unknown = make_known_blocks(history, recovery, reports)
     balance = Balance(setup, history.followed_duration).add(recovery)
-    return ComposedInstants(recovery.solutions.times, recovery, blocks, unknown, balance)
+    partial = find_partial_samples(setup.scene.mechanism, recovery.solutions)
+    return ComposedInstants(recovery.solutions.times, recovery, blocks, unknown, balance, partial)
 
 
 def make_known_blocks(
@@ -143,45 +141,17 @@ def make_known_blocks(
     return make_blocks_without_unknown(recovery, reports, history.checked_run.run, history.jumps, open_marker)
 
 
-def warn_of_wheels(setup: Setup, history: History, blocks: Block, impulses: Impulses | None) -> tuple[str, ...]:
-    """Warn of wheels that lift or slip where no event covers it."""
-    if not setup.spec.rolling:
+def warn_of_couplings(
+    setup: Setup, history: History, recovery: Recovery, blocks: Block, impulses: Impulses | None
+) -> tuple[str, ...]:
+    """Warn of wheels that lift or slip, belts that push and threads without friction, where no event covers it."""
+    spec = setup.spec
+    if not spec.rolling and not any(own.type in ("belt", "screw") for own in spec.couplings.values()):
         return ()
-    from heuncli.study.compose.warnings import (  # few scenes have them
-        warn_of_wheels_at_impulses,
-        warn_of_wheels_at_instant,
-    )
+    from heuncli.study.compose.coupling_warnings import iter_coupling_warnings  # few scenes have them
 
-    instant_warnings = (
-        warn_of_wheels_at_instant(setup.spec, blocks.get("couplings", {})) if history.checked_run is None else ()
-    )
-    return (*instant_warnings, *(warn_of_wheels_at_impulses(setup.spec, impulses) if impulses is not None else ()))
-
-
-def warn_of_threads(setup: Setup, impulses: Impulses | None) -> tuple[str, ...]:
-    """Warn of threads that transmit impulses."""
-    if impulses is None or not any(own.type == "screw" for own in setup.spec.couplings.values()):
-        return ()
-    from heuncli.study.compose.warnings import warn_of_threads_at_impulses  # few scenes have them
-
-    return tuple(warn_of_threads_at_impulses(setup.spec, impulses))
-
-
-def warn_of_belts(setup: Setup, recovery: Recovery, blocks: Block, impulses: Impulses | None) -> tuple[str, ...]:
-    """Warn of belts that would push where no event covers it."""
-    if not any(own.type == "belt" for own in setup.spec.couplings.values()):
-        return ()
-    from heuncli.study.compose.warnings import (  # few scenes have them
-        warn_of_belts_at_impulses,
-        warn_of_belts_at_instant,
-    )
-
-    largest = recovery.load_magnitudes.by_unit["N"]
-    has_one_instant = setup.spec.analysis.type != "motion"
-    instant_warnings = (
-        warn_of_belts_at_instant(setup.spec, blocks.get("couplings", {}), largest) if has_one_instant else ()
-    )
-    return (*instant_warnings, *(warn_of_belts_at_impulses(setup.spec, impulses) if impulses is not None else ()))
+    largest_force = recovery.load_magnitudes.by_unit["N"] if history.checked_run is None else None
+    return tuple(iter_coupling_warnings(spec, blocks.get("couplings", {}), largest_force, impulses))
 
 
 def find_impulses(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:
@@ -193,10 +163,9 @@ def find_impulses(setup: Setup, history: History, least_norm: bool, by_cause: bo
     return make_impulses(setup, history, least_norm, by_cause)
 
 
-def make_model_block(setup: Setup, history: History, recovery: Recovery, *, is_complete: bool) -> Block:
-    """Make the block `model`: that of the setup, with what only the run shows.
-
-    is_complete: whether `recovery` is at all instants of the results
+def make_model_block(setup: Setup, history: History, recovery: Recovery, composed: ComposedInstants) -> Block:
+    """Make the block `model`: that of the setup, with what only the run shows; recovery: of the instants or some of
+    them.
     """
     split = recovery.decided.words if recovery.needs_indeterminacy and recovery.decided is not None else ()
     return (
@@ -206,16 +175,16 @@ def make_model_block(setup: Setup, history: History, recovery: Recovery, *, is_c
         | ({"axes": setup.selection.axes} if setup.selection.axes != "world" else {})
         | make_contact_notes(history)
         | make_method_change(setup, history)
-        | (make_friction_notes(setup, recovery) if is_complete else {})
+        | make_friction_notes(setup, composed)
     )
 
 
-def make_friction_notes(setup: Setup, recovery: Recovery) -> Block:
+def make_friction_notes(setup: Setup, composed: ComposedInstants) -> Block:
     """Make the notes on instants at which smoothed friction is below its full value; a rest pose has no friction."""
-    if setup.rest is not None or not has_smoothed_friction(setup.scene.mechanism):
+    partial = composed.partial_friction
+    if setup.rest is not None or partial is None:
         return {}
-    notes = describe_partial_samples(setup.scene.mechanism, recovery.solutions)
-    return {"notes": [*setup.model["notes"], *notes]} if notes else {}
+    return {"notes": [*setup.model["notes"], partial.describe(len(composed.times))]}
 
 
 def make_acceleration_note(recovery: Recovery) -> Block:
@@ -269,8 +238,9 @@ def compose_in_parts(
 
 
 def divide_instants(count: int, part_size: int) -> list[slice]:
-    """Divide the instants into parts of about `part_size`; all but the last consist of whole blocks, as all at once are
-    multiplied.
+    """Divide the instants into parts of about `part_size`.
+
+    All parts but the last consist of whole blocks of the matrix products, so that each number keeps its bits.
     """
     blocks, in_part = count // BLOCK, max(1, part_size // BLOCK)
     bounds = BLOCK * np.linspace(0, blocks, max(1, blocks // in_part) + 1).astype(int)
@@ -286,6 +256,7 @@ def compose_parts(
     Raises SolveError where one of them has no accelerations, or a number that is not finite.
     """
     store, blocks, balance, largest = ArrayStore(), dict[str, Any](), Balance(setup, history.followed_duration), 0.0
+    partial: PartialSamples | None = None
     for part in parts:
         recovery = recover(setup, history.find_solutions(part), least_norm)
         part_blocks, unknown = make_known_blocks(history, recovery, reports)
@@ -294,13 +265,15 @@ def compose_parts(
         times = recovery.solutions.times
         require_finite_blocks(part_blocks, times, np.ones(len(times), dtype=bool))
         balance.add(recovery)
+        later = find_partial_samples(setup.scene.mechanism, recovery.solutions)
+        partial = later if partial is None else partial.add_later(later)
         blocks = blocks or allocate_like(store, part_blocks, len(history.times))
         copy_part(blocks, part_blocks, part.start)
         if "axis" in part_blocks.get("foundation", {}):
             largest = max(largest, find_largest_force(recovery, part_blocks["foundation"]["force"]))
     if "axis" in blocks.get("foundation", {}):
         drop_axes(blocks["foundation"], largest, parts)
-    return ComposedInstants(history.times, recovery, blocks, np.zeros(0), balance)
+    return ComposedInstants(history.times, recovery, blocks, np.zeros(0), balance, partial)
 
 
 def depends_on_all_instants(recovery: Recovery) -> bool:
@@ -341,8 +314,9 @@ def find_largest_force(recovery: Recovery, s: Array) -> float:
 
 
 def drop_axes(foundation: Mapping[str, Any], largest: float, parts: list[slice]) -> None:
-    """Remove the central axis where the total is zero relative to the largest force of the run; a part knew only its
-    own largest.
+    """Remove the central axis where the total is zero relative to the largest force of the run.
+
+    A part of the results knew only its own largest force.
     """
     for part in parts:
         is_zero = is_zero_force(foundation["force"][part], largest)

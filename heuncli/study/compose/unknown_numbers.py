@@ -34,8 +34,9 @@ from heuncli.results.results_schema import SPACE
 from heuncli.study.compose.blocks import make_requested_blocks
 from heuncli.study.compose.recovery import RANK_REPORTS, Recovery
 
-SAFETY = 10.0  # times the change; true errors were 0.2 of the change in the median of 4,711 instants, at most 3.4
-DIRECTIONS = 3  # in which a state is moved; with probability 1e-3 none of them meets the weak direction
+# An error is taken as SAFETY times the observed change: in 4,711 instants its ratio was 0.2 in the median, at most 3.4.
+SAFETY = 10.0
+DIRECTIONS = 3  # random ones in which a state is moved; with probability 1e-3 none meets the weak direction
 ACCELERATION_UNITS = frozenset({"m/s²", "rad/s²", "N", "N·m", "Pa", "W", "N·m/s"})  # units that depend on them
 PathAndUnit = tuple[str, str]  # numbers of one kind: the path of the schema, and the unit
 
@@ -295,7 +296,7 @@ class VerdictsBetween:
         for leaf, mask in zip(iter_leaves(blocks), self.open, strict=True):
             if mask is not None:
                 leaf.block[leaf.name] = mask_indeterminate(leaf.block[leaf.name], mask[k])
-                if "open" in leaf.block:  # at some instant, in some cut
+                if "open" in leaf.block:  # it lists what is indeterminate at any instant or cut
                     leaf.block["open"] += list_indeterminate_names(
                         {leaf.name: mask[k].reshape(-1, *[3] * leaf.vectors)}
                     )

@@ -3,17 +3,14 @@
 Friction is its size times tanh(rate / speed). Where the rate is below a few times `speed`, loads and accelerations are
 those of a machine with less friction: a start from rest shows the acceleration without friction.
 
-A state and an impulse have warnings of their own: accelerated bodies, belts, wheels and threads. Bodies that the loads
-of a state accelerate may miss a cylinder or a support. This is checked only where everything stands still, or where
-drives alone turn at constant rates and nothing moves against the bodies they carry. Belts, wheels and threads are
-watched by events of a motion, which cover neither the instant of a state nor impulses.
+Bodies that the loads of a state accelerate may miss a cylinder or a support. This is checked only where everything
+stands still, or where drives alone turn at constant rates and nothing moves against the bodies they carry.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -27,17 +24,11 @@ from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.loads import GROUND, JointLoad, Load, ThreadLoad
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array, JointBlock, Status
-from heuncli.scene.file_format.couplings import Belt, RollingWheel, Screw
-from heuncli.scene.file_format.models import Spec
-from heuncli.scene.file_format.resolve_couplings import SLACK_BELT_MESSAGE, format_rounded_up
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
 
-if TYPE_CHECKING:  # a state has no impulses
-    from heuncli.study.compose.impulses import Impulses
-
-MAX_TIMES = 5  # that a sentence lists
+MAX_TIMES = 5  # instants that a sentence lists
 
 
 def make_status(history: History, mechanism: Mechanism) -> Status:
@@ -54,7 +45,11 @@ def make_status(history: History, mechanism: Mechanism) -> Status:
 def collect_warnings(
     setup: Setup, history: History, recovery: Recovery, joints: Mapping[str, JointBlock], residual: float
 ) -> tuple[str, ...]:
-    """Collect the warnings at the instants of `recovery`; joints: their block, residual: of d'Alembert's principle."""
+    """Collect the warnings at the instants of `recovery`.
+
+    joints: their block in the results
+    residual: of d'Alembert's principle, relative to the largest force
+    """
     return (
         *warn_unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
@@ -215,14 +210,32 @@ def list_partial_friction(mechanism: Mechanism, solutions: Evaluation) -> dict[f
     return found
 
 
-def describe_partial_samples(mechanism: Mechanism, solutions: Evaluation) -> list[str]:
-    """Return a sentence on the instants of results at which smoothed friction is below its full value."""
+class PartialSamples(NamedTuple):
+    """The samples at which smoothed friction is below its full value: how many, the first instant, and what is so
+    there.
+    """
+
+    sample_count: int
+    first_time: float
+    first: tuple[PartialFriction, ...]
+
+    def add_later(self, later: PartialSamples | None) -> PartialSamples:
+        """Add the samples of a later part of the run."""
+        return self if later is None else self._replace(sample_count=self.sample_count + later.sample_count)
+
+    def describe(self, total_count: int) -> str:
+        """Describe them in a sentence; total_count: of all samples."""
+        which = f"{self.sample_count} of {total_count} samples, first at t = {self.first_time:.6g} s"
+        return f"loads and accelerations at {which}, do not include full friction: {describe_partial(self.first)}"
+
+
+def find_partial_samples(mechanism: Mechanism, solutions: Evaluation) -> PartialSamples | None:
+    """Find the samples at which smoothed friction is below its full value; None if there are none."""
     found = list_partial_friction(mechanism, solutions) if has_smoothed_friction(mechanism) else {}
     if not found:
-        return []
+        return None
     first = min(found)
-    which = f"{len(found)} of {len(solutions.times)} samples, first at t = {first:.6g} s"
-    return [f"loads and accelerations at {which}, do not include full friction: {describe_partial(found[first])}"]
+    return PartialSamples(len(found), first, tuple(found[first]))
 
 
 def describe_partial(partial: Sequence[PartialFriction]) -> str:
@@ -234,19 +247,22 @@ def describe_partial(partial: Sequence[PartialFriction]) -> str:
 
 
 def make_partial_note(partial_by_time: dict[float, list[PartialFriction]]) -> str:
-    """Explain the mark beside numbers, with the names of the friction."""
+    """Explain the mark next to numbers, with the names of the friction."""
     names = dict.fromkeys(own.name for partial in partial_by_time.values() for own in partial)
     some = ", ".join(list(names)[:MAX_NAMED]) + (" ..." if len(names) > MAX_NAMED else "")
     rate = f"{compute_full_friction_rate():.3g}"
     return f"smoothed friction ({some}) is below its full value here: rate below {rate} times its `speed`"
 
 
-UNITS = {"angle": "rad/s\u00b2", "travel": "m/s\u00b2"}
+UNITS = {"angle": "rad/s²", "travel": "m/s²"}
 HINT = "not at rest; analysis: {type: rest} finds the rest position"
 
 
 def describe_accelerations(recovery: Recovery) -> list[str]:
-    """Return a sentence on a state that its loads set in motion; recovery: of one instant."""
+    """Describe in a sentence that the loads of a state set it in motion; empty if they do not.
+
+    recovery: at the state's one instant
+    """
     setup = recovery.setup
     if setup.spec.analysis.type != "state" or not setup.model["freedoms"]:
         return []
@@ -267,7 +283,10 @@ def describe_accelerations(recovery: Recovery) -> list[str]:
 
 
 def list_accelerated_bodies(recovery: Recovery) -> list[str]:
-    """List the bodies that are accelerated from rest, the fastest first: of the centre of mass, or turning."""
+    """List the bodies that are accelerated from rest, the fastest first, with the acceleration that is larger.
+
+    It is that of the centre of mass, or the angular one.
+    """
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
     mass = mechanism.scale_masses
     radius = np.sqrt(np.array([np.trace(b.inertia) for b in mechanism.bodies]) / mass)
@@ -275,8 +294,8 @@ def list_accelerated_bodies(recovery: Recovery) -> list[str]:
     fastest = np.maximum(shift, turn * radius)
     is_accelerated = fastest > tolerances.STARTS_MOVING * find_load_scale(recovery) / mass
     return [
-        f"{mechanism.bodies[i].name} " + (f"{shift[i]:.3g} m/s\u00b2" if shift[i] >= turn[i] * radius[i]
-                                          else f"{turn[i]:.3g} rad/s\u00b2")
+        f"{mechanism.bodies[i].name} " + (f"{shift[i]:.3g} m/s²" if shift[i] >= turn[i] * radius[i]
+                                          else f"{turn[i]:.3g} rad/s²")
         for i in np.argsort(-fastest, kind="stable").tolist()
         if is_accelerated[i]
     ]  # fmt: skip
@@ -308,8 +327,9 @@ def list_accelerated_coordinates(recovery: Recovery) -> list[str]:
 
 
 def find_load_scale(recovery: Recovery) -> Array:
-    """Return the largest load on each body, including its weight and inertia loads, (n,) [N]; moments are divided by
-    the scene's size.
+    """Find the largest load on each body, including its weight and inertia loads, (n,) [N].
+
+    Moments are divided by the scene's size.
     """
     setup = recovery.setup
     largest: Array = inertia_scale(setup.scene.mechanism, recovery.states)[0]
@@ -319,83 +339,3 @@ def find_load_scale(recovery: Recovery) -> Array:
                 size = max(float(np.abs(F[0]).max()), float(np.abs(M[0]).max()) / setup.scene.layout.size)
                 largest[end.body] = max(largest[end.body], size)
     return largest
-
-
-PUSHED_AT_IMPULSE = (
-    "in the impulse at t = {:.6g} s the belt {} would have to push: no pretension withstands an impulse, and the force "
-    "with which the belt then pulls its pulleys together is not computed"
-)
-
-
-def warn_of_belts_at_instant(spec: Spec, couplings: Mapping[str, Any], largest: float) -> Iterator[str]:
-    """Warn of the belts that push at the single instant of a state; couplings: their block, largest: force of all
-    [N].
-    """
-    for name, belt in find_belts(spec).items():
-        slack = float(couplings[name]["slack"][0]) if name in couplings else 0.0
-        if slack < -tolerances.NO_FORCE * largest:
-            yield SLACK_BELT_MESSAGE.format(name, format_rounded_up(belt.pretension - slack))
-
-
-def warn_of_belts_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
-    """Warn of the belts that take part in impulses, which no pretension withstands."""
-    couplings, limit = impulses.all_blocks["couplings"], -tolerances.NO_FORCE * impulses.magnitudes_by_unit["N·s"]
-    for k, jump in enumerate(impulses.jumps):
-        for name in find_belts(spec):
-            if couplings[name]["slack"][k] < limit:
-                yield PUSHED_AT_IMPULSE.format(jump.reported_time, name)
-
-
-def find_belts(spec: Spec) -> dict[str, Belt]:
-    """Return the belts of a scene."""
-    return {name: own for name, own in spec.couplings.items() if isinstance(own, Belt)}
-
-
-LIFTS = "the wheel {} would have to be pulled onto its plane: it lifts off"
-SLIPS = "the wheel {} would need more friction than available: it slips"
-
-
-def warn_of_wheels_at_instant(spec: Spec, couplings: Mapping[str, Any]) -> Iterator[str]:
-    """Warn of wheels that lift or slip at the single instant; couplings: their block."""
-    for name, wheel in spec.rolling.items():
-        if name in couplings:
-            yield from (sentence.format(name) for sentence in iter_problems(wheel, couplings[name], 0))
-
-
-def warn_of_wheels_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
-    """Warn of wheels that would lift or slip at each impulse."""
-    wheels = spec.rolling
-    couplings = impulses.all_blocks["couplings"] if wheels else {}
-    for k, jump in enumerate(impulses.jumps):
-        for name, wheel in wheels.items():
-            for sentence in iter_problems(wheel, couplings[name], k):
-                yield f"in the impulse at t = {jump.reported_time:.6g} s {sentence.format(name)}"
-
-
-def iter_problems(wheel: RollingWheel, block: Mapping[str, Any], k: int) -> Iterator[str]:
-    """Yield the problems at instant k: a negative normal force, or more friction than the normal force allows."""
-    limit = -tolerances.NO_FORCE * np.nan_to_num(block["force"][k])
-    if not wheel.held and block["normal"][k] < limit:
-        yield LIFTS
-    elif wheel.friction is not None and block["grip"][k] < limit:
-        yield SLIPS
-
-
-FRICTIONLESS_AT_IMPULSE = (
-    "the impulse at t = {:.6g} s passes the thread {} without friction: a self-locking thread would hold it, "
-    "any other would take part of it"
-)
-
-
-def find_friction_threads(spec: Spec) -> list[str]:
-    """Return the threads of a scene that have friction."""
-    return [name for name, own in spec.couplings.items() if isinstance(own, Screw) and own.friction is not None]
-
-
-def warn_of_threads_at_impulses(spec: Spec, impulses: Impulses) -> Iterator[str]:
-    """Warn of the threads that take part in impulses."""
-    couplings, limit = impulses.all_blocks["couplings"], tolerances.NO_FORCE * impulses.magnitudes_by_unit["N·s"]
-    for k, jump in enumerate(impulses.jumps):
-        for name in find_friction_threads(spec):
-            if abs(couplings[name]["force"][k]) > limit:
-                yield FRICTIONLESS_AT_IMPULSE.format(jump.reported_time, name)

@@ -22,7 +22,7 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.study.model.model_note import is_smooth
 from heuncli.study.model.setup import Setup
 
-TRIAL_SHARE = 0.1  # of the run, for the trial
+TRIAL_SHARE = 0.1  # share of the run that the trial integrates
 MAX_TRIAL_SECONDS = 0.5  # seconds for the trial
 MAX_STEPS = 2_000
 
@@ -49,8 +49,9 @@ def describe_integration(setup: Setup) -> list[str]:
 
 
 def find_restart_method(setup: Setup) -> tuple[Method, str] | None:
-    """Return the method that the run would be restarted with, and why, if its beginning is stiff or events end its
-    steps; else None.
+    """Find the method that the run would be restarted with, and why; None if it would not.
+
+    A run is restarted if its beginning is stiff, or if events end most steps.
     """
     if not setup.is_auto or setup.method is None or setup.method.is_determined:
         return None

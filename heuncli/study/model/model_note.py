@@ -101,8 +101,7 @@ def describe_pose_freedoms(model: Block) -> str:
 
 
 def describe_reductions(left_out: Sequence[str], scene: PreparedScene, reduction: ReducedScene | None) -> Block:
-    """Describe in sentences what was left out or reduced, what was not though one might expect it, and which results
-    this hides.
+    """Describe what was left out or reduced, what was not though one might expect it, and which results this hides.
 
     A scene that was found to stay in a plane is planar, too; results across the plane are given as in space.
     """
@@ -231,7 +230,10 @@ NOTHING_STIFF = "not expected to be stiff: no spring, damper, friction or force 
 
 
 def choose_first_method(layout: Layout, spec: Spec) -> Method:
-    """Choose the method for a motion that is not known to be stiff; layout: of what is integrated."""
+    """Choose the method for a motion that is not known to be stiff.
+
+    layout: of the scene that is integrated
+    """
     is_fine = spec.analysis.tolerance <= tolerances.VERNER98 and is_smooth(layout)
     return load_method_by_name(
         FINE_METHOD if is_fine and not find_discontinuities(layout.mechanism, end_time(spec)) else DEFAULT

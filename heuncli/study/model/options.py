@@ -89,8 +89,8 @@ def collect_results(calls: Iterable[Callable[[], T]]) -> list[T]:
     return results
 
 
-SOLUTION_COPIES = 3.0  # times the kernel's solution at an instant: those of both runs, and what is derived from them
-STATE_COPIES = 3.0  # times the state at an instant: those of both runs, those of all compared instants, and the times
+SOLUTION_COPIES = 3.0  # copies of the kernel's solution at an instant: two runs, and what is derived from them
+STATE_COPIES = 3.0  # copies of the state at an instant: two runs, and the compared instants with their times
 FEW = 2_000_000  # numbers that fit into memory without parts
 RUNS = 3  # whose steps are in memory at once: the run, its check run, the one from a perturbed start
 BYTES_PER_STEP = 150.0  # bytes of a step besides its start state: its end, its segment, its index among the jumps
@@ -172,7 +172,7 @@ def can_compose_in_parts(setup: Setup) -> bool:
     may_be_indeterminate = bool(
         setup.model["redundant"] or layout.contacts or layout.friction_contacts or layout.mechanism.couplings
     )
-    if setup.method is None or (layout.rows and may_be_indeterminate) or SHARES in setup.selection.reports:
+    if setup.method is None or (layout.rows and may_be_indeterminate):
         return False
     return not any(isinstance(condition, ResultCondition) for condition in setup.spec.analysis.conditions)
 
@@ -206,7 +206,7 @@ def iter_numbers_by_block(setup: Setup) -> Iterator[tuple[str, int]]:
     yield from found.items()
 
 
-CORNERS_OF_MEMBER = 5  # of most families, with the middle of the web
+CORNERS_OF_MEMBER = 5  # points with stresses in most profiles: four corners and the middle of the web
 
 
 def is_in_results(row: Quantity, setup: Setup) -> bool:

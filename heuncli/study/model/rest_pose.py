@@ -8,6 +8,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.base.spelling import MAX_NAMES, format_count, list_some
 from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose, no_rest_problem
@@ -90,10 +91,16 @@ class Rest:
         return {"code": "completed", "message": f"at rest after {format_count(self.steps, 'step')} from the start"}
 
 
-def start_at_rest(
-    scene: PreparedScene, runner: Runner, *, with_time: bool = False
-) -> tuple[PreparedScene, Runner, Rest]:
-    """Return the scene with its rest pose as the start. Raises SolveError [no-rest-pose].
+class SceneAtRest(NamedTuple):
+    """A scene whose start is its rest pose, its runner, and how the pose was found."""
+
+    scene: PreparedScene
+    runner: Runner
+    rest: Rest
+
+
+def start_at_rest(scene: PreparedScene, runner: Runner, *, with_time: bool = False) -> SceneAtRest:
+    """Find the rest pose and make it the start of the scene. Raises SolveError [no-rest-pose].
 
     with_time: whether loads may depend on time; they are those at t = 0
     """
@@ -132,7 +139,7 @@ def start_at_rest(
         nearby_states=(*states, *perturb_states(runner, found, search_result.displacement)),
         sentences=tuple(describe_rest(scene.mechanism, found_stability, without_slope)), warnings=tuple(warnings),
     )  # fmt: skip
-    return replace(scene, layout=layout), rest_runner, rest
+    return SceneAtRest(replace(scene, layout=layout), rest_runner, rest)
 
 
 def require_no_slip(runner: Runner, state: Array) -> None:

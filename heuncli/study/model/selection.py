@@ -206,9 +206,9 @@ def find_bodies(item: Any, spec: Spec) -> set[str]:
             found.add(value)
         elif name in ("joint", "section"):
             found |= find_bodies(getattr(spec, f"{name}s")[value], spec) if value is not None else set()
-        elif name in ("ends", "through"):  # of couplings
+        elif name in ("ends", "through"):  # couplings name several points
             found |= {body for one in value for body in find_bodies(one, spec)}
-    for joint in getattr(item, "joints", ()):  # of couplings
+    for joint in getattr(item, "joints", ()):  # couplings name joints
         found |= find_bodies(spec.joints[joint], spec)
     return found & spec.bodies.keys()
 

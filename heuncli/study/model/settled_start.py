@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import Literal
 
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.motion.integration.run.runner import make_runner
 from heuncli.multibody.mechanism.couplings import Coupling
@@ -31,24 +32,30 @@ StartKind = Literal["rest", "steady"]
 RATE_KEYS = (("angle", "rate"), ("travel", "speed"))
 
 
-def settle_start(
-    scene: PreparedScene, kind: StartKind, stages: Stages
-) -> tuple[PreparedScene, tuple[str, ...], tuple[str, ...]]:
-    """Return the scene with its settled start, sentences on it, and warnings.
+class SettledStart(NamedTuple):
+    """A scene that starts at rest or in a steady state, with sentences and warnings about that state."""
+
+    scene: PreparedScene
+    sentences: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def settle_start(scene: PreparedScene, kind: StartKind, stages: Stages) -> SettledStart:
+    """Find the state from which the scene starts, and make it the start.
 
     Raises SolveError [no-rest-pose] where there is none, or where a drive moves at the start that is to be at rest.
     """
     require_startable_laws(scene.mechanism, kind)
     held = hold_scene(scene, kind)
-    settled, _, rest = start_at_rest(*make_runner(held, stages), with_time=True)
+    at_rest = start_at_rest(*make_runner(held, stages), with_time=True)
     if held.layout.spanning != scene.layout.spanning:  # a joint whose rate is given must not be cut
         scene = lay_out_scene(
             scene.mechanism, scene.start, spanning=held.layout.spanning, starts=scene.layout.starts, stages=stages
         )
-    layout = replace(scene.layout, y0=transfer_state(settled.layout, scene.layout))
+    layout = replace(scene.layout, y0=transfer_state(at_rest.scene.layout, scene.layout))
     name = "at rest" if kind == "rest" else "steady"
-    sentences = tuple(f"{name} under the loads at t = 0; {sentence}" for sentence in rest.sentences)
-    return replace(scene, layout=layout), sentences, rest.warnings
+    sentences = tuple(f"{name} under the loads at t = 0; {sentence}" for sentence in at_rest.rest.sentences)
+    return SettledStart(replace(scene, layout=layout), sentences, at_rest.rest.warnings)
 
 
 def require_startable_laws(mechanism: Mechanism, kind: StartKind) -> None:

@@ -237,8 +237,9 @@ def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
 
 
 def with_slack(coupling: Coupling) -> Coupling:
-    """Return a coupling whose unilateral conditions open and close. A rope's conditions are made later, so its own
-    entry is changed, too.
+    """Return a coupling whose unilateral conditions open and close.
+
+    A rope's conditions are made later, so its own entry is changed, too.
     """
     rows = [replace(r, restitution=0.0) if r.tension_only and r.restitution is None else r for r in coupling.rows]
     spec_coupling = coupling.entry

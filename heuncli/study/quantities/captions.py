@@ -111,7 +111,7 @@ THINGS = {
 }  # fmt: skip
 THING_IN_SENTENCE = re.compile(rf"\b({'|'.join(THINGS)}) (\w+)\b")
 PATH_IN_SENTENCE = re.compile(rf"\b({'|'.join(dict.fromkeys(THINGS.values()))})\.(\w+(?:\.\w+)*)")
-MAX_NAME_WORDS = 3  # of a name with dots: drives.motor, crank.pin
+MAX_NAME_WORDS = 3  # words of a name with dots at most, such as drives.motor, crank.pin
 SIDE_PHRASES = {"before": ", before the load", "beyond": ", beyond the load"}
 UNITLESS = frozenset({"", "1"})
 
@@ -344,21 +344,21 @@ def check_text(option: str, text: str) -> str:
 
 
 def _find_label_path(path: str, spec: Spec, option: str) -> str:
-    """Return the path under which a label is kept, for a path as users write it. Raises UsageError."""
+    """Find the path under which a label is stored, from a path as users write it. Raises UsageError."""
     paths = dict(iter_label_paths(spec))
     found = paths.get(path)
     if found is not None:
         return found
     parts = parse_path(path)
     if parts is not None and (not parts.names or any(path.startswith(f"{known}.") for known in paths.values())):
-        return path  # of one quantity
+        return path  # it names one quantity of an entry
     same_names = [known for known in paths if known.endswith(f".{path}")]
     hint = f"did you mean {', or '.join(same_names)}?" if same_names else suggest(path, paths, "paths")
     raise UsageError(Problem("unknown-path", f"{option} {path}: nothing in the spec has this name", hint=hint))
 
 
 def iter_label_paths(spec: Spec) -> Iterator[tuple[str, str]]:
-    """Yield everything that has a name: the path as users write it, and the path under which its label is kept.
+    """Yield all that has a label: the path as users write it, and the path under which its label is stored.
 
     Points have two paths, as in the spec and as in the results.
     """

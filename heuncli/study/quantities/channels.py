@@ -45,7 +45,7 @@ from heuncli.study.quantities.labels import Labels
 LENGTH = "length"  # the component that is a vector's magnitude
 POSITIONS = frozenset({"position", "center", "point", "direction"})  # vectors whose length has no meaning
 NO_UNITS: Mapping[str, str] = MappingProxyType({})
-CSV_SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # opposite to the signs of cuts
+CSV_SIDES = {None: np.nan, "before": -1.0, "beyond": 1.0}  # in order along the bar; SIDE_SIGNS has the other signs
 
 
 # Vector -> the symbol with which its components begin. Others keep their own name.
@@ -67,7 +67,7 @@ SYMBOLS = {
     "angular_velocity_jump": "Δω",
 }
 # Quantities with the same decimals as another, so that noise in one shows against the others.
-FAMILIES = {
+DECIMALS_OF = {
     **dict.fromkeys((*AXIAL_FORCES, *SECTION_FORCES, "radial_force"), "force"),
     **dict.fromkeys((*TILTING_MOMENTS, *SECTION_MOMENTS, "moment_orbital", "moment_spin"), "moment"),
 }
@@ -156,7 +156,7 @@ class Channel(NamedTuple):
     @property
     def family(self) -> str:
         """Channels of one family show the same decimals."""
-        return FAMILIES.get(self.quantity, self.quantity)
+        return DECIMALS_OF.get(self.quantity, self.quantity)
 
     @property
     def searched_values(self) -> Array:
@@ -218,9 +218,9 @@ def collect_series_loads(results: Results) -> list[Channel]:
 def make_section_channels(
     name: str, section: Mapping[str, Any], units: Mapping[str, str] = NO_UNITS
 ) -> tuple[Channel, ...]:
-    """Make the channels of a section: its forces, then the stresses and deflections it has; of a series of cuts
-    (n_t, n_cuts) each.
+    """Make the channels of a section: its forces, then its stresses and deflections, if it has them.
 
+    section: its block; that of a series of cuts gives channels along it, (n_t, n_cuts)
     units: replacements of units, for impulses instead of forces
     """
     stress = section.get("stress", {})

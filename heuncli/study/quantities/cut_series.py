@@ -16,7 +16,7 @@ from heuncli.study.quantities.channels import NO_UNITS, Channel, make_section_ch
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.quantities.table_units import DisplayUnit
 
-MAX_CUTS = 25  # in a diagram: evenly spaced cuts, with all jumps and extremes
+MAX_CUTS = 25  # cuts of a diagram, evenly spaced; jumps and extremes are added
 
 
 class CutSeries(NamedTuple):

@@ -179,8 +179,9 @@ def find_load_error(results: Results, labels: Labels, magnitudes: Magnitudes, ki
 
 
 def _find_wrench_errors(kind: str, relative: float, scales: Scales, size: float) -> dict[tuple[str, str], float]:
-    """Return the errors of forces and moments of one kind of loads; a force counts as a moment with the scene's size as
-    lever.
+    """Find the errors of forces and moments of one kind of loads.
+
+    A force counts as a moment with the scene's size as lever.
     """
     errors: dict[tuple[str, str], float] = {}
     for force, moment in (("N", "N·m"), ("N·s", "N·m·s")):

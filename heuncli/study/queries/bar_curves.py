@@ -110,8 +110,9 @@ class MovingEdges(NamedTuple):
         return [*moving, *self.fixed_places]
 
     def find_passes(self, places: Array, tolerance: float) -> Mask:
-        """Return whether a load passes places (k,), or comes as near as `tolerance`, between neighbouring instants,
-        (n_t - 1, k).
+        """Return whether a load passes places (k,), or comes near them, between neighbouring instants, (n_t - 1, k).
+
+        tolerance: the distance that is near
         """
         has_passed = np.zeros((len(self.s) - 1, len(places)), dtype=bool)
         for s in self.s.T:
@@ -120,9 +121,7 @@ class MovingEdges(NamedTuple):
         return has_passed
 
     def widen_bounds(self, places: Array, side: Array, low: Array, high: Array) -> None:
-        """Widen bounds (6, k) at places (k,), in place, by the values immediately beside a moving load when it is
-        there.
-        """
+        """Widen bounds (6, k) at places (k,), in place, by the values on both sides of a moving load there."""
         a, b = self.s[:-1], self.s[1:]
         first = np.searchsorted(places, np.minimum(a, b), side="left")
         last = np.searchsorted(places, np.maximum(a, b), side="right")

@@ -28,7 +28,8 @@ from heuncli.study.search.extremes import find_jump_sides, sort_distinct
 
 MIN_CURVE_INSTANTS = 400  # instants of a curve: nearly two a pixel
 MAX_SEARCH_INSTANTS = 4000  # largest number of the search's instants that a curve uses
-MAX_ADDED = 0.03  # of the largest value, added by a parabola: the error is then 1.4e-3, a fifth of a pixel
+# share of the largest value that a parabola adds between instants at most: its error is then 1.4e-3, a fifth of a pixel
+MAX_ADDED = 0.03
 
 
 def choose_curve_instants(study: Study, max_search_instants: int = MAX_SEARCH_INSTANTS) -> Array:
@@ -181,8 +182,9 @@ def find_curve_instants(study: Study, curve: Curve, x: Array) -> Array:
 
 
 def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
-    """Find the instants at which the curve's own x number has the values x, (n,). That number must only rise or only
-    fall. Raises NotComparable.
+    """Find the instants at which the curve's own x number has the values x, (n,).
+
+    Raises NotComparable if that number does not only rise or only fall.
     """
     path = curve.x_of
     assert path is not None
@@ -223,9 +225,7 @@ def find_instants_of_values(study: Study, curve: Curve, x: Array) -> Array:
 
 
 def estimate_error(study: Study, path: str, values: Array) -> float:
-    """Return the error of a number of the results, as tables state it; of exactly solved numbers, their rounding
-    error.
-    """
+    """Return the error of a number of the results as tables state it; at least its rounding."""
     stated = float(np.nan_to_num(find_search_error(study, find_values(study.results, path).keys)))
     return max(stated, tolerances.WRITTEN * float(np.max(np.abs(values))))
 

@@ -40,7 +40,7 @@ from heuncli.study.solve.history import History, resample
 
 Solve = Callable[[Spec], Study]  # solves a spec that differs only in its instants or conditions
 
-MAX_DIGITS = 6  # of an instant in sentences
+MAX_DIGITS = 6  # digits of an instant in sentences
 MAY_BE_MISSING = "event {}: times may be missing, because {} is open or not known at some of the samples"
 SEARCH_CUT_SHORT = "event {}: times may be missing, because the search was stopped early"
 
@@ -291,8 +291,9 @@ def describe_reasons(
 
 
 def estimate_instant_errors(study: Study, result: Crossings) -> Array:
-    """Estimate the errors of the instants. At an impulse it is by how much other runs differ; at other jumps, the
-    motion's error.
+    """Estimate the errors of the instants.
+
+    At an impulse it is the difference between the runs; at other jumps it follows from the motion's error.
     """
     history, errors = study.history, result.error.copy()
     impulse_distances = [find_impulse_time_differences(history.impulses, other) for other in history.check_impulses]

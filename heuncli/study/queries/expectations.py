@@ -233,8 +233,9 @@ def check_bound(study: Study, item: Expect, how: How, sign: float, limit: float)
 
 
 def find_missing_reason(study: Study, numbers: PathValues, extreme: Peak) -> str | None:
-    """Say why there is no number to compare with a limit: at some instant it is indeterminate, or too close to a
-    singular pose. None if there is one.
+    """Say why there is no number to compare with a limit; None if there is one.
+
+    At some instant it is indeterminate, or too close to a singular pose.
     """
     if not numbers.values.size:
         return "there is no value"

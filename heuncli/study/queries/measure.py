@@ -126,8 +126,9 @@ def measure_event(request: MeasureRequest, numbers: PathValues) -> Peak:
 
 
 def measure_impulse(request: MeasureRequest, numbers: PathValues, study: Study) -> Peak:
-    """Return a number of one impulse, with its instant; along a series of cuts the extreme. A vector counts by its
-    magnitude.
+    """Measure a number of one impulse, with its instant; along a series of cuts it is the extreme.
+
+    A vector counts by its magnitude.
     """
     path, time = request.path, find_impulse_time(study.results, numbers)
     if request.how in ("first", "final", "at"):
@@ -182,8 +183,7 @@ SIDES = {"min": (-1.0,), "max": (1.0,), "abs": BOTH_SIDES}
 
 
 def find_peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
-    """Find the highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too,
-    with its time and place.
+    """Find the highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, also between the samples.
 
     A vector counts by its magnitude, a series of cuts over its whole length. times: restricts the search to these
     instants.

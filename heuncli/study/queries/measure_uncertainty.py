@@ -17,9 +17,8 @@ from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 
 SI = Units({})
-SQUARE_ROUNDING = (
-    4.0 * tolerances.EPS
-)  # relative to the largest square along a series of cuts: rounding of its polynomial
+# rounding of the polynomial of squares along a series of cuts, relative to the largest of these
+SQUARE_ROUNDING = 4.0 * tolerances.EPS
 
 
 def find_unit(path: str, spec: Spec) -> str:
@@ -33,7 +32,7 @@ def find_unit(path: str, spec: Spec) -> str:
 
 
 def _find_unit_of_keys(keys: Sequence[str], spec: Spec) -> str:
-    """Return the SI unit of the quantity under some keys; of two units, that of an angle or of a travel."""
+    """Find the SI unit of the quantity under some keys; if it has two, whether the joint turns or slides decides."""
     row = find_quantity(keys)
     if row is None or not row.units:
         return ""
@@ -43,8 +42,7 @@ def _find_unit_of_keys(keys: Sequence[str], spec: Spec) -> str:
 
 
 def measure_uncertainty(study: Study, path: str, how: str = "", value: float = math.nan) -> float | None:
-    """Return the error of the number at a path, as tables and golden files state it, SI; None if the run states none,
-    as for counts.
+    """Find the error of the number at a path, SI, as tables and golden files state it; None if the run states none.
 
     how, value: of a measure: an event's value decides which instant it is, and a least magnitude along a series of cuts
     is less certain
@@ -64,10 +62,10 @@ def measure_uncertainty(study: Study, path: str, how: str = "", value: float = m
 
 
 def find_search_error(study: Study, keys: Sequence[str]) -> float:
-    """Return the error to which extremes of the quantity under some keys are searched: the one that the check run
-    found, without the estimates, which need all results; nan where it found none.
+    """Find the error to which extremes of the quantity under some keys are searched; nan if it is unknown.
 
-    If angles and travels have different units, it is the smaller of the two errors.
+    It is the one that the check run found, without the estimates, which need all results. If angles and travels have
+    different units, it is the smaller of the two errors.
     """
     row = find_quantity(keys)
     if row is None:
@@ -93,8 +91,9 @@ def _find_unit_error(keys: tuple[str, ...], unit: str, study: Study) -> float | 
 
 
 def _find_root_error(value: float, largest: float) -> float:
-    """Return the error of the least magnitude along a series of cuts: the root of a polynomial that is as accurate as
-    its largest value.
+    """Find the error of the least magnitude along a series of cuts.
+
+    It is the root of a polynomial that is as accurate as its largest value.
     """
     rounding = SQUARE_ROUNDING * largest * largest
     return rounding / max(value, math.sqrt(rounding)) if rounding > 0.0 else 0.0

@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 MOST_SEARCHED = 5_000_000  # numbers sampled for the extremes of a whole report, about 1 s; a measure has no limit
 NO_REPORTS: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose solutions are in memory at a time
-MAX_RECOVERIES = 64  # cached ones, together of no more instants than a chunk
-RECENT_PARTS = 8  # of such a chunk: the share that stays cached for the next question
+MAX_RECOVERIES = 64  # recoveries that are cached, together of no more instants than a chunk
+RECENT_PARTS = 8  # so many parts make a chunk; one part stays cached for the next question
 TOO_FEW = "extremes are searched from {} samples: too few to find every peak and jump of this motion"
 CUT_SHORT = "the search for extremes was stopped early: higher values may exist"
 
@@ -70,9 +70,7 @@ class Study:
 
     @property
     def magnitudes(self) -> Magnitudes:
-        """The sizes of the terms that the numbers at the requested instants and those of impulses are summed from, and
-        their errors.
-        """
+        """The sizes of the terms of which all numbers are sums, including those of impulses, and their errors."""
         magnitudes = self.recovery.magnitudes
         errors = {**self.history.errors, **self.results.position_errors(magnitudes.size)}
         if self.impulse_results is None:
@@ -115,9 +113,7 @@ class Study:
         return times
 
     def find_close_times(self, most: int = MOST_INSTANTS) -> tuple[Array, bool]:
-        """Return instants close enough to bracket every turning point, (n,) ascending, at most `most`; and whether
-        these are enough.
-        """
+        """Find instants that bracket every turning point, (n,) ascending, and whether `most` of them are enough."""
         times, is_enough = choose_search_times(self.setup, self.history, most)
         if self.setup.cuts and len(times) > 1:
             from heuncli.study.search.cuts import find_passages, has_moving_joints  # where there are sections
@@ -224,9 +220,9 @@ class Study:
     def find_recovery(
         self, times: Array, reports: frozenset[str], setup: Setup | None = None, *, keep: bool = False
     ) -> Recovery:
-        """Return the recovery at some instants of the run, (n,) ascending, from the cache or anew; setup: with other
-        cuts.
+        """Return the recovery at some instants of the run, (n,) ascending, from the cache if possible.
 
+        setup: with other cuts
         keep: cache it for the next search or figure, which begins at the same instants
         """
         key = times.tobytes(), SHARES in reports

@@ -11,7 +11,7 @@ import numpy as np
 
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.integrated_scene import find_one_sided_limits
-from heuncli.results.results import NOWHERE, Array, CutPosition, Extremes, Results
+from heuncli.results.results import NOWHERE, Array, CutPosition, Extremes, Indices, Results
 from heuncli.scene.shapes.rotations import instants_last, squared_lengths
 from heuncli.study.compose.recovery import RANK_REPORTS, Recovery
 from heuncli.study.model.setup import Setup
@@ -65,9 +65,23 @@ class Sampleable(Protocol):
     def compose_reports(
         self, recovery: Recovery, reports: frozenset[str], open_marker: OpenMarker | None = None
     ) -> Results:
-        """Return some reports' blocks of a recovery; open_marker: marks indeterminate numbers where the recovery does
-        not look for them.
+        """Return some reports' blocks of a recovery.
+
+        open_marker: marks indeterminate numbers where the recovery does not look for them
         """
+
+
+class SeriesSample(NamedTuple):
+    """A number along a series of cuts at one instant.
+
+    series: its name
+    nodes, values: positions along it [m], and the number there, (9 m,) each
+    """
+
+    series: str
+    instant: float
+    nodes: Array
+    values: Array
 
 
 class StudyColumns:
@@ -114,10 +128,12 @@ class StudyColumns:
 
     @cached_property
     def grid_verdicts(self) -> VerdictsBetween | None:
-        """The verdicts on what is indeterminate between the instants of the grid; None if it has to be found at each
-        instant, or is not needed.
+        """The verdicts on what is indeterminate between the instants of the grid.
+
+        None if they are not needed, or if it must be found at each instant.
         """
-        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):  # of a tree
+        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):
+            # the scene is a tree, or needs no verdicts
             return None
         from heuncli.study.compose.unknown_numbers import (  # where there are closed chains
             VerdictsBetween,
@@ -172,8 +188,7 @@ class StudyColumns:
         return np.concatenate(columns, axis=1) if columns else np.zeros((len(results.time), 0))
 
     def finish(self, peaks: Extremes) -> Extremes:
-        """Return the extremes of the channels: with their paths, places along series of cuts, and of magnitudes instead
-        of their squares.
+        """Complete the extremes: with the paths, the places along series of cuts, and magnitudes in place of squares.
 
         Quantities along runs that are no polynomial of loads are searched there again.
         """
@@ -194,24 +209,19 @@ class StudyColumns:
             for side, bounds in ((-1.0, low), (1.0, high)):
                 i = int(np.searchsorted(instants, peak_times[int(side > 0.0), k]))
                 s = np.broadcast_to(results.sections[name]["s"], values.shape)[i]
-                own = name, float(instants[i]), s, values[i]
-                bounds[first + k], place = self._find_place(first + k, side, own, float(bounds[first + k]))
+                series_sample = SeriesSample(name, float(instants[i]), s, values[i])
+                bounds[first + k], place = self._find_place(first + k, side, series_sample, float(bounds[first + k]))
                 side_places.append(place)
             places.append((side_places[0], side_places[1]))
         return peaks._replace(low=low, high=high, places=tuple(places))
 
-    def _find_place(
-        self, k: int, side: float, run_sample: tuple[str, float, Array, Array], value: float
-    ) -> tuple[float, CutPosition]:
-        """Return the value of an extreme of a series of cuts, and its place.
-
-        run_sample: name of the run, instant, nodes along the run, and the values at these
-        """
+    def _find_place(self, k: int, side: float, series_sample: SeriesSample, value: float) -> tuple[float, CutPosition]:
+        """Return the value of an extreme of the k-th channel, along a series of cuts, and its place."""
         assert self.setup is not None
         from heuncli.study.search.cuts import cut_at, find_sides, find_stretch, locate_summit
 
-        setup, (name, instant, nodes, values) = self.setup, run_sample
-        s, end, ends = locate_summit(nodes, values, side)
+        setup, (name, instant, nodes, values) = self.setup, series_sample
+        s, load_side, ends = locate_summit(nodes, values, side)  # ends: of the smooth piece
         if self.bent and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:
@@ -231,11 +241,11 @@ class StudyColumns:
                     else (search_result.low, search_result.low_at)
                 )
             )
-            end = float(find_sides(np.array(s), ends))
-        return value, find_stretch(setup, name).make_place(s, end)
+            load_side = float(find_sides(np.array(s), ends))
+        return value, find_stretch(setup, name).make_place(s, load_side)
 
 
-WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: the first samples for extremes
+WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # shares of each step of the integrator: where extremes are sampled first
 MAX_TURN = np.pi / 8.0  # rad: largest turn of a body between two of these instants, 1/8 period of the second order
 MAX_INSTANTS = 100_000
 
@@ -265,9 +275,7 @@ def choose_search_times(setup: Setup, history: History, max_instants: int = MAX_
     parts = np.clip(turn_parts, 1, max_instants + 1).astype(int)  # for faster turning the search is incomplete
     enough = is_followed and per_step == len(WITHIN_STEP) and int(parts.sum()) <= max_instants
     parts = np.minimum(parts, max(1, max_instants // len(grid))) if not enough else parts
-    first = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
-    times = np.append(grid[first] + share * np.diff(grid)[first], grid[-1:])
+    times = divide_evenly(grid, parts) if (parts > 1).any() else grid
     if not enough or not has_loads_along_coordinates(setup):
         return times, enough
     from heuncli.study.search.law_instants import refine_for_loads
@@ -275,9 +283,17 @@ def choose_search_times(setup: Setup, history: History, max_instants: int = MAX_
     return refine_for_loads(setup, history, times, max_instants)
 
 
+def divide_evenly(grid: Array, parts: Indices) -> Array:
+    """Divide the intervals between instants (n,) into so many equal parts each, (n - 1,); return all instants."""
+    first = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
+    return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:])
+
+
 def has_loads_along_coordinates(setup: Setup) -> bool:
-    """Return whether loads depend on coordinates or points: if they push a constrained direction, no step shows how
-    fast they change.
+    """Return whether loads depend on coordinates or points.
+
+    If they push along a constrained direction, no integration step shows how fast they change.
     """
     return any(value.uses for load in setup.scene.mechanism.loads for value in load.values)
 

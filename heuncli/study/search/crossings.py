@@ -27,8 +27,9 @@ from heuncli.study.search.extremes import (
 )
 from heuncli.study.search.intervals import Intervals
 
-NumberSampler = Callable[[Array], Array]  # of sorted instants (n,) the number there, (n,); nan where there is none
-MAX_STEPS = 120  # towards a root; bisection alone takes 53, with an interpolation that fails each time twice that
+# takes sorted instants (n,), returns the number there, (n,); nan where there is none
+NumberSampler = Callable[[Array], Array]
+MAX_STEPS = 120  # steps to a root: bisection takes 53, and twice that if every interpolation between fails
 
 
 class Crossings(NamedTuple):
@@ -62,8 +63,10 @@ class Bracket(NamedTuple):
 
 
 def find_crossings(sample: NumberSampler, times: Array, h: Array, error: float) -> Crossings:
-    """Find where the sampled number passes zero within the span of `times`, (n,) ascending; h: its values there, error:
-    of h.
+    """Find where the sampled number passes zero within the span of `times`, (n,) ascending.
+
+    h (n,): its values there
+    error: of the number
     """
     times, h, complete = refine_grid(sample, times, h, error)
     known = np.isfinite(h)
@@ -87,10 +90,18 @@ def find_crossings(sample: NumberSampler, times: Array, h: Array, error: float) 
     return Crossings(begins, crossing_times, above[k + 1], time_errors, jumps[k], gaps, complete)
 
 
-def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> tuple[Array, Array, bool]:
-    """Add instants where h passes zero and returns between two of the grid; return also whether all was searched."""
+class SampledNumber(NamedTuple):
+    """The instants at which a number was sampled, (n,) ascending, its values, and whether all was searched."""
+
+    times: Array
+    values: Array
+    is_complete: bool
+
+
+def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> SampledNumber:
+    """Add instants where h passes zero and returns between two of the grid."""
     if len(times) < 3:
-        return times, h, True
+        return SampledNumber(times, h, is_complete=True)
     targets = Targets(
         1, np.zeros(1, dtype=np.intp), np.zeros(1, dtype=np.intp), np.array([error]), np.zeros(1, dtype=bool)
     )
@@ -105,7 +116,7 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
         worth = wide & (pool.bound_heights(shape) > least)
         pool, shape = pool.select(worth), shape.select(worth)
         if not len(pool.target):
-            return merge_samples(more_t, more_h, complete=True)
+            return merge_samples(more_t, more_h, is_complete=True)
         if probes > MAX_PROBES:
             break
         probe_times = pool.choose_probes(shape)
@@ -118,7 +129,7 @@ def refine_grid(sample: NumberSampler, times: Array, h: Array, error: float) -> 
         pool = select_hidden(
             pool.divide(shape, probe_times, side * (values[np.searchsorted(instants, probe_times)] - error))
         )
-    return merge_samples(more_t, more_h, complete=False)
+    return merge_samples(more_t, more_h, is_complete=False)
 
 
 def select_hidden(pool: Intervals) -> Intervals:
@@ -126,12 +137,12 @@ def select_hidden(pool: Intervals) -> Intervals:
     return pool.select((pool.f[:, 1] <= 0.0) & (pool.f[:, 2] <= 0.0))
 
 
-def merge_samples(times: list[Array], h: list[Array], *, complete: bool) -> tuple[Array, Array, bool]:
-    """Return all sampled instants, ascending, and their values."""
+def merge_samples(times: list[Array], h: list[Array], *, is_complete: bool) -> SampledNumber:
+    """Put all sampled instants in order; each stands once."""
     t, values = np.concatenate(times), np.concatenate(h)
     order = np.argsort(t, kind="stable")
     new = np.append(True, np.diff(t[order]) > 0.0)
-    return t[order][new], values[order][new], complete
+    return SampledNumber(t[order][new], values[order][new], is_complete)
 
 
 def find_roots(sample: NumberSampler, bracket: Bracket, level: Array) -> Array:
@@ -179,8 +190,9 @@ def choose_next_share(bracket: Bracket, c: Array, e: Array, width: Array) -> Arr
 
 
 def estimate_time_errors(sample: NumberSampler, root_times: Array, error: float, span: tuple[float, float]) -> Array:
-    """Return the time within which h exceeds its error on both sides of each root, (n,); nan if none within a part of
-    the span does.
+    """Estimate the errors of roots, (n,): the time within which h exceeds its error on both sides.
+
+    nan where it does not do so within a part of the span
     """
     time_errors, open_ = np.full(len(root_times), np.nan), np.ones(len(root_times), dtype=bool)
     d = tolerances.KERNEL["one_instant"] * max(abs(span[1]), 1e-300)

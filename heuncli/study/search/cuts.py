@@ -25,14 +25,16 @@ from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import sort_distinct
 
-HALVINGS = 2  # times that pieces are halved for kinks where loads change their sign: stresses, reduction lines
+SIGN_CHANGE_HALVINGS = (
+    2  # halvings of pieces whose loads change their sign: stresses and reduction lines have kinks there
+)
 
 
 def replace_series_by_stretches(setup: Setup, bent: bool) -> Setup:
     """Return the setup with its series of cuts replaced by stretches; bent: for quantities that are no polynomial of
     loads.
     """
-    mechanism, halved = setup.scene.mechanism, HALVINGS if bent else 0
+    mechanism, halved = setup.scene.mechanism, SIGN_CHANGE_HALVINGS if bent else 0
 
     def make_whole(cuts: Cuts) -> PlaceableCuts:
         """Return a series of cuts through shapes as a stretch, all others as they are."""
@@ -75,9 +77,7 @@ def compute_envelope(values: Array) -> Array:
 
 
 def find_impulse_extremes(setup: Setup, impulse: Block) -> dict[str, Extremes]:
-    """Return the lowest and the highest of the section forces along each stretch, at an impulse that was solved with
-    these cuts.
-    """
+    """Find the extremes of the section forces along each stretch at an impulse, which was solved with these cuts."""
     found: dict[str, Extremes] = {}
     for cuts in setup.cuts:
         if isinstance(cuts, Stretch):
@@ -106,26 +106,40 @@ def find_cut_extremes(stretch: Stretch, s: Array, values: Array) -> tuple[CutExt
     pieces.
     """
     low, high = find_peaks(values[None])
-    places = [stretch.make_place(*locate_peak(s, peak)[:2]) for peak in (low, high)]
+    peaks = [locate_peak(s, peak) for peak in (low, high)]
+    places = [stretch.make_place(peak.s, peak.side) for peak in peaks]
     return CutExtreme(-float(low.height[0]) + 0.0, places[0]), CutExtreme(float(high.height[0]) + 0.0, places[1])
 
 
-def locate_summit(s: Array, values: Array, side: float) -> tuple[float, float, tuple[float, float]]:
-    """Locate the highest (side 1) or lowest (-1) of values at nodes (9 m,): distance, side, ends of its piece."""
+class SeriesPeak(NamedTuple):
+    """The place of a peak along a series of cuts.
+
+    s: position [m]
+    side: whether the place is just before or just beyond what acts there: BEFORE, BEYOND; 0 inside of a piece
+    piece: positions of both ends of the smooth piece that it lies on
+    """
+
+    s: float
+    side: float
+    piece: tuple[float, float]
+
+
+def locate_summit(s: Array, values: Array, side: float) -> SeriesPeak:
+    """Locate the highest (side 1) or the lowest (-1) of values at nodes s, (9 m,)."""
     return locate_peak(s, find_peaks(values[None])[side > 0.0])
 
 
-def locate_peak(s: Array, top: StretchPeaks) -> tuple[float, float, tuple[float, float]]:
-    """Locate a peak of one instant along pieces with nodes s: distance, side, ends of its piece."""
+def locate_peak(s: Array, top: StretchPeaks) -> SeriesPeak:
+    """Locate a peak of one instant along pieces with nodes s."""
     k, x = int(top.piece[0]) * (DEGREE + 1), float(top.position[0])
     a, b = float(s[k]), float(s[k + DEGREE])
     if x in (-1.0, 1.0):
-        return (b, BEFORE, (a, b)) if x > 0.0 else (a, BEYOND, (a, b))
-    return a + 0.5 * (b - a) * (x + 1.0), 0.0, (a, b)
+        return SeriesPeak(b, BEFORE, (a, b)) if x > 0.0 else SeriesPeak(a, BEYOND, (a, b))
+    return SeriesPeak(a + 0.5 * (b - a) * (x + 1.0), 0.0, (a, b))
 
 
-PARTS = 16  # into which a span with a passage is divided
-ROUNDS = 14  # 16^14: down to neighbouring doubles
+PARTS = 16  # a span with a passage is divided into so many
+ROUNDS = 14  # divisions in turn: 16^14 parts are neighbouring doubles
 
 
 def has_moving_joints(setup: Setup) -> bool:

@@ -4,7 +4,8 @@ A quantity is known on a grid and can be sampled at any other instant. Intervals
 so far (study/search/intervals.py), by more than a share of the quantity's own error, are sampled where they promise
 most, for all quantities in one batch, and divided there, until none is left. So values and parabolas agree in the end;
 at a kink or a jump the intervals shrink to nothing. Neighbouring instants no farther apart than rounding are the two
-sides of a jump: nothing is searched between them. Numbers only: knows nothing of joints, units or text.
+sides of a jump: nothing is searched between them. Of peaks that are equal within the quantity's error, as those of a
+periodic motion are, the first is named. Numbers only: knows nothing of joints, units or text.
 """
 
 from __future__ import annotations
@@ -27,17 +28,21 @@ from heuncli.study.search.intervals import (
     fill_missing,
 )
 
-ColumnSampler = Callable[[Array], Array]  # of sorted instants (n,) the quantities there, (n, n_columns)
-HeightToBeat = Callable[[Array, Array, Indices], Array]  # by the heights at both ends of intervals, and their targets
+# takes sorted instants (n,), returns the quantities there, (n, n_columns)
+ColumnSampler = Callable[[Array], Array]
+# takes the heights at both ends of intervals and the targets these belong to, returns the height to be exceeded
+HeightToBeat = Callable[[Array, Array, Indices], Array]
 
 FIRST_INTERVALS = 4  # intervals of a quantity that are sampled in the first round, twice as many in each following one
 MIN_STRETCH = 5  # fewest instants of a smooth stretch that show its second derivative and how that changes
 MAX_ROUNDS = 60  # enough halvings to reach rounding at an unannounced jump
 MAX_PROBES = 100_000  # instants sampled in one search
-MAX_COLUMNS = 400  # of varying quantities, in tables; if there are more, the grid's own values are shown
-SAME_PROBE = 1e-4  # of an interval: closer instants are sampled as one; the summit's error is the square of it
-GOOD_ENOUGH = 0.1  # of a quantity's own error: a smaller gain is not searched for
-BOTH_SIDES = (-1.0, 1.0)
+MAX_COLUMNS = 400  # varying quantities that a table searches; if there are more, it shows the values at the instants
+SAME_PROBE = 1e-4  # share of an interval: closer instants are sampled as one; the summit's error is its square
+ROUNDS_FOR_FIRST = 5  # three show a smooth peak to rounding, the others lower peaks before it
+KNOWN_WELL = 1e-6  # relative error: peaks are compared where tables show all their six digits
+GOOD_ENOUGH = 0.1  # share of a quantity's own error: a smaller gain is not searched for
+BOTH_SIDES = (-1.0, 1.0)  # the lowest and the highest: signs that make each a maximum
 
 
 class Targets(NamedTuple):
@@ -57,10 +62,19 @@ class Targets(NamedTuple):
 
     def find_min_gain(self, height: Array) -> Array:
         """Return how much more than the best so far (2n,) an interval must promise to be worth a sample, (2n,)."""
-        error, is_squared = GOOD_ENOUGH * self.error, self.is_squared
+        return self._convert_error(GOOD_ENOUGH * self.error, height)
+
+    def find_equal_height(self, height: Array) -> Array:
+        """Return the heights from which peaks equal the best (2n,) within the error; infinite where that is large."""
+        margin = self._convert_error(self.error, height)
+        return np.where(margin <= KNOWN_WELL * np.abs(height), height - margin, np.inf)
+
+    def _convert_error(self, error: Array, height: Array) -> Array:
+        """Return the error (2n,) of heights from that (n,) of the numbers, at least their rounding."""
         size = np.where(np.isfinite(height), np.abs(height), 0.0).reshape(2, self.n)
+        # of squares: (|x| + e)^2 - x^2 = e^2 + 2 e |x|
         squared = error * error + 2.0 * error * np.sqrt(size)
-        return np.asarray(np.where(is_squared, squared, error) + tolerances.SUM_ROUNDING * size).reshape(-1)
+        return np.asarray(np.where(self.is_squared, squared, error) + tolerances.SUM_ROUNDING * size).reshape(-1)
 
     def limit_promise(self, promise: Array, target: Indices) -> Array:
         """Limit promises of targets to possible values: no square is below 0."""
@@ -132,7 +146,9 @@ def search_extremes(
     complete = True
     if search_between and len(times) > 1:
         grid_size = GridSize(len(times), float(np.ptp(times)))
-        complete = refine_best(sample, find_intervals(times, values, targets, best, sides), targets, best, grid_size)
+        intervals = find_intervals(times, values, targets, best, sides)
+        complete = refine_best(sample, intervals, targets, best, grid_size)
+        name_first_peaks(sample, intervals, times, values, targets, best)
     value = np.repeat([-1.0, 1.0], n) * best.height
     time, column = best.time, best.column
     return Extremes(value[:n], time[:n], column[:n], value[n:], time[n:], column[n:], search_between, complete)
@@ -156,8 +172,8 @@ def find_best(times: Array, values: Array, targets: Targets) -> Best:
 def find_intervals(
     times: Array, values: Array, targets: Targets, best: Best, sides: tuple[float, ...] = BOTH_SIDES
 ) -> Intervals:
-    """Return the grid intervals that may hold a higher value than the best sample, for each side."""
-    heights = best.height + targets.find_min_gain(best.height)
+    """Return the grid intervals that may hold a value as high as the best sample, for each side."""
+    heights = np.fmin(targets.find_equal_height(best.height), best.height + targets.find_min_gain(best.height))
     return find_intervals_above(times, values, targets, lambda b, c, target: heights[target], sides)
 
 
@@ -172,15 +188,17 @@ def find_intervals_above(
     heights, owner, column = heights[:, varies], targets.owner[varies], targets.column[varies]
     slope = (heights[1:] - heights[:-1]) / step[:, None]
     slope[~smooth] = np.nan
-    left, right = fill_missing(*_compute_bends(times, slope, step, smooth))
-    up, down = _compute_rises(slope, step)
-    most = np.maximum(np.abs(left), np.abs(right))
+    kappa_before, kappa_after = fill_missing(*_compute_bends(times, slope, step, smooth))
+    rise_before, rise_after = _compute_rises(slope, step)
+    most = np.maximum(np.abs(kappa_before), np.abs(kappa_after))
     doubt = FOURTH_DERIVATIVE_SHARE * most
     inner = np.concatenate([[False], smooth, [False]])
     parts = []
     for side in sides:
         target = owner if side < 0.0 else owner + targets.n
-        b, c, before, after, rising, falling = (side * x for x in (heights[:-1], heights[1:], left, right, up, down))
+        b, c, before, after, rising, falling = (
+            side * x for x in (heights[:-1], heights[1:], kappa_before, kappa_after, rise_before, rise_after)
+        )
         with np.errstate(invalid="ignore"):
             k, j = np.nonzero(
                 (bound_heights_cheaply(b, c, most, rising, falling) > to_beat(b, c, target)) & smooth[:, None]
@@ -190,16 +208,17 @@ def find_intervals_above(
             b[k, j], c[k, j], target[j]
         )
         k, j = k[is_promising], j[is_promising]
-        # neighbours after a jump or the end do not count: replacements follow from the bends
-        w, f, g = step[k], heights[k, j], heights[k + 1, j]
-        p, q = np.maximum(k - 1, 0), np.minimum(k + 2, len(times) - 1)
-        known = inner[k] & np.isfinite(heights[p, j]), inner[k + 2] & np.isfinite(heights[q, j])
-        t = [np.where(known[0], times[p], times[k] - w), np.where(known[1], times[q], times[k + 1] + w)]
-        a = np.where(known[0], heights[p, j], 2.0 * f - g - 2.0 * left[k, j])
-        d = np.where(known[1], heights[q, j], 2.0 * g - f - 2.0 * right[k, j])
+        # the interval b..c with its neighbours a and d (intervals.py); for one after a jump or the
+        # end, one on the parabola stands in
+        w, b_height, c_height = step[k], heights[k, j], heights[k + 1, j]
+        k_before, k_after = np.maximum(k - 1, 0), np.minimum(k + 2, len(times) - 1)
+        known = inner[k] & np.isfinite(heights[k_before, j]), inner[k + 2] & np.isfinite(heights[k_after, j])
+        t = [np.where(known[0], times[k_before], times[k] - w), np.where(known[1], times[k_after], times[k + 1] + w)]
+        a = np.where(known[0], heights[k_before, j], 2.0 * b_height - c_height - 2.0 * kappa_before[k, j])
+        d = np.where(known[1], heights[k_after, j], 2.0 * c_height - b_height - 2.0 * kappa_after[k, j])
         parts.append(Intervals(
-            np.stack([t[0], times[k], times[k + 1], t[1]], 1), side * np.stack([a, f, g, d], 1), doubt[k, j],
-            np.zeros(len(k), dtype=bool), target[j], column[j],
+            np.stack([t[0], times[k], times[k + 1], t[1]], 1), side * np.stack([a, b_height, c_height, d], 1),
+            doubt[k, j], np.zeros(len(k), dtype=bool), target[j], column[j],
         ))  # fmt: skip
     return concatenate_intervals(parts)
 
@@ -216,15 +235,15 @@ def _compute_bends(times: Array, slope: Array, step: Array, smooth: Mask) -> tup
     ends = np.append(~smooth, True)
     for edge, inward in ((begins, 1), (ends, -1)):
         k = np.flatnonzero(edge) + 1
-        near, far = second[np.clip(k + inward, 0, len(second) - 1)], second[np.clip(k + 2 * inward, 0, len(second) - 1)]
+        near, far = (second.take(k + n * inward, 0, mode="clip") for n in (1, 2))
         second[k] = np.where(np.isfinite(far), 2.0 * near - far, near)
     square = -(step * step)[:, None]
     return square * second[1:-2], square * second[2:-1]
 
 
 def _compute_rises(slope: Array, step: Array) -> tuple[Array, Array]:
-    """Return by how much a quantity rises in each interval if its slope before it continues, and backwards that after
-    it.
+    """Return how far a quantity would rise from b to c at its slope before b, and from c back to b at its slope after
+    c, (n_t - 1, m).
     """
     up, down = np.full(slope.shape, np.nan), np.full(slope.shape, np.nan)
     up[1:], down[:-1] = slope[:-1] * step[1:, None], -slope[1:] * step[:-1, None]
@@ -269,6 +288,70 @@ def refine_best(sample: ColumnSampler, pool: Intervals, targets: Targets, best: 
         parts = chosen.divide(shape, probe_times, height)
         pool = parts if rest is None else concatenate_intervals([rest, parts])
     return False
+
+
+def name_first_peaks(
+    sample: ColumnSampler, intervals: Intervals, times: Array, values: Array, targets: Targets, best: Best
+) -> None:
+    """Replace the time and column of each best, in place, by those of the first peak that equals it; its height stays.
+
+    intervals: of the grid, those that may hold a value as high
+
+    The earliest are sampled first. No more instants are sampled than the grid has: what is found until then is a peak
+    of that height, too.
+    """
+    equal = targets.find_equal_height(best.height)
+    for side, offset in ((-1.0, 0), (1.0, targets.n)):
+        target = targets.owner + offset
+        is_equal = side * values[:, targets.column] >= equal[target]
+        first = np.argmax(is_equal, axis=0)
+        found = np.flatnonzero(is_equal[first, np.arange(len(first))])
+        _move_earlier(best, times[first[found]], targets.column[found], target[found])
+    pool = _select_before_dips(intervals, times, values, targets, best)
+    probes = 0
+    for _ in range(ROUNDS_FOR_FIRST):
+        shape = pool.compute_bends()
+        wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * np.ptp(times)
+        worth = wide & (targets.limit_promise(pool.bound_heights(shape), pool.target) > equal[pool.target])
+        worth &= pool.t[:, 2] < best.time[pool.target]
+        pool, shape = pool.select(worth), shape.select(worth)
+        if not worth.any() or probes > len(times):
+            return
+        is_chosen = _select_most_promising(-pool.t[:, 1], pool.target, FIRST_INTERVALS)
+        chosen, shape = pool.select(is_chosen), shape.select(is_chosen)
+        probe_times = merge_neighbours(chosen.choose_probes(shape), chosen.t[:, 2] - chosen.t[:, 1])
+        instants = sort_distinct(probe_times)
+        signs = np.where(chosen.target < targets.n, -1.0, 1.0)
+        height = signs * sample(instants)[np.searchsorted(instants, probe_times), chosen.column]
+        probes += len(instants)
+        is_equal = height >= equal[chosen.target]
+        _move_earlier(best, probe_times[is_equal], chosen.column[is_equal], chosen.target[is_equal])
+        pool = concatenate_intervals([pool.select(~is_chosen), chosen.divide(shape, probe_times, height)])
+
+
+def _select_before_dips(pool: Intervals, times: Array, values: Array, targets: Targets, best: Best) -> Intervals:
+    """Select the intervals of a grid after which the column falls and rises again up to the best of its target: those
+    of other peaks.
+    """
+    is_high = pool.target >= targets.n
+    key = pool.column + values.shape[1] * is_high
+    keys = sort_distinct(key)
+    place = np.searchsorted(keys, key)
+    end = np.zeros(len(keys), dtype=np.intp)
+    end[place] = np.searchsorted(times, best.time[pool.target])
+    is_low_key = keys < values.shape[1]
+    heights = np.where(is_low_key, -1.0, 1.0) * values[:, keys % values.shape[1]]
+    heights[np.arange(len(times))[:, None] >= end] = np.inf
+    lowest_after = np.minimum.accumulate(heights[::-1], axis=0)[::-1]
+    following = np.searchsorted(times, pool.t[:, 2])
+    return pool.select(lowest_after[following, place] < np.maximum(pool.f[:, 1], pool.f[:, 2]))
+
+
+def _move_earlier(best: Best, times: Array, column: Indices, target: Indices) -> None:
+    """Move the best of targets to earlier instants, in place."""
+    order = np.argsort(-times, kind="stable")  # the earliest is written last
+    order = order[times[order] < best.time[target[order]]]
+    best.time[target[order]], best.column[target[order]] = times[order], column[order]
 
 
 def merge_neighbours(times: Array, width: Array) -> Array:

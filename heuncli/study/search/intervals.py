@@ -20,12 +20,14 @@ import numpy as np
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Indices, Mask
 
-# of the difference of the two bends, added to the larger: for third derivatives that change sign
+# share of the difference of the two bends that is added to the larger one, for third derivatives that change sign
 THIRD_DERIVATIVE_SHARE = 0.5
-FOURTH_DERIVATIVE_SHARE = 0.5  # of the bend: possible effect of the fourth derivative where four instants span a summit
-MIN_END_DISTANCE = 0.02  # of an interval: how near to its ends it is divided: a summit's neighbourhood shrinks so fast
-MAX_RISE_PER_BEND = 0.26  # of a bend: a quarter, and more than rounding adds to it
-MIN_KINK_MISFIT = 0.2  # of the bend: a parabola that misses a value by more indicates a kink, or too coarse a grid
+# share of the bend that the fourth derivative may add where four instants span a summit
+FOURTH_DERIVATIVE_SHARE = 0.5
+# share of an interval that a division leaves at its ends at least, so that a summit's neighbourhood shrinks fast
+MIN_END_DISTANCE = 0.02
+MAX_RISE_PER_BEND = 0.26  # rise of a parabola above its higher end, per bend: a quarter, and more than rounding adds
+MIN_KINK_MISFIT = 0.2  # share of the bend: a parabola that misses a value by more shows a kink, or too coarse a grid
 
 
 class Bends(NamedTuple):
@@ -120,7 +122,7 @@ class Intervals(NamedTuple):
         (ta, tb, tc, td), (a, b, c, d) = self.t.T, self.f.T
         share = (times - tb) / (tc - tb)
         expected = b + (c - b) * share + 0.5 * (bends.kappa_before + bends.kappa_after) * share * (1.0 - share)
-        misfit = np.abs(height - expected) / (share * (1.0 - share))  # as a bend
+        misfit = np.abs(height - expected) / (share * (1.0 - share))  # divided by s (1 - s), as a bend is
         is_rough = misfit > MIN_KINK_MISFIT * np.maximum(np.abs(bends.kappa_before), np.abs(bends.kappa_after))
         parts = [
             Intervals(np.array(t).T, np.array(f).T, misfit * part, is_rough, self.target, self.column)

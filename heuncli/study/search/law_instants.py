@@ -28,8 +28,8 @@ from heuncli.study.search.turnings import NO_INSTANTS, SampledTurns, find_doubtf
 from heuncli.study.solve.history import History, resample
 
 MIN_INTERVALS = 256  # intervals of a run whose bounds are checked, however few instants the grid has
-NEGLIGIBLE = 1e-9  # of the largest: smaller changes of a load or a law are in no digit shown
-BOUND_MARGIN = 0.02  # of the range of an expression: its bounds may exceed the neighbouring samples by this much
+NEGLIGIBLE = 1e-9  # share of the largest value: smaller changes of a load or a law are in no digit shown
+BOUND_MARGIN = 0.02  # share of the range of an expression by which its bounds may exceed the neighbouring samples
 ORDERS = 3  # value, first and second derivative
 
 
@@ -79,8 +79,9 @@ def sample_laws(time_laws: Sequence[Expression], times: Array) -> Array:
 
 
 def refine_to_bounds(time_laws: Sequence[Expression], times: Array, max_instants: int) -> tuple[Array, bool]:
-    """Add instants until no expression can leave its samples by much between them, according to its bounds; return
-    whether `max_instants` are enough.
+    """Add instants until no expression can leave its samples by much between them, according to its bounds.
+
+    Returns whether `max_instants` are enough.
     """
     span = float(np.ptp(times))
     for expression in time_laws:
@@ -105,9 +106,7 @@ def refine_to_bounds(time_laws: Sequence[Expression], times: Array, max_instants
 
 
 def refine_for_loads(setup: Setup, history: History, grid: Array, max_instants: int) -> tuple[Array, bool]:
-    """Return a grid (n,), ascending, with more instants where applied loads need them; and whether `max_instants` are
-    enough.
-    """
+    """Add instants to a grid (n,) where applied loads need them; return also whether `max_instants` are enough."""
 
     def loads(times: Array) -> Array:
         """Sample forces and moments of all loads, (n_t, 6 n_loads); 0 where one is indeterminate."""

@@ -29,12 +29,14 @@ from heuncli.study.search.extremes import (
 )
 
 MAX_PROBES = 2_000_000  # instants sampled in one search: turning points of some hundred thousand cycles
-OFF_MIDDLE = 0.52  # of an interval: where it is sampled, off the middle so that nothing periodic looks constant
+OFF_MIDDLE = 0.52  # share of an interval at which it is sampled: off its middle, nothing periodic looks constant
 NO_INSTANTS = np.zeros(0)
 MIN_PREDICTIONS = 2  # consecutive correct predictions of an interval
-PREDICTION_TOLERANCE = 0.02  # of the range of four neighbours: the error of cubics through seven instants per period
+# share of the range of four neighbours: the error of cubics through seven instants per period
+PREDICTION_TOLERANCE = 0.02
 
-Slack = Callable[[Array, Array], Array]  # from sizes (m, n) over intervals of widths (m,) the negligible part, (m, n)
+# takes sizes (m, n) over intervals and their widths (m,), returns the negligible part, (m, n)
+Slack = Callable[[Array, Array], Array]
 
 
 class SampledTurns(NamedTuple):
@@ -149,8 +151,9 @@ def refine_until_predicted(
 
 
 def find_doubtful(samples: SampledTurns, slack: Slack) -> Mask:
-    """Mark the intervals of a grid next to an instant that its neighbours do not predict, (n - 1,): the others, half as
-    wide as the prediction's, need not be sampled.
+    """Mark the intervals of a grid next to an instant that its neighbours do not predict, (n - 1,).
+
+    The others are half as wide as the prediction's, and need not be sampled.
     """
     times, values, _ = samples
     is_doubtful = np.ones(max(len(times) - 1, 0), dtype=bool)

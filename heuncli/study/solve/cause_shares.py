@@ -36,7 +36,10 @@ from heuncli.study.solve.error_estimates import BalanceTerms
 def add_shares(
     blocks: dict[str, Any], shares: Shares, mechanism: Mechanism, states: BodyStates, moment_point: Array
 ) -> None:
-    """Add shares by cause to the loads of joints and foundation, in place; moment_point: of M_s, (3,)."""
+    """Add shares by cause to the loads of joints and foundation, in place.
+
+    moment_point (3,): of M_s
+    """
     if "joints" in blocks:
         for load in shares.joints:
             if load.joint.name in blocks["joints"]:  # if single joints are requested, only these are shown

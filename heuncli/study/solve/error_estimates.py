@@ -336,8 +336,9 @@ class ErrorEstimates:
     def find_relative_wrench_error(
         self, arm: float, kind: str, force: str = "force", moment: str = "moment", other_kinds: Sequence[str] = ()
     ) -> float:
-        """Return the relative error of forces and moments of a kind, together with those of other kinds; arm: the
-        longest of a moment.
+        """Return the relative error of forces and moments of a kind, together with those of other kinds.
+
+        arm: the longest lever of a moment
         """
         if not other_kinds and not {(kind, force), (kind, moment)} & self.extents.keys():
             return 0.0

@@ -194,9 +194,7 @@ def integrate_checked(
 
 
 def integrate_with_event_method(runs: Runs, setup: Setup, tolerance: float, by_cause: bool) -> CheckedRun:
-    """Compute a motion with its check run; if events end most steps, restart it with a method of few stages where that
-    is faster.
-    """
+    """Integrate a motion with its check run; restart it with a method of few stages if that passes events faster."""
     method, runs.eventful = runs.method, setup.is_auto
     try:
         return make_checked_run(runs, tolerance, LoadErrors(setup, by_cause))
@@ -246,7 +244,7 @@ def solve_state(setup: Setup, time: float, tolerance: float, by_cause: bool = Fa
         impulses, notes = [one.events for one in transitions], transitions[0].notes
         starts = [jumps[-1].after_state if jumps else start for start, jumps in zip(starts, impulses, strict=True)]
     times = np.array([time])
-    contact_states = impulses[0][-1].holding if impulses[0] else find_closed_contacts(runner, time, starts[0])
+    contact_states = impulses[0][-1].contact_states if impulses[0] else find_closed_contacts(runner, time, starts[0])
     interleaved_states = interleave(times, [start[None, :] for start in starts])
     solutions = runner.evaluate(*interleaved_states, causes=by_cause, holding=contact_states)
     own_solution = solutions.select(slice(0, 1))

@@ -5,8 +5,8 @@ result of its kind at the requested instants. Forces of a kind are compared with
 moment divided by its longest arm; its moments with the largest moment, or the largest force times the size of the
 scene. The arm is the size of the scene; for the foundation it is the reach of the scene from the point that its moment
 is taken about. Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or the
-range of potential energy and work, because these have no zero of their own. A kind that is only the remainder of larger
-terms that cancel has error 0.
+range of potential energy and work, because these have no zero of their own. Where larger
+terms cancel and only rounding is left of a kind, its error is given as 0.
 """
 
 from __future__ import annotations
@@ -56,6 +56,12 @@ from heuncli.study.solve.error_estimates import (
     iter_momentum_quantities,
 )
 
+ROW_CHANGE = 1e-6  # relative to the largest multiplier: a change of the chosen rows changes indeterminate loads by more
+CUTS_AT_ONCE = 200_000  # instants times cuts whose loads are compared together
+BLOCK = 8  # instants are compared in whole blocks of so many, as BLAS has them
+
+Quantity = tuple[str, Array]  # name, a key of error_estimates.UNITS, and the couplings' values (n, k, 3) or (n, k, 1)
+
 
 def iter_coupling_results(
     couplings: Sequence[CouplingLoads], applied_actions: Sequence[Action], joints: Sequence[Joint], states: BodyStates
@@ -99,13 +105,6 @@ def find_coupling_numbers(loads: CouplingLoads, joints: Sequence[Joint], states:
     return numbers_by_quantity
 
 
-ROW_CHANGE = 1e-6  # of the largest multiplier: indeterminate loads change by more when other rows are chosen
-CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
-
-
-Quantity = tuple[str, Array]  # of couplings: name, a key of error_estimates.UNITS; values (n, k, 3) or (n, k, 1)
-
-
 class ComparedInstants(NamedTuple):
     """Intermediate results of the instants whose errors were computed: the bodies' states, and the joint loads."""
 
@@ -122,7 +121,7 @@ class LoadErrors(ErrorEstimates):
         """keep_instants: store the intermediate results of the instants, which would be large for a whole run"""
         super().__init__(setup, weights)
         self.keep_instants, self.by_cause = keep_instants, by_cause
-        self.last: ComparedInstants | None = None  # of the instants that were added last
+        self.last: ComparedInstants | None = None  # results of the instants that were added last
         self.is_requested = self.is_claimed = np.zeros(0, dtype=bool)
 
     def add_values(
@@ -132,10 +131,13 @@ class LoadErrors(ErrorEstimates):
         self.find_extent(*name).add(values, rounding, terms, (self.is_requested, self.is_claimed), extra_difference)
 
     def add(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
-        """Add instants, with masks of those requested and of those before the horizon; each has the solution of run A,
-        then of the others.
+        """Add instants, each with the solution of the first run, then of the others.
+
+        is_requested, is_claimed (n,): which of them are requested, and which are before the horizon
         """
         count = len(recovered.times) // max(len(is_requested), 1)
+        # with other closure rows, indeterminate loads differ by more than their error: such instants are left out,
+        # unless all are so
         same = (
             find_equal_rows(recovered, count)
             if self.setup.model["redundant"]
@@ -236,7 +238,7 @@ class LoadErrors(ErrorEstimates):
         count = len(states.omega) // len(self.is_requested)
 
         def find_differences(values: Array) -> Array:
-            """Return the largest difference of each state from its perturbed copies."""
+            """Return the largest difference of the first run's vectors from those of the other runs, (n, b)."""
             own = values[0::count]
             return reduce(np.maximum, [compute_norms(own - values[k::count]) for k in range(1, count)])
 
@@ -336,8 +338,9 @@ class LoadErrors(ErrorEstimates):
         """
         mechanism, origin = self.setup.scene.mechanism, self.setup.moment_point
         arm = states.centre - origin
-        reach = np.abs(arm).max(axis=(1, 2))
-        self.reach = max(self.reach, float(reach.max()))
+        self.reach = max(self.reach, float(np.abs(arm).max()))
+        # a component of d x F is a sum of two products: the largest component of d alone would be too little
+        reach = np.abs(arm).sum(axis=2).max(axis=1)
         moments = terms.moment + reach * terms.force
         forces_rounding, moments_rounding = terms.rounding
         elements = [load for (kind, _), load in find_ground_loads(mechanism, actions).items() if kind == "elements"]
@@ -347,7 +350,7 @@ class LoadErrors(ErrorEstimates):
             ("foundation", *total_wrench, reach),
             ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1), reach),
             ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1), reach),
-            *(("elements", *load[:2], reach + np.abs(load.point - origin).max(axis=1)) for load in elements),
+            *(("elements", *load[:2], reach + np.abs(load.point - origin).sum(axis=1)) for load in elements),
         ]
         for kind, force, moment, lever in wrenches:
             F, M = project_to_plane(force, moment) if mechanism.planar else (force, moment)
@@ -370,7 +373,7 @@ class LoadErrors(ErrorEstimates):
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the cuts' loads in body axes, and the difference of the bodies' own orientation between the runs."""
-        from heuncli.loads.kinetostatics.sections import (  # as in recover
+        from heuncli.loads.kinetostatics.sections import (  # only scenes with sections load it
             find_acceleration_matrix,
             find_attachments,
             find_piece_loads,

@@ -89,7 +89,7 @@ def remove_weight_and_loads(layout: Layout) -> Layout:
 
 
 def rate_derivatives(layout: Layout, solution: Evaluation) -> Array:
-    """Return the derivatives of the state's rates, each at the place of its rate, 0 elsewhere; of one instant."""
+    """Return the derivatives of the state's rates at one instant, each at the place of its rate, 0 elsewhere."""
     found = np.zeros(layout.n_state)
     for k, body in enumerate(layout.bodies):
         if body["ball"]:

@@ -144,6 +144,7 @@ PART = Part(
         "SLENDER": "which bodies' moments are looked at at all: those of the others are far above NO_INERTIA",
         "KERNEL.much_artificial": "how much inertia is lent: what it takes is given back",
         "SPINS_LIGHTLY": "what is integrated: either way the same motion, at other costs",
+        "ARTIFICIAL_SHARE": "how much inertia is lent: what it takes is given back (laws/test_massless_frames)",
         "ARTIFICIAL_RADIUS": "an inertia lent to a spin on which nothing depends",
     },
     wanted={

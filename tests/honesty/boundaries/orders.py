@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.analyses.balancing.counterweight_fit import Candidate, WeightPlace
-from heuncli.analyses.balancing.flywheel import choose_constant_torque
 from heuncli.analyses.balancing.orders import classify_order, format_direction, format_remaining_orders
 from heuncli.analyses.balancing.results import BalanceOptions, FlywheelRequest, OrderRow
 from heuncli.analyses.balancing.sampling import select_shown_orders
 from heuncli.analyses.balancing.study import balance
+from heuncli.analyses.balancing.work_curve import choose_constant_torque
 from heuncli.base.errors import SolveError
 from heuncli.scene.file_format.load import load
 from tests.honesty.boundaries.part import Part, Row

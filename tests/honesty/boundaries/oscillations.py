@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from heuncli.analyses.modes import compute_spec_modes
+from heuncli.analyses.modes.study import compute_spec_modes
 from heuncli.base import tolerances
 from heuncli.base.errors import HeunError
 from heuncli.motion.linearisation.indifference import Indifference, IndifferentMotions, find_indifference

@@ -110,6 +110,20 @@ sections:
     return "as it is" if abs(safety / x - 1) < 1e-9 else "the greatest"
 
 
+def bushing(turning: str) -> str:
+    return read(bar(tail=f"forces: {{b: {{type: bushing, from: ground.O, to: bar.end, turning: {turning}}}}}"))
+
+
+def skew_bushing(x: float) -> str:
+    """Two elements off the diagonal that differ by x of the largest."""
+    return bushing(f"[[5, 1, 0], [{1 + 5 * x!r}, 2, 0], [0, 0, 3]]")
+
+
+def driving_bushing(x: float) -> str:
+    """A direction with the stiffness -x where the diagonal is 1."""
+    return bushing(f"[[4, {2 * (1 + x)!r}, 0], [{2 * (1 + x)!r}, 1, 0], [0, 0, 3]]")
+
+
 def expectation(wanted: str) -> str:
     done = study(bar(tail=f"expect: [{wanted}]"))
     return "passed" if compare(done, done.spec.expect[0]).is_met else "failed"
@@ -131,6 +145,8 @@ PART = Part(
         Row("INERTIA_REFUSED", principal, "warned: inertia-rounded", "refused: inertia-not-physical"),
         Row("INERTIA_TYPED", principal, "fine", "warned: inertia-rounded"),
         Row("INERTIA_TYPED", unsymmetric, "fine", "refused: inertia-form"),
+        Row("STIFFNESS_TYPED", skew_bushing, "fine", "refused: bushing-matrix"),
+        Row("STIFFNESS_TYPED", driving_bushing, "fine", "refused: bushing-matrix"),
         Row("NO_IMPORTED_MOMENT", moment, "all moments of inertia are 0,", "a principal moment of inertia is negative"),
         Row("DERIVATIVE_ERROR", derivative, "fine", "warned: table-derivative", (0.01, 1 / 3, 3.0)),
         Row("TABLE_ENDS", periodic, "fine", "refused: table-period"),

@@ -10,10 +10,11 @@ from heuncli.analyses.balancing.results import BalanceOptions, FlywheelRequest, 
 from heuncli.analyses.balancing.study import balance
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.figure_output import require_save_form
 from heuncli.app.cli.options import CASE, FORMAT, FORMATS, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 from heuncli.app.cli.output import save
 from heuncli.app.cli.solving import load_spec, print_warnings, require_choice
-from heuncli.app.cli.target import choose_format, require_other_file, require_save_form
+from heuncli.app.cli.target import choose_format, require_other_file
 from heuncli.app.commands.balance.page import make_document
 from heuncli.base.errors import Finding, Problem
 from heuncli.base.named_tuples import NamedTuple

@@ -110,14 +110,12 @@ def _compare_spec(task: CheckTask, request: CheckRequest, jobs: int, items: list
         messages += [] if request.quiet else format_warnings(one, study.results, place, study.later_warnings)
     golden = None
     if task.file is not None:
-        golden_outcomes_found, golden = compare_golden(task.file, old, _make_golden(task, spec, runs), request)
-        outcomes += golden_outcomes_found
+        golden_outcomes, golden = compare_golden(task.file, old, _make_golden(task, spec, runs), request)
+        outcomes += golden_outcomes
         if old is None and not request.update and not request.strict and not request.quiet:
             messages.append(f"warning: {escape(path)}: {NO_FILE}")
         messages += [
-            f"note: {escape(path)}: {outcome.note}"
-            for outcome in golden_outcomes_found
-            if outcome.note and not request.quiet
+            f"note: {escape(path)}: {outcome.note}" for outcome in golden_outcomes if outcome.note and not request.quiet
         ]
     timeout.disarm()
     return CheckResult(path, tuple(outcomes), messages=tuple(messages), golden=golden)

@@ -64,8 +64,9 @@ def main(request: CheckRequest) -> int:
         files.write(encode_text(render_junit(checked, orphans, request.strict)), request.junit)
     print_explain_hint([problem for result in checked for problem in result.problems])
     _print_slowest(checked, request.durations)
+    _write_goldens(checked, request)
     codes = [result.exit_code for result in checked] + [FAILED] * (request.strict and bool(orphans))
-    return select_exit_code([*codes, *_write_goldens(checked, request)])
+    return select_exit_code(codes)
 
 
 def _check_references(request: CheckRequest) -> int:
@@ -160,18 +161,17 @@ def _print_slowest(results: Sequence[CheckResult], limit: int | None) -> None:
         print_stderr(f"{result.seconds:9.3f} s  {escape(result.path)}")
 
 
-def _write_goldens(results: Sequence[CheckResult], request: CheckRequest) -> list[int]:
-    """Write the golden files that are to be written; none if an existing one cannot be used. Returns exit codes."""
+def _write_goldens(results: Sequence[CheckResult], request: CheckRequest) -> None:
+    """Write the golden files that are to be written; none if an existing one cannot be used. Raises OutputError."""
     updates = [one.golden for one in results if one.golden is not None and one.golden.text is not None]
     if any(problem.code == "not-golden" for one in results for problem in one.problems):
         if updates:
             print_stderr("heun: no golden file was written: an existing one cannot be used")
-        return []
+        return
     for golden in updates:
         _write_golden(golden.path, encode_text(golden.text or ""))
         if not request.quiet:
             print_stderr(f"heun: {escape(golden.path)} {'written' if golden.is_new else 'rewritten'}")
-    return []
 
 
 def _write_golden(path: str, content: bytes) -> None:

@@ -6,6 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from heuncli.analyses.find.results import (
+    AT_END,
+    FALLS,
+    RISES,
     Crossing,
     FindResults,
     IntervalFindings,
@@ -18,7 +21,7 @@ from heuncli.base.units import parse_unit
 from heuncli.output.documents.as_data import make_columns
 from heuncli.output.documents.document import Cell
 
-DIRECTIONS = {1: "rises", -1: "falls", 0: "at the end"}
+DIRECTIONS = {RISES: "rises", FALLS: "falls", AT_END: "at the end"}
 CSV_COLUMNS = make_columns("kind value error unit measure measure_error measure_unit word reason")
 
 
@@ -89,7 +92,9 @@ def _make_crossing_block(results: FindResults, crossing: Crossing) -> dict[str, 
     return {
         **_make_place_block(results, crossing.sample),
         "error": crossing.error,
-        "way": DIRECTIONS[crossing.direction],
+        "way": None
+        if crossing.direction == AT_END
+        else DIRECTIONS[crossing.direction],  # at an end it may not pass the value
         "flat": crossing.flat,
         "set": line,
     }

@@ -8,9 +8,9 @@ from typing import Annotated
 
 from heuncli.analyses.find.results import FindResults, IntervalFindings
 from heuncli.analyses.find.study import find_meetings
-from heuncli.analyses.variants.cached_evaluation import CachedEvaluator
+from heuncli.analyses.variants.conditions import Comparison, parse_condition, resolve_condition
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
-from heuncli.analyses.variants.measures import Comparison, parse_condition, resolve_condition
+from heuncli.analyses.variants.measures import CachedEvaluator
 from heuncli.analyses.variants.parameters import DesignVariable, parse_interval
 from heuncli.analyses.variants.samples import Sample, make_sample
 from heuncli.app.cli.documents import emit_document

@@ -10,9 +10,10 @@ from importlib import import_module
 from pathlib import Path, PurePath
 
 from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.figure_output import render_text, require_figure_form, require_width
 from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.output import emit, save
-from heuncli.app.cli.target import parse_units, render_text, require_figure_form, require_other_file, require_width
+from heuncli.app.cli.target import parse_units, require_other_file
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import PlotTarget
 from heuncli.base.errors import Problem

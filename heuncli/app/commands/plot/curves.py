@@ -127,7 +127,15 @@ def _parse_common_instants(sources: Sequence[FigureSource], words: str | None) -
         return None
     times = sorted({time for source in sources for time in parse_instants(source, words).tolist()})
     for source in sources if len(sources) > 1 else ():
-        parse_instants(source, ",".join(map(repr, times)))
+        try:
+            parse_instants(source, ",".join(map(repr, times)))
+        except UsageError as error:
+            hint = "give instants that all runs reach, in seconds, or call it once for each"
+            own = (
+                f"{source.name}: {problem.message}; one figure shows all runs at the same instants"
+                for problem in error.problems
+            )
+            raise UsageError(*(Problem("bad-option", message, hint=hint) for message in own)) from None
     return times
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.analyses.balancing.study import balance
-from heuncli.analyses.modes import BodyModes, exclude_entries, find_body_modes
+from heuncli.analyses.modes.study import BodyModes, exclude_entries, find_body_modes
 from heuncli.app.cli.entry import UsageError
+from heuncli.app.cli.figure_output import require_view
 from heuncli.app.cli.solving import find_excluded, print_warnings
-from heuncli.app.cli.target import parse_units, require_view
+from heuncli.app.cli.target import parse_units
 from heuncli.app.commands.plot.request import PlotRequest
 from heuncli.app.commands.plot.sources import (
     PlotTarget,

@@ -53,7 +53,7 @@ HARDPOINT_REPORTS = frozenset({"joints", "forces"})
 def main(request: RunRequest) -> int:
     """Run the command; returns the exit code."""
     if request.watch:
-        watch(request, main)
+        watch(request, main)  # never returns
     require_other_file(request.output, [request.spec])
     form = choose_format(request.format, request.output, FORMATS)
     measures = _parse_measures(request)

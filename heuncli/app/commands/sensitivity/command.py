@@ -9,9 +9,8 @@ from typing import Annotated
 
 from heuncli.analyses.sensitivity import NoisyDerivative, compute_derivative
 from heuncli.analyses.tolerance_analysis import NumberSpread, combine_tolerances, parse_spreads
-from heuncli.analyses.variants.cached_evaluation import CachedEvaluator, KnownResults
 from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
-from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue, Reason
+from heuncli.analyses.variants.measures import CachedEvaluator, KnownResults, MeasureLabel, NoisyValue, Reason
 from heuncli.analyses.variants.spec_numbers import SpecNumber, SpecNumbers
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from heuncli.analyses.sensitivity import Contribution, NoisyDerivative, SpreadSum
+from heuncli.analyses.sensitivity import NoisyDerivative
+from heuncli.analyses.tolerance_analysis import Contribution, SpreadSum
 from heuncli.analyses.variants.measures import MeasureLabel, NoisyValue
 from heuncli.analyses.variants.spec_numbers import SpecNumber
 from heuncli.base.named_tuples import NamedTuple
@@ -185,14 +186,14 @@ def _make_contribution_row(contribution: Contribution, size: float) -> tuple[Cel
         *lead,
         *_make_pair(contribution.size * size, contribution.error * size),
         *ends,
-        "searched" if contribution.bent else "",
+        "searched" if contribution.is_nonlinear else "",
     )
 
 
 def _describe_nonlinear(total: SpreadSum, size: float) -> Iterator[str]:
     """Describe the extremes found within tolerances that are not linear, and which part of them cannot be solved."""
     for contribution in total.contributions:
-        if contribution.bent and contribution.least is not None and contribution.greatest is not None:
+        if contribution.is_nonlinear and contribution.least is not None and contribution.greatest is not None:
             linear = (
                 "there is no derivative"
                 if contribution.linear is None
@@ -219,7 +220,7 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
         return
     partly = ", for the solvable part of the spreads" if any(one.why[0] for one in total.contributions) else ""
     shown_by = ", found by changing several parameters together" if total.by_variant else ""
-    found_by = ", searched inside the spreads" if any(one.bent for one in total.contributions) else ""
+    found_by = ", searched inside the spreads" if any(one.is_nonlinear for one in total.contributions) else ""
     words = (("worst case", total.worst, shown_by + found_by + partly), ("root sum square", total.square, ""))
     for word, (value, error), remark in words:
         text = append_unit(format_with_error(value * size, error * size), unit)
@@ -230,10 +231,12 @@ def _describe_sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -
         yield f"the variants with all parameters at their ends: {why[1]} [{why[0]}]"
         return
     changes = low.value - base.value, high.value - base.value
-    where = "where each has the largest effect" if any(one.bent for one in total.contributions) else "at their ends"
+    where = (
+        "where each has the largest effect" if any(one.is_nonlinear for one in total.contributions) else "at their ends"
+    )
     text = f"the variants with all parameters {where}: {changes[0] * size:+.6g} and {changes[1] * size:+.6g}"
-    deviation = max(abs(abs(change) - total.worst[0]) for change in changes)
-    if deviation > LINEARITY_TOLERANCE * total.worst[0] + total.worst[1] + low.error + high.error:
+    deviation = max(abs(abs(change) - total.worst.value) for change in changes)
+    if deviation > LINEARITY_TOLERANCE * total.worst.value + total.worst.error + low.error + high.error:
         text += ": the spreads are too large for a linear sum"
     yield text
 
@@ -274,15 +277,15 @@ def _make_spread_block(total: SpreadSum) -> dict[str, Any]:
     """Return the effect of the tolerances as the JSON has it."""
     low, high = total.corners
     return {
-        "worst": total.worst[0] if total.worst else None, "worst_error": total.worst[1] if total.worst else None,
-        "root_sum_square": total.square[0] if total.square else None,
-        "root_sum_square_error": total.square[1] if total.square else None,
+        "worst": total.worst.value if total.worst else None, "worst_error": total.worst.error if total.worst else None,
+        "root_sum_square": total.square.value if total.square else None,
+        "root_sum_square_error": total.square.error if total.square else None,
         "corners": [low.value, high.value], "worst_by_variant": total.by_variant,
-        "largest": total.largest[0] if total.largest else None,
+        "largest": total.largest.value if total.largest else None,
         "contributions": [
             {
-                **{key: value for key, value in contribution._asdict().items() if key not in ("bent", "why")},
-                "by_variants": contribution.bent,
+                **{key: value for key, value in contribution._asdict().items() if key not in ("is_nonlinear", "why")},
+                "by_variants": contribution.is_nonlinear,
                 "code": contribution.why[0] or None, "reason": contribution.why[1] or None,
             }
             for contribution in total.contributions

@@ -29,7 +29,7 @@ def make_case_matrix(head: SweepHead, selection: ShownRows, units: Units) -> lis
     if len(names) < 2 or head.plan.size <= len(names):
         return []
     cases = np.array([names.index(str(value)) for value in axis.values])
-    case_of_row = cases[find_places(head.plan, axis, selection.columns.numbers.astype(np.intp))]
+    case_of_row = cases[head.plan.find_axis_places(axis, selection.columns.numbers.astype(np.intp))]
     rows: list[tuple[Cell, ...]] = []
     for k, measure in enumerate(head.measures):
         unit, size = units.find(measure.unit)
@@ -45,19 +45,6 @@ def find_case_axis(plan: Plan) -> ParameterAxis | None:
     """Return the axis of the load cases; None if there is none. A parameter may have its name, but holds numbers."""
     axes = (axis for axis in (*plan.columns, *plan.axes) if axis.name == CASE and axis.unit is None)
     return next(axes, None)
-
-
-def find_places(plan: Plan, axis: ParameterAxis, numbers: Indices) -> Indices:
-    """Return which value of an axis each variant has, (n,); numbers (n,): of the variants."""
-    remaining: Indices = numbers // (len(plan.draws.values) if plan.draws is not None else 1)
-    if plan.together and plan.axes:
-        remaining, places = np.divmod(remaining, len(plan.axes[0].values))
-        return places if axis in plan.axes else remaining
-    for other in reversed(plan.axes):
-        remaining, places = np.divmod(remaining, len(other.values))
-        if other is axis:
-            return places
-    return remaining
 
 
 def _find_extremes_by_case(

@@ -7,7 +7,7 @@ What an axis such as n=1000:6000/51rpm passes through, from the command line to 
     Plan              analyses/variants/plans.py         all axes; gives each variant its number and its values
     VariantResult     analyses/variants/measures.py      the measures of a variant (evaluation.py), as they are stored
     SweptRow          analyses/sweep_rows.py             number, values and result, read back in order
-    NumberCell        tables.py                          in display units; or a line of CSV, JSON, Parquet (writer.py)
+    NumberCell        tables.py                          in display units; or a line of CSV, JSON, Parquet (as_*.py)
 """
 
 from __future__ import annotations

@@ -14,34 +14,27 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator
 from contextlib import closing
-from functools import partial
-from itertools import islice
 
 from heuncli.analyses.sweep_rows import SweepHead
 from heuncli.analyses.sweep_store import Store, StoredRows, choose_sweep, format_sweep, open_store, split_store_argument
 from heuncli.analyses.sweep_store_file import write_head
-from heuncli.analyses.variants.evaluation import Values, VariantEvaluator
+from heuncli.analyses.variants.evaluation import VariantEvaluator
 from heuncli.analyses.variants.keys import VariantKeys
 from heuncli.analyses.variants.measures import VariantResult
-from heuncli.analyses.variants.plans import Plan
+from heuncli.analyses.variants.parameters import Values
 from heuncli.app.cli import jobs
 from heuncli.app.cli.entry import BUG, UsageError
 from heuncli.app.cli.options import list_fields
 from heuncli.app.cli.output import print_stderr
 from heuncli.app.cli.progress import ReportProgress, show_progress
 from heuncli.app.cli.target import is_same_file, note_si_format
-from heuncli.app.cli.variant_workers import make_death_result, solve_contained
+from heuncli.app.cli.variant_workers import solve_variants
 from heuncli.app.commands.sweep.axes import parse_shard
 from heuncli.app.commands.sweep.request import SweepRequest
-from heuncli.app.commands.sweep.writer import (
-    SweepOutput,
-    SweepWarnings,
-    collect_warnings,
-    print_warnings_summary,
-    write_sweep,
-)
+from heuncli.app.commands.sweep.sweep_warnings import SweepWarnings, collect_warnings, print_warnings_summary
+from heuncli.app.commands.sweep.writer import SweepOutput, write_sweep
 from heuncli.base.errors import OutputError, Problem, SpecError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.signals import GracefulStop
@@ -82,10 +75,10 @@ class PendingVariant(NamedTuple):
 
 def run_sweep(sweep: SweepTask, request: SweepRequest, output: SweepOutput) -> int:
     """Solve the missing variants and write all results; returns the exit code."""
-    number = sweep.store.find_or_add_sweep(sweep.head, sweep.compute_identity())
+    sweep_number = sweep.store.find_or_add_sweep(sweep.head, sweep.compute_identity())
     with GracefulStop() as stopping:
-        done_count = _solve_missing(sweep, number, request, stopping)
-    rows = sweep.store.find_rows(number, sweep.head.plan, sweep.shard)
+        done_count = _solve_missing(sweep, sweep_number, request, stopping)
+    rows = sweep.store.find_rows(sweep_number, sweep.head.plan, sweep.shard)
     if stopping.number:
         if request.store is None and done_count:
             write_sweep(sweep.head, rows, output)
@@ -106,7 +99,7 @@ def choose_exit_code(warnings: SweepWarnings, strict: bool) -> int:
     return BUG if "bug" in warnings.codes else 1 if strict and warnings.failure_count else 0
 
 
-def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stopping: GracefulStop) -> int:
+def _solve_missing(sweep: SweepTask, sweep_number: int, request: SweepRequest, stopping: GracefulStop) -> int:
     """Solve and store the missing variants; returns how many variants of the part are done."""
     pending: dict[int, PendingVariant] = {}
     count = SweepProgress(sweep.size)
@@ -118,12 +111,12 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
             if stopping.number:  # a batch in this process cannot wait for the descriptor
                 return
             values = plan.find_values(variant)
-            variant_values = PendingVariant(sweep.keys.make_key(values), values)
-            if store.has_result(variant_values.key):
-                store.link_variant(number, variant, *variant_values)
+            pending_variant = PendingVariant(sweep.keys.make_key(values), values)
+            if store.has_result(pending_variant.key):
+                store.link_variant(sweep_number, variant, *pending_variant)
                 count.stored += 1
             else:
-                pending[variant] = variant_values
+                pending[variant] = pending_variant
                 yield variant
 
     results = _solve_variants(sweep, iter_missing(), request, stopping.descriptor)
@@ -132,7 +125,7 @@ def _solve_missing(sweep: SweepTask, number: int, request: SweepRequest, stoppin
             for variant, result in results:
                 if not count.successes and result.code in NO_NUMBER:
                     _require_numbers(sweep.evaluator, plan.find_values(variant))
-                store.add_result(number, variant, *pending.pop(variant), result)
+                store.add_result(sweep_number, variant, *pending.pop(variant), result)
                 count.add(result)
                 count.report(report)
         except OutputError as error:
@@ -267,70 +260,3 @@ def _require_alone(request: SweepRequest) -> None:
             word = " ".join(request.words) if name == "words" else f"--{name.removesuffix('_each').replace('_', '-')}"
             hint = "leave it out; --show solves nothing. Or name the store with --store"
             raise UsageError(Problem("bad-option", f"--show and {word} cannot be combined", hint=hint))
-
-
-BATCH_SECONDS = 0.2  # seconds of a batch: long compared with the transfer, short enough to lose
-GROWTH = 8  # largest growth from batch to batch: the first variants include one-off work
-MAX_BATCH = 2000  # largest number of variants of a batch
-
-
-class BatchResults(NamedTuple):
-    """The results of a batch, and the time it took [s]."""
-
-    results: tuple[VariantResult, ...]
-    seconds: float
-
-
-def solve_variants(
-    evaluator: VariantEvaluator, plan: Plan, numbers: Iterator[int], job_count: int, stop_descriptor: int | None = None
-) -> Iterator[tuple[int, VariantResult]]:
-    """Yield each number with its result, in the order of completion.
-
-    stop_descriptor: a file descriptor; the work ends once anything can be read from it
-    """
-    batches = Batches(numbers)
-    work = partial(solve_batch, evaluator, plan)
-    if not jobs.can_fork():
-        while (batch := batches.next()) is not None:
-            batch_results = work(batch)
-            batches.record_time(batch, batch_results.seconds)
-            yield from zip(batch, batch_results.results, strict=True)
-        return
-    for batch, outcome in jobs.run_as_completed(work, batches.next, job_count, stop_descriptor):
-        if isinstance(outcome, jobs.ProcessDeath):
-            yield from ((number, make_death_result(outcome)) for number in batches.retries.add_lost(batch, outcome))
-        else:
-            batches.record_time(batch, outcome.seconds)
-            yield from zip(batch, outcome.results, strict=True)
-
-
-def solve_batch(evaluator: VariantEvaluator, plan: Plan, numbers: Sequence[int]) -> BatchResults:
-    """Solve some variants; a failure of one does not stop the others."""
-    start = time.monotonic()
-    results = tuple(
-        solve_contained(evaluator, plan.find_values(number), "sweep", evaluator.recipe.options.time_limit)
-        for number in numbers
-    )
-    return BatchResults(results, time.monotonic() - start)
-
-
-class Batches:
-    """Batches of variant numbers, each as large as a process solves in about BATCH_SECONDS."""
-
-    def __init__(self, numbers: Iterator[int]) -> None:
-        self.numbers = numbers
-        self.size = 1
-        self.retries = jobs.RetryQueue()  # variants of batches whose process died
-
-    def next(self) -> tuple[int, ...] | None:
-        """Return the next batch, or None if there is none now."""
-        retry = self.retries.pop_next()
-        if retry is not None:
-            return (retry,)
-        return tuple(islice(self.numbers, self.size)) or None
-
-    def record_time(self, batch: Sequence[int], seconds: float) -> None:
-        """Record the time of a solved batch, and adapt the size of the next ones."""
-        self.retries.forget(batch)
-        fitting = BATCH_SECONDS * len(batch) / max(seconds, 1e-6)
-        self.size = int(min(max(fitting, 1.0), GROWTH * len(batch), MAX_BATCH))

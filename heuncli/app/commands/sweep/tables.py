@@ -226,7 +226,7 @@ def draw_courses(
 
     There is a line for each combination of the axes before, followed by the combination if there are several.
     """
-    course_length = len(plan.draws.values) if plan.draws is not None else last_axis_length(plan)
+    course_length = plan.course_length
     numbers, values = selection.columns.numbers, selection.columns.values(k)
     known = values[np.isfinite(values)]
     limits = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
@@ -275,8 +275,3 @@ def list_jumps(head: SweepHead, selection: ShownRows, k: int, limit: int | None)
     if len(jumps) > len(lines):
         lines.append(f"{head.measures[k].text}: {format_count(len(jumps) - len(lines), 'more jump')}: --all")
     return lines
-
-
-def last_axis_length(plan: Plan) -> int:
-    """Return how many successive variants differ only in the last axis, or in all axes if they vary together."""
-    return plan.size if plan.together or not plan.axes else len(plan.axes[-1].values)

@@ -75,8 +75,8 @@ def make_variable_block(results: TuneResults, index: int) -> dict[str, Any]:
     }
     range_ = results.tolerance_ranges[index] if results.tolerance_ranges else ToleranceRange()
     block["moves"] = {
-        "floor": [*map(make_move_block, range_.of_floor)],
-        "hundredth": [*map(make_move_block, range_.of_hundredth)],
+        "floor": [*map(make_move_block, range_.floor_moves)],
+        "hundredth": [*map(make_move_block, range_.hundredth_moves)],
     }
     return block
 

@@ -11,9 +11,9 @@ from functools import partial
 from heuncli.analyses.tune.results import TuneResults
 from heuncli.analyses.tune.study import Tuning
 from heuncli.analyses.tune.trials import Trials
-from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import TIME_LIMIT_CODE, VariantResult, make_failed_result
-from heuncli.analyses.variants.parameters import format_value
+from heuncli.analyses.variants.parameters import Values, format_value
 from heuncli.app.cli import jobs, timeout
 from heuncli.app.cli.documents import emit_document
 from heuncli.app.cli.entry import UsageError

@@ -9,8 +9,8 @@ from itertools import chain
 from typing import Annotated
 
 from heuncli.analyses.tune.results import TuneGoal, TuneTask
+from heuncli.analyses.variants.conditions import WrittenCondition, parse_condition, resolve_condition
 from heuncli.analyses.variants.evaluation import VariantEvaluator
-from heuncli.analyses.variants.measures import WrittenCondition, parse_condition, resolve_condition
 from heuncli.analyses.variants.parameters import INTERVAL_HINT, AxisError, DesignVariable, parse_interval
 from heuncli.app.cli.entry import UsageError
 from heuncli.app.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, TOLERANCE, UNITS, Option, make_format_option

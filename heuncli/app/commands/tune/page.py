@@ -59,7 +59,7 @@ def list_facts(results: TuneResults, units: Units) -> Iterator[tuple[str, str]]:
 def describe_jumps(results: TuneResults) -> Iterator[str]:
     """Describe the jumps on which the best rests: a move beyond a certain distance changes a measure at once."""
     for variable, range_ in zip(results.task.variables, results.tolerance_ranges, strict=False):
-        for direction, nearer, farther in zip(("down", "up"), range_.of_floor, range_.of_hundredth, strict=True):
+        for direction, nearer, farther in zip(("down", "up"), range_.floor_moves, range_.hundredth_moves, strict=True):
             jumping = next((move for move in (nearer, farther) if move is not None and move.jumps), None)
             if jumping is not None:
                 distance = f"{jumping.distance:.2g} {variable.unit}".rstrip()
@@ -137,7 +137,7 @@ def make_moves_table(results: TuneResults, units: Units) -> OutputTable:
 
 def _format_moves(tolerance_range: ToleranceRange) -> Iterator[str]:
     """Yield how far each variable may move, in words."""
-    return (_format_move(move) for move in (*tolerance_range.of_floor, *tolerance_range.of_hundredth))
+    return (_format_move(move) for move in (*tolerance_range.floor_moves, *tolerance_range.hundredth_moves))
 
 
 def _format_move(move: ToleranceMove | None) -> str:

@@ -20,7 +20,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
-from heuncli.motion.integration.contacts.shared_impulses import join_names
+from heuncli.base.spelling import join_names
 from heuncli.motion.integration.diagnosis.ambiguous_laws import find_fighting_drives
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import just_after, just_before

@@ -204,9 +204,8 @@ def iter_evaluations(
 ) -> Iterator[tuple[slice, Evaluation]]:
     """Yield the results at the selected instants, as `evaluate_together` gives them; none is evaluated twice."""
     if best.evaluation is None or causes:
-        yield from evaluate_together(
-            runs, best.runs[0], best.times[is_used], [x[is_used] for x in best.states], causes=causes
-        )
+        states = [x.select(is_used) if isinstance(x, JoinedStates) else x[is_used] for x in best.states]
+        yield from evaluate_together(runs, best.runs[0], best.times[is_used], states, causes=causes)
     else:
         several = best.evaluation
         yield slice(None), several if isinstance(is_used, slice) else several.select(np.repeat(is_used, len(best.runs)))
@@ -236,7 +235,7 @@ def compare_runs(runs: Runs, a: Trajectory) -> RunComparison:
         # the runs end at different instants; the last of A is judged by the previous one
         n = min(int(np.sum(instants.times[: len(x.times)] == x.times[: len(instants.times)])) for x in others)
     times = instants.times[:n]
-    states: tuple[ComparedStates, ...] = (instants.states.take_first(n), *(x.states[:n] for x in others))
+    states: tuple[ComparedStates, ...] = (instants.states.select(slice(n)), *(x.states[:n] for x in others))
     error, several = estimate_errors(runs, a, times, states)
     above_limit = np.flatnonzero(error > tolerances.CLAIMED)
     horizon = None

@@ -21,18 +21,19 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
+from heuncli.kernel.choose import components
 from heuncli.motion.integration.contacts.impulses import ImpulseEvent
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.response import as_numbers
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.tables import Table
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.scene.shapes.rotations import largest_magnitude
 
 # Distance
 
-FULL_CHECKS = 8  # instants at which all points are always compared
+FULL_CHECKS = 32  # instants at which all points are always compared: mostly those that the bound leaves open
 ROUNDING_MARGIN = 1.0 + 1e-9  # more than the rounding of a distance
 
 
@@ -60,19 +61,14 @@ def bound_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, 
     8 sin²(θ/2). This takes a tenth of the time of a comparison of all points, and leaves few instants for such a
     comparison.
     """
-    n = len(evaluation.times) // count
-    r, R = (group_by_run(evaluation.bodies[name], count).reshape(count, len(marks.reach), -1, n) for name in ("r", "R"))
-    extent, distance = largest_magnitude(r[0]) / size, np.zeros(n)
-    for k in range(count - 1):
-        for other in range(k + 1, count):
-            dr, dR = (x[other] - x[k] for x in (r, R))
-            turned = np.sqrt(0.5 * (dR * dR).sum(axis=1)) + tolerances.SUM_ROUNDING
-            distances = np.sqrt((dr * dr).sum(axis=1)) + turned * marks.reach[:, None]
-            np.maximum(distance, distances.max(axis=0), out=distance)
+    distance, extent = np.empty((2, len(evaluation.times) // count))
+    numbers = as_numbers(evaluation.bodies).reshape(-1)
+    components.bound_differences(numbers, count, marks.reach, tolerances.SUM_ROUNDING, distance, extent)
+    extent = extent / size
     bound = ROUNDING_MARGIN * (2.0 * (distance / size) + tolerances.PLACE_ROUNDING * np.maximum(extent, 1.0))
 
     def find_exact_error(which: Indices) -> Array:
-        bodies = evaluation.bodies[(count * which[:, None] + np.arange(count)).ravel()]
+        bodies = evaluation.bodies.take((count * which[:, None] + np.arange(count)).ravel(), axis=0)
         return find_motion_error(marks, bodies, count, size)
 
     if len(bound) <= FULL_CHECKS or not np.isfinite(bound).all():
@@ -85,12 +81,6 @@ def bound_motion_error(marks: MotionPoints, evaluation: Evaluation, count: int, 
         bound[others] = find_exact_error(others)
     bound[first] = exact
     return bound
-
-
-def group_by_run(values: Array, count: int) -> Array:
-    """Regroup values (c n, ...) of `count` runs, stored instant by instant, run after run, (c, ..., n)."""
-    each = values.reshape(-1, count, *values.shape[1:])
-    return np.ascontiguousarray(each.transpose(1, *range(2, each.ndim), 0))
 
 
 def find_point_distance(marks: MotionPoints, bodies: Table, count: int, size: float, first: int = 0) -> Array:
@@ -196,17 +186,14 @@ class JoinedStates:
     place: Indices
 
     def __getitem__(self, instants: slice | Mask) -> Array:
-        place = self.place[instants]
-        states, is_run_state = np.empty((len(place), self.run_states.shape[1])), place < len(self.run_states)
-        states[is_run_state], states[~is_run_state] = (
-            self.run_states[place[is_run_state]],
-            self.others[place[~is_run_state] - len(self.run_states)],
-        )
+        place, run_count = self.place[instants], len(self.run_states)
+        states, is_other = self.run_states.take(place, axis=0, mode="clip"), place >= run_count
+        states[is_other] = self.others.take(place[is_other] - run_count, axis=0)
         return states
 
-    def take_first(self, n: int) -> JoinedStates:
-        """Select the states at the first n instants."""
-        return replace(self, place=self.place[:n])
+    def select(self, instants: slice | Mask) -> JoinedStates:
+        """Select the states at some instants, without copying them."""
+        return replace(self, place=self.place[instants])
 
 
 @record

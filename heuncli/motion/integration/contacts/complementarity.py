@@ -21,6 +21,8 @@ from heuncli.results.results import Array, Indices, Mask
 
 # what ends the drive of an index: its own w is zero; a z of another, or a w of one that is done, comes to zero
 IS_DRIVEN, OPENS, BEARS = 1, 2, 3
+# of indices, and of changes while one is driven, for each contact and for all: more means a cycle by rounding
+PIVOTS_PER_CONTACT, EXTRA_PIVOTS = 20, 20
 
 
 @record
@@ -42,7 +44,7 @@ def solve_complementarity(A: Array, q: Array, noise: Array) -> ComplementaritySo
     unit = 1.0 / np.sqrt(np.diag(A)) if n else np.zeros(0)
     A, q, noise = A * unit[:, None] * unit, q * unit, noise * unit
     z, bears, is_done = np.zeros(n), np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
-    for _ in range(20 * n + 20):
+    for _ in range(PIVOTS_PER_CONTACT * n + EXTRA_PIVOTS):
         w = np.where(bears, 0.0, q + A @ z)
         violated = np.flatnonzero(~is_done & (w < -noise))
         if not len(violated):
@@ -71,7 +73,7 @@ def find_shared(A: Array, is_closed: Mask) -> Mask:
 
 def drive_index(A: Array, q: Array, z: Array, bears: Mask, is_done: Mask, i: int) -> None:
     """Increase z_i until w_i is zero, in place; those that are done keep z w = 0."""
-    for _ in range(20 * len(q) + 20):
+    for _ in range(PIVOTS_PER_CONTACT * len(q) + EXTRA_PIVOTS):
         bearing = np.flatnonzero(bears)
         dz = np.zeros(len(q))
         dz[i] = 1.0

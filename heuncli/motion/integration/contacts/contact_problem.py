@@ -1,4 +1,4 @@
-"""The contact problem of an event, its solution, and the errors of what cannot be solved."""
+"""The records of a contact event, from what is given to its solution, and the errors of what cannot be solved."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record
+from heuncli.base.spelling import join_names
 from heuncli.motion.integration.contacts.impulses import GivenImpulse, ImpulseEvent, RightSides
 from heuncli.motion.integration.contacts.latches import LatchCatch
 from heuncli.motion.integration.contacts.restitution import ContactImpulses
-from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.contacts.touching import TouchingContacts
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.multibody.response import Columns, ImpulseColumns
@@ -22,8 +22,9 @@ from heuncli.results.results import Array, Indices, Mask
 class ContactProblem:
     """The touching contacts, and how their rates respond to impulses.
 
+    touching: the k contacts
     A (k, k): rates of opening from unit impulses (restitution.py)
-    moves (k,): whether a bearing contact moves anything
+    moves (k,): whether a load at a contact would move anything
     rates (k,): rates of opening that given impulses and drives add
     """
 
@@ -34,48 +35,61 @@ class ContactProblem:
 
 
 @record
-class ContactOutcome:
-    """The impulses, the contacts held, those at rest because their rebound would never be seen, and the state after.
+class EventSetting:
+    """What an event is solved from.
 
+    sides: right sides of the impulse equations; `sides.still`: the results just before the event
+    units: columns of what is given, then of a unit impulse at each touching contact
+    catches: latches that catch; the last columns of what is given are those of the ones with a rate
+    unwatched: contacts that a latch holds at their limits
+    latch_states: contact states in which only latches hold
+    row: closure row of the contact that closed or opened, None if no contact caused the event
+    shortest_flight: duration [s] below which the flight after a rebound does not count
+    """
+
+    given_impulse: GivenImpulse
+    sides: RightSides
+    units: ImpulseColumns
+    problem: ContactProblem
+    catches: list[LatchCatch]
+    unwatched: Indices
+    latch_states: Array
+    row: int | None
+    shortest_flight: float
+
+
+@record
+class ContactOutcome:
+    """The solution of an event.
+
+    impulses: of the touching contacts (k,)
+    touching_states (k,): which of them are held from here on, and how (multibody/tree/layout.py)
+    at_rest (k,): those at rest because their rebound would never be seen
     columns: of what is given, and of the touching contacts with their impulses
+    after_state: the state after all impulses
     work: of all impulses [J]
     """
 
     impulses: ContactImpulses
-    contact_states: Array
+    touching_states: Array
     at_rest: Mask
     columns: Columns
     after_state: Array
     work: float
 
 
-@record
-class UnrefinedImpulses:
-    """Impulses as the contact problem gives them, and the columns of unit impulses.
-
-    basis: the bearing contacts that are solved for by their rates
-    others: those of a sequence whose impulses stay, because their rates follow from those of the basis
-    """
-
-    touching: TouchingContacts
-    impulses: ContactImpulses
-    units: Columns
-    basis: Indices
-    others: Indices
-
-
-def require_energy(jump: ImpulseEvent, energy_scale: float) -> None:
+def require_energy(event: ImpulseEvent, energy_scale: float) -> None:
     """Raise SolveError if the energies before and after an impulse and the work of its impulses do not add up.
 
     energy_scale: energy that the impulses would bring alone, which joints and others may take back
     """
-    before, after = jump.kinetic
-    size = max(before, after, abs(jump.work), tolerances.UNBALANCED * energy_scale)
-    if not abs(after - before - jump.work) <= tolerances.UNBALANCED * size:
-        message = f"at t = {jump.time:.9g} s the energy balance of the impulse on {', '.join(jump.names)} is not met"
+    before, after = event.kinetic
+    size = max(before, after, abs(event.work), tolerances.UNBALANCED * energy_scale)
+    if not abs(after - before - event.work) <= tolerances.UNBALANCED * size:
+        message = f"at t = {event.time:.9g} s the energy balance of the impulse on {', '.join(event.names)} is not met"
         raise SolveError(
             Problem(
-                "blow-unbalanced", message, None, "a singular position, or nearly identical contacts", jump.names[0]
+                "blow-unbalanced", message, None, "a singular position, or nearly identical contacts", event.names[0]
             )
         )
 

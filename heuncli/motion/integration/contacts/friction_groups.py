@@ -104,7 +104,11 @@ class FrictionPlaces:
         self.is_convex = self.is_given and self.has_one_size
 
     def set_states(
-        self, contact_states: Array, sticks: Array, coordinate_or_sign: Array, groups: Sequence[FrictionGroup] = ()
+        self,
+        contact_states: Array,
+        sticks: Array | Mask,
+        coordinate_or_sign: Array,
+        groups: Sequence[FrictionGroup] = (),
     ) -> Array:
         """Return contact states in which friction sticks at a coordinate, in groups, or slips with a sign."""
         contact_states = contact_states.copy()

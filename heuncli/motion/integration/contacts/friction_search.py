@@ -19,11 +19,12 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import record
+from heuncli.base.spelling import join_names
 from heuncli.kernel.choose import scene as kernel
 from heuncli.motion.integration.contacts.complementarity import find_coupled_groups
 from heuncli.motion.integration.contacts.friction_groups import FrictionGroup, FrictionPlaces, PlaceResponse
-from heuncli.motion.integration.contacts.friction_problems import make_jamming_problem
-from heuncli.motion.integration.contacts.shared_impulses import join_names
+from heuncli.motion.integration.diagnosis.ambiguous_laws import make_jamming_problem
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.results.results import Array
 
@@ -46,44 +47,51 @@ class StateTrial(NamedTuple):
     jam: tuple[int, int] | None
 
 
-class StateSearch:
-    """The search for the choice at an instant; used for one call of `FrictionStates.decide` (sticking.py).
+@record
+class FrictionQuestion:
+    """What is known where the states of friction are to be decided, of n places.
 
-    groups: places without a rate; slip (n,): signs of the others' rates; coordinates (n,): where each would stick
-    broken: the group that has reached what it can hold; None: none has
+    t, state, contact_states: the instant [s], the state there, and the contact states that stops and latches have
+    groups: of the places at rest
+    slip (n,): signs of the others' rates
+    coordinates (n,): where each would stick
+    broken_loose: the group that caused the event, as it can hold no longer; None: none did
     earlier_slips: groups that slipped before and are too slow yet to show it: their number, and the sign of their slip
     response: of all places, without their loads
     """
 
-    def __init__(
-        self,
-        places: FrictionPlaces,
-        t: float,
-        state: Array,
-        holding: Array,
-        groups: list[FrictionGroup],
-        slip: Array,
-        coordinates: Array,
-        broken: int | None,
-        earlier_slips: dict[int, int],
-        response: PlaceResponse,
-    ) -> None:
-        self.places, self.t, self.state, self.holding = places, t, state, holding
-        self.groups, self.slip, self.coordinates = groups, slip, coordinates
-        self.broken, self.earlier_slips = broken, earlier_slips
-        self.leaders = [group.leader for group in groups]
+    t: float
+    state: Array
+    contact_states: Array
+    groups: list[FrictionGroup]
+    slip: Array
+    coordinates: Array
+    broken_loose: int | None
+    earlier_slips: dict[int, int]
+    response: PlaceResponse
+
+
+class StateSearch:
+    """The search for the choice at an instant; used for one call of `FrictionStates.decide` (sticking.py)."""
+
+    def __init__(self, places: FrictionPlaces, question: FrictionQuestion) -> None:
+        self.places, self.t, self.state = places, question.t, question.state
+        self.contact_states, response = question.contact_states, question.response
+        self.groups, self.slip, self.coordinates = question.groups, question.slip, question.coordinates
+        self.broken_loose, self.earlier_slips = question.broken_loose, question.earlier_slips
+        self.leaders = [group.leader for group in self.groups]
         self.trials: dict[Choice, StateTrial] = {}
         self.noise, self.slack = response.noise, response.slack
         self.response = response.response[np.ix_(self.leaders, self.leaders)]
         self.pushed = self.find_push()
 
     def find_push(self) -> int:
-        """Return the way in which the broken friction is pushed: against its value while all stick; 0: none is."""
-        if self.broken is None:
+        """Return how the friction that broke loose is pushed: against its value while all stick; 0: none."""
+        if self.broken_loose is None:
             return 0
         places = self.places
         before = places.evaluate(self.t, self.state, self.with_choice((STICKS,) * len(self.groups)))
-        value = self.groups[self.broken].sum_at_leader(before.loads["value"][0, places.load_rows])
+        value = self.groups[self.broken_loose].sum_at_leader(before.loads["value"][0, places.load_rows])
         return -1 if value > 0.0 else 1
 
     def with_choice(self, choice: Choice) -> Array:
@@ -93,7 +101,7 @@ class StateSearch:
             for k, transmission in zip(group.members, group.transmissions, strict=True):
                 sticks[k] = chosen == STICKS
                 coordinate_or_sign[k] = self.coordinates[k] if chosen == STICKS else chosen * np.sign(transmission)
-        return self.places.set_states(self.holding, sticks, coordinate_or_sign, self.list_sticking(choice))
+        return self.places.set_states(self.contact_states, sticks, coordinate_or_sign, self.list_sticking(choice))
 
     def list_sticking(self, choice: Choice) -> tuple[FrictionGroup, ...]:
         """Return the groups of several places that stick in a choice."""
@@ -101,7 +109,9 @@ class StateSearch:
         return tuple(group for group, chosen in pairs if chosen == STICKS and len(group.members) > 1)
 
     def find_choice(self) -> Choice:
-        """Return the choice that agrees with its own results; raise SolveError if that is not one."""
+        """Return the choice that agrees with its own results; raise SolveError if there is none, or more
+        than one.
+        """
         found, everything = self.find_by_steps(), list(range(len(self.groups)))
         if found is None:
             found = self.find_among(everything, (STICKS,) * len(everything))
@@ -126,9 +136,12 @@ class StateSearch:
         return names
 
     def find_by_steps(self) -> Choice | None:
-        """Return an agreeing choice, from what there was on, by changing what does not agree; None if that repeats."""
+        """Start from the states before the event and change what disagrees, until all agrees; return None if a choice
+        repeats.
+        """
         choice = tuple(
-            self.pushed if n == self.broken else self.earlier_slips.get(n, STICKS) for n in range(len(self.groups))
+            self.pushed if n == self.broken_loose else self.earlier_slips.get(n, STICKS)
+            for n in range(len(self.groups))
         )
         while choice not in self.trials:
             trial = self.solve_trial(choice)
@@ -147,11 +160,12 @@ class StateSearch:
             if jams:
                 raise self.jamming_error(*jams[0])
             raise self.undecided_error("no choice of them agrees with the motion that it leads to")
-        # rule 3
+        # rule 3 of this module
         most = max(found, key=lambda other: other.count(STICKS))
         for other in found:
-            # Rule 4. Another choice contradicts this one if something sticks in it that slips here, or, where it has a
-            # different slip, if static friction is kinetic (the motion then is unique) or nothing sticks here.
+            # Rule 4: two that differ otherwise are an error. Another choice contradicts this one if something sticks in
+            # it that slips here, or, where it has a different slip, if static friction is kinetic (the motion then is
+            # unique) or nothing sticks here.
             differs = any(x == STICKS and y != STICKS for x, y in zip(other, most, strict=True)) or (
                 other != most and (self.places.has_one_size or STICKS not in most)
             )
@@ -162,16 +176,16 @@ class StateSearch:
         return most
 
     def list_choices(self, members: list[int], choice: Choice) -> Iterator[Choice]:
-        """Yield all choices for some members; what is broken slips as it is pushed, what slipped before goes on."""
+        """Yield all choices for some members: what broke loose slips as it is pushed, what slipped before goes on."""
         is_fixed = [n not in members or self.goes_on_slipping(n, choice) for n in range(len(choice))]
         options = [(state,) if fixed else (STICKS, 1, -1) for state, fixed in zip(choice, is_fixed, strict=True)]
-        if self.broken is not None:
-            options[self.broken] = (self.pushed,)
+        if self.broken_loose is not None:
+            options[self.broken_loose] = (self.pushed,)
         return itertools.product(*options)
 
     def goes_on_slipping(self, n: int, choice: Choice) -> bool:
         """Return whether in a choice a group slips on as it did before, or as it is pushed."""
-        return n == self.broken or (n in self.earlier_slips and choice[n] == self.earlier_slips[n])
+        return n == self.broken_loose or (n in self.earlier_slips and choice[n] == self.earlier_slips[n])
 
     def solve_trial(self, choice: Choice) -> StateTrial:
         """Solve the motion of a choice and compare it with that."""
@@ -191,14 +205,14 @@ class StateSearch:
             acceleration, reserve = float(rows["acceleration"][k]), float(loads["reserve"][k])
             value = group.sum_at_leader(loads["value"])
             if choice[n] == STICKS:
-                # what more would only accelerate by rounding
+                # slack: friction that would change the acceleration by its rounding only
                 allowed = tolerances.KERNEL["friction_rounding"] * (2.0 * abs(value) + abs(reserve)) + self.slack[k]
                 if not (is_met and reserve >= -allowed):
                     next_states[n] = -1 if value > 0.0 else 1
-            elif n == self.broken:  # rule 1
+            elif n == self.broken_loose:  # rule 1: it slips as it was pushed, or the other way
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = -choice[n]
-            elif choice[n] == self.earlier_slips.get(n):  # rule 2
+            elif choice[n] == self.earlier_slips.get(n):  # rule 2: it slips on unless it would turn back
                 if not choice[n] * acceleration >= -noise[k]:
                     next_states[n] = STICKS
             elif not choice[n] * acceleration > noise[k]:
@@ -220,9 +234,9 @@ class StateSearch:
         """Return whether a friction that sticks depends on other constraints than those of its group."""
         if not evaluation.rows["closed"][0, self.places.rows].any():
             return False
-        holding = evaluation.holding[0].copy()
-        holding[self.places.indices] = 0.0
-        opened = self.places.evaluate(self.t, self.state, holding)
+        contact_states = evaluation.holding[0].copy()
+        contact_states[self.places.indices] = 0.0
+        opened = self.places.evaluate(self.t, self.state, contact_states)
         in_groups = sum(len(group.members) - 1 for group in self.list_sticking(choice))
         return int(evaluation.dependent_count[0]) != int(opened.dependent_count[0]) + in_groups
 

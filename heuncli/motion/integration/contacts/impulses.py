@@ -103,7 +103,7 @@ class ImpulseEvent:
     after_state: the state after it, projected onto the closures
     kinetic: energy before and after [J]
     work: work of all impulses [J]
-    holding (contacts,): contacts closed after it
+    contact_states: of all contacts after it (Contacts.contact_states)
     shared_impulses: contacts for which a model says how they share it
     display_time: its instant as reported, where rounding leaves several
     """
@@ -116,7 +116,7 @@ class ImpulseEvent:
     after_state: Array
     kinetic: tuple[float, float]
     work: float
-    holding: Array = np.zeros(0)
+    contact_states: Array = np.zeros(0)
     shared_impulses: tuple[SharedImpulse, ...] = ()
     display_time: float | None = None
 
@@ -173,13 +173,15 @@ class RightSides:
     causes: tuple[str, ...]
 
 
-def make_right_sides(evaluator: Evaluator, given_impulse: GivenImpulse, state: Array, holding: Array) -> RightSides:
+def make_right_sides(
+    evaluator: Evaluator, given_impulse: GivenImpulse, state: Array, contact_states: Array
+) -> RightSides:
     """Make the right sides at a state (n,) just before the impulse acts.
 
-    holding: all contacts are open, with columns of their own, except for latches that hold
+    contact_states: all contacts are open, with columns of their own, except for latches that hold
     """
     layout, mechanism = evaluator.layout, evaluator.layout.mechanism
-    still = evaluator.evaluate(np.array([given_impulse.before_time]), state[None, :], holding=holding)
+    still = evaluator.evaluate(np.array([given_impulse.before_time]), state[None, :], holding=contact_states)
     impulses = tuple(make_body_impulse(layout, still.bodies[0], i) for i in given_impulse.numbers)
     n_b, n_u = len(layout.place), len(layout.freedoms) + len(layout.rows)
     loads, jumps = (
@@ -231,8 +233,7 @@ def find_state_after(
 
 @record
 class ImpulseResult:
-    """The solution of an impulse: its columns by cause, the state after it, the work of all, the contacts closed after
-    it.
+    """The solution of an impulse: its columns by cause, the state and contact states after it, the work of all [J].
 
     struck_names: the contacts that take part in it, also those that share what others bear
     shared_impulses: see ImpulseEvent
@@ -243,7 +244,7 @@ class ImpulseResult:
     causes: tuple[str, ...]
     after_state: Array
     work: float
-    holding: Array
+    contact_states: Array
     struck_names: tuple[str, ...] = ()
     shared_impulses: tuple[SharedImpulse, ...] = ()
 
@@ -256,7 +257,7 @@ def make_impulse_event(
     if layout.work_at >= 0:
         after_state[layout.work_at] += result.work
     after_evaluation = evaluator.evaluate(
-        np.array([given_impulse.after_time]), after_state[None, :], holding=result.holding
+        np.array([given_impulse.after_time]), after_state[None, :], holding=result.contact_states
     )
     still = replace(
         sides.still, causes=solution.columns.select(None), residual=np.array([solution.unmet.max()]),
@@ -276,7 +277,7 @@ def make_impulse_event(
         after_evaluation.states[0],
         kinetic,
         result.work,
-        result.holding,
+        result.contact_states,
         result.shared_impulses,
         given_impulse.written_time if given_impulse.before_time < result.time < given_impulse.after_time else None,
     )

@@ -28,26 +28,36 @@ from heuncli.results.results import Array, Mask
 UNWATCHED = -1.0  # a contact that a latch holds at its limit, so that it is not watched (kernel/solutions.py)
 
 
-class LatchConditions(NamedTuple):
-    """The conditions of each latch: whether it is extended, is drawn back, and whether its value is passed."""
+class LatchCondition(NamedTuple):
+    """What the conditions of a latch say: whether it is extended, is drawn back, and whether its value is passed."""
 
-    is_extended: tuple[bool, ...]
-    is_drawn_back: tuple[bool, ...]
-    is_value_passed: tuple[bool, ...]
+    is_extended: bool
+    is_drawn_back: bool
+    is_value_passed: bool
 
 
-def evaluate_latches(layout: Layout, truths: Sequence[float], truths_before: Sequence[float] = ()) -> LatchConditions:
-    """Evaluate the latches' conditions from the truth of the scene's conditions (1.0), now and just before."""
-    number = {id(condition): k for k, condition in enumerate(layout.mechanism.conditions)}
+def evaluate_latches(
+    layout: Layout, truths: Sequence[float], truths_before: Sequence[float] = ()
+) -> tuple[LatchCondition, ...]:
+    """Evaluate the condition of each latch from the truth of the scene's conditions (1.0), now and just before."""
+    numbers = {id(condition): k for k, condition in enumerate(layout.mechanism.conditions)}
     latches = [stop.latch for stop in layout.mechanism.stops if stop.latch is not None]
-    when = [None if latch.when is None else number[id(latch.when)] for latch in latches]
-    release = [None if latch.release is None else number[id(latch.release)] for latch in latches]
-    passes = [None if latch.passes is None else number[id(latch.passes)] for latch in latches]
-    return LatchConditions(
-        tuple(k is None or truths[k] == 1.0 for k in when),
-        tuple(k is not None and truths[k] == 1.0 for k in release),
-        tuple(k is not None and len(truths_before) > 0 and truths[k] != truths_before[k] for k in passes),
-    )
+    conditions = []
+    for latch in latches:
+        when, release, passes = (
+            None if condition is None else numbers[id(condition)]
+            for condition in (latch.when, latch.release, latch.passes)
+        )
+        conditions.append(
+            LatchCondition(
+                is_extended=when is None or truths[when] == 1.0,
+                is_drawn_back=release is not None and truths[release] == 1.0,
+                is_value_passed=passes is not None
+                and len(truths_before) > 0
+                and truths[passes] != truths_before[passes],
+            )
+        )
+    return tuple(conditions)
 
 
 @record
@@ -66,20 +76,20 @@ class Latches:
         """end_time: of the run [s]."""
         self.layout, self.end_time = layout, end_time
         named = {stop.name: stop for stop in layout.mechanism.stops}
-        self.stops: dict[int, Stop] = {i: named[layout.contacts[i].name] for i in layout.latches}
+        self.latch_stops: dict[int, Stop] = {i: named[layout.contacts[i].name] for i in layout.latches}
         # the coordinate of each limit and latch
         self.coordinates = {
             i: (named[c.name].joint, named[c.name].quantity) for i, c in enumerate(layout.contacts) if c.name in named
         }
-        self.limits: Mapping[str, Stop] = named
+        self.stops_by_name: Mapping[str, Stop] = named
         self.conditions = Conditions(layout) if layout.latches else None
         self.held_values: dict[int, float] = {}
-        self.catch_counts: dict[int, int] = dict.fromkeys(self.stops, 0)
+        self.catch_counts: dict[int, int] = dict.fromkeys(self.latch_stops, 0)
 
-    def evaluate_conditions(self, t: float, state: Array) -> LatchConditions:
+    def evaluate_conditions(self, t: float, state: Array) -> tuple[LatchCondition, ...]:
         """Evaluate the conditions at a state, from its numbers alone."""
         if self.conditions is None:
-            return LatchConditions((), (), ())
+            return ()
         coordinates = read_coordinates(self.layout, t, state)
         conditions = self.conditions
         return evaluate_latches(
@@ -96,38 +106,31 @@ class Latches:
     @property
     def unused_names(self) -> list[str]:
         """Names of the latches that have not caught."""
-        return [stop.name for i, stop in self.stops.items() if not self.catch_counts[i]]
+        return [stop.name for i, stop in self.latch_stops.items() if not self.catch_counts[i]]
 
-    def release(self, latch_conditions: LatchConditions) -> list[str]:
+    def release(self, latch_conditions: Sequence[LatchCondition]) -> list[str]:
         """Release the latches that are drawn back; return their names."""
         released = [
             i
-            for i, back in zip(self.stops, latch_conditions.is_drawn_back, strict=True)
-            if back and i in self.held_values
+            for i, condition in zip(self.latch_stops, latch_conditions, strict=True)
+            if condition.is_drawn_back and i in self.held_values
         ]
         for i in released:
             del self.held_values[i]
         return [self.layout.contacts[i].name for i in released]
 
     def catch(
-        self, latch_conditions: LatchConditions, evaluation: Evaluation, contacts_touching: TouchingContacts
+        self, latch_conditions: Sequence[LatchCondition], evaluation: Evaluation, touching: TouchingContacts
     ) -> list[LatchCatch]:
         """Catch what the extended latches can catch; evaluation: the state with all open that do not hold yet."""
         catches = []
-        for n, (i, stop) in enumerate(self.stops.items()):
+        for (i, stop), condition in zip(self.latch_stops.items(), latch_conditions, strict=True):
             assert stop.latch is not None
             is_inactive = i in self.held_values or (self.catch_counts[i] > 0 and not stop.latch.every)
-            if (
-                is_inactive
-                or not latch_conditions.is_extended[n]
-                or latch_conditions.is_drawn_back[n]
-                or self.is_held(i)
-            ):
+            if is_inactive or not condition.is_extended or condition.is_drawn_back or self.is_held(i):
                 continue
             rate, noise = measure_coordinate_rate(self.layout, evaluation, self.layout.contacts[i], self.end_time)
-            place = self.find_catch_value(
-                i, stop, evaluation, contacts_touching, latch_conditions.is_value_passed[n], abs(rate) <= noise
-            )
+            place = self.find_catch_value(i, stop, evaluation, touching, condition.is_value_passed, abs(rate) <= noise)
             if place is None:
                 continue
             self.held_values[i] = place
@@ -139,29 +142,30 @@ class Latches:
         """Return whether a latch holds the coordinate of a contact."""
         return self.coordinates.get(i) in {self.coordinates[k] for k in self.held_values}
 
-    def find_unheld_contacts(self, contacts_touching: TouchingContacts) -> Mask:
+    def find_unheld_contacts(self, touching: TouchingContacts) -> Mask:
         """Return which of the touching contacts no latch holds at their limit, (k,)."""
-        return np.array([not self.is_held(i) for i in contacts_touching.indices.tolist()], dtype=bool)
+        return np.array([not self.is_held(i) for i in touching.indices.tolist()], dtype=bool)
 
     def find_catch_value(
         self,
         i: int,
         stop: Stop,
         evaluation: Evaluation,
-        contacts_touching: TouchingContacts,
+        touching: TouchingContacts,
         is_passed: bool,
         is_still: bool,
     ) -> float | None:
         """Return the value at which an extended latch catches at a state; None if it does not catch."""
         assert stop.latch is not None
         contact, latch = self.layout.contacts[i], stop.latch
-        gap = float(evaluation.rows["gap"][0, contact.row])  # for an open latch, from its value, or from zero
+        # the coordinate less the value at which an open latch would hold; the coordinate itself if it has none
+        gap = float(evaluation.rows["gap"][0, contact.row])
         if latch.stop is not None:
-            limits = self.limits[latch.stop]
-            for k, other in enumerate(self.layout.contacts[j] for j in contacts_touching.indices.tolist()):
+            stop_caught = self.stops_by_name[latch.stop]
+            for k, other in enumerate(self.layout.contacts[j] for j in touching.indices.tolist()):
                 is_limit = not other.is_rope and other.name == latch.stop and other.sense in latch.sides
-                if is_limit and contacts_touching.rate[k] <= contacts_touching.noise[k]:
-                    return limits.high if other.sense > 0 else limits.low
+                if is_limit and touching.rate[k] <= touching.noise[k]:
+                    return stop_caught.high if other.sense > 0 else stop_caught.low
             return None
         if latch.position is None:
             return gap

@@ -35,32 +35,35 @@ from heuncli.scene.file_format.models import SIMULTANEOUS, ImpactModel
 
 
 def find_resting(
-    contacts_touching: TouchingContacts, A: Array, moves: Mask, rate: Array, evaluation: Evaluation, layout: Layout
+    touching: TouchingContacts, A: Array, moves: Mask, rate: Array, evaluation: Evaluation, layout: Layout
 ) -> tuple[Array, Array]:
-    """Return which of the touching contacts are held from here on (k,), and the accelerations of opening of all (k,).
+    """Return which of the touching contacts are held from here on, and how (k,): OPEN, CLOSED or CLOSED_BY_OTHERS; and
+    the accelerations of opening of all (k,).
 
     Only contacts without a rate of opening can rest.
 
+    A (k, k): accelerations of opening from unit forces; moves (k,): whether a force moves anything
+    rate (k,): rates of opening
     evaluation: the state after all impulses, every contact open
     """
-    contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
+    contacts = [layout.contacts[i] for i in touching.indices.tolist()]
     rows = evaluation.rows[0]
     q = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    noise = estimate_acceleration_noise(layout, contacts_touching, A, evaluation)
+    noise = estimate_acceleration_noise(layout, touching, A, evaluation)
     is_still = rate == 0.0
     candidates = np.flatnonzero(is_still & moves)
     solution = solve_complementarity(A[np.ix_(candidates, candidates)], q[candidates], noise[candidates])
-    contact_states = np.full(len(contacts), OPEN)
-    contact_states[candidates[solution.bears]] = CLOSED
-    contact_states[candidates[solution.depends]] = CLOSED_BY_OTHERS
-    contact_states[is_still & ~moves & (q <= noise)] = CLOSED_BY_OTHERS  # beyond, a drive opens it
-    return contact_states, q + A @ scatter(solution.z, candidates, len(contacts))
+    touching_states = np.full(len(contacts), OPEN)
+    touching_states[candidates[solution.bears]] = CLOSED
+    touching_states[candidates[solution.depends]] = CLOSED_BY_OTHERS
+    touching_states[is_still & ~moves & (q <= noise)] = CLOSED_BY_OTHERS  # beyond, a drive opens it
+    return touching_states, q + A @ scatter(solution.z, candidates, len(contacts))
 
 
 def find_contradicted(
-    contacts_touching: TouchingContacts,
+    touching: TouchingContacts,
     A: Array,
-    contact_states: Array,
+    touching_states: Array,
     rate: Array,
     evaluation: Evaluation,
     layout: Layout,
@@ -70,52 +73,50 @@ def find_contradicted(
     `find_resting` takes all applied loads as given, but load-dependent joint friction changes as contacts bear. A
     closed contact then may pull, or an open one accelerate inwards.
 
-    evaluation: the state with the contacts held that `contact_states` names
+    touching_states (k,), rate (k,): what is held, and the rates of opening
+    evaluation: the state with the contacts held that `touching_states` names
     """
-    contacts = [layout.contacts[i] for i in contacts_touching.indices.tolist()]
+    contacts = [layout.contacts[i] for i in touching.indices.tolist()]
     rows = evaluation.rows[0]
-    noise = estimate_acceleration_noise(layout, contacts_touching, A, evaluation)
+    noise = estimate_acceleration_noise(layout, touching, A, evaluation)
     z = np.array([-c.sense * float(rows["multiplier"][c.row]) for c in contacts])
     w = np.array([-c.sense * float(rows["acceleration"][c.row]) for c in contacts])
-    is_pulling = (contact_states == CLOSED) & (z * np.diag(A) < -noise)
-    return np.asarray(is_pulling | ((contact_states == OPEN) & (rate == 0.0) & (w < -noise)))
+    is_pulling = (touching_states == CLOSED) & (z * np.diag(A) < -noise)
+    return np.asarray(is_pulling | ((touching_states == OPEN) & (rate == 0.0) & (w < -noise)))
 
 
-def estimate_acceleration_noise(
-    layout: Layout, contacts_touching: TouchingContacts, A: Array, evaluation: Evaluation
-) -> Array:
+def estimate_acceleration_noise(layout: Layout, touching: TouchingContacts, A: Array, evaluation: Evaluation) -> Array:
     """Return the rounding of the accelerations of opening (k,), from the terms of motion, and all loads and weights.
 
     Where a contact lets go, these cancel: a force that has become zero is known only to the rounding of what it was.
     Where drives hold what a contact touches, loads move it by the rounding of a free body's response.
     """
-    rows = [layout.contacts[i].row for i in contacts_touching.indices.tolist()]
+    rows = [layout.contacts[i].row for i in touching.indices.tolist()]
     weights = float(layout.bodies["mass"].sum() * np.abs(layout.mechanism.gravity).sum())
     load = weights + float(
         np.abs(evaluation.loads["force"][0]).sum() + np.abs(evaluation.loads["moment"][0]).sum() / layout.size
     )
     load_effect = layout.tables["closures"]["weight"][rows] * load
     noise = tolerances.CONTACT_ACCELERATION * (evaluation.rows["terms"][0, rows] + np.diag(A) * load_effect)
-    return np.asarray(noise + tolerances.NO_ANSWER * find_free_response(layout, contacts_touching.loads) * load_effect)
+    return np.asarray(noise + tolerances.NO_ANSWER * find_free_response(layout, touching.loads) * load_effect)
 
 
-def is_short_flight(
-    contacts_touching: TouchingContacts, rate: Array, acceleration: Array, shortest_time: float
-) -> Mask:
+def is_short_flight(touching: TouchingContacts, rate: Array, acceleration: Array, shortest_time: float) -> Mask:
     """Return which rebounds come back before they are seen: u^2 / 2 a within the rounding of the gap, or too short a
     time.
     """
     a = -acceleration
     is_returning = (rate > 0.0) & (a > 0.0)
     a = np.where(is_returning, a, 1.0)
-    return np.asarray(
-        is_returning & ((rate * rate <= 2.0 * a * contacts_touching.reach) | (2.0 * rate <= a * shortest_time))
-    )
+    return np.asarray(is_returning & ((rate * rate <= 2.0 * a * touching.reach) | (2.0 * rate <= a * shortest_time)))
 
 
 # Impulses
 
-MAX_ROUNDS = 60  # consecutive strikes at one instant, after which further ones are plastic
+# Rounds of simultaneous impacts at one instant: of MAX_ROUNDS, those after the first MAX_ELASTIC_ROUNDS are plastic, so
+# that rebounds which strike each other again and again come to an end.
+MAX_ELASTIC_ROUNDS = 60
+MAX_ROUNDS = 2 * MAX_ELASTIC_ROUNDS
 
 
 @record
@@ -140,7 +141,7 @@ class ContactImpulses:
 
 
 def solve_contact_impulses(
-    contacts_touching: TouchingContacts,
+    touching: TouchingContacts,
     A: Array,
     moves: Mask,
     added_rates: Array,
@@ -158,16 +159,16 @@ def solve_contact_impulses(
     are struck as if each were alone. Energy is never added: the work of an impulse is z (v- + v+) / 2, and what bears
     has v+ = -e v-, v- <= 0, e <= 1. Raises EndlessImpacts.
     """
-    k = len(contacts_touching.indices)
+    k = len(touching.indices)
     all_false = np.zeros(k, dtype=bool)
     result = ContactImpulses(
-        np.zeros(k), contacts_touching.rate.copy(), all_false.copy(), np.zeros(k, dtype=int), all_false.copy()
+        np.zeros(k), touching.rate.copy(), all_false.copy(), np.zeros(k, dtype=int), all_false.copy()
     )
     strike = solve_simultaneous if impacts == SIMULTANEOUS else solve_sequence
     for group in find_coupled_groups(A):
         try:
             part = strike(
-                contacts_touching.select(group),
+                touching.select(group),
                 A[np.ix_(group, group)],
                 moves[group],
                 added_rates[group],
@@ -183,21 +184,21 @@ def solve_contact_impulses(
 
 
 def solve_simultaneous(
-    contacts_touching: TouchingContacts, A: Array, moves: Mask, added_rates: Array, is_plastic: Mask
+    touching: TouchingContacts, A: Array, moves: Mask, added_rates: Array, is_plastic: Mask
 ) -> ContactImpulses:
     """Solve the impulses of one coupled group at the same time; arguments as those of `solve_contact_impulses`."""
-    v = contacts_touching.rate.copy()
+    v = touching.rate.copy()
     total, count = np.zeros(len(v)), np.zeros(len(v), dtype=int)
     depends = np.zeros(len(v), dtype=bool)
-    noise, rounds = contacts_touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates), 0
+    noise, rounds = touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates), 0
     while True:
         is_struck = v < -noise
         if not (is_struck.any() or (v + added_rates < -noise).any()):
             v = v + added_rates  # e.g. impulses that lift resting contacts
             break
-        if rounds == 2 * MAX_ROUNDS:
+        if rounds == MAX_ROUNDS:
             raise EndlessImpacts(np.flatnonzero(count), int(np.argmax(count)), rounds)
-        e = np.where(is_plastic | (rounds >= MAX_ROUNDS), 0.0, contacts_touching.restitution)
+        e = np.where(is_plastic | (rounds >= MAX_ELASTIC_ROUNDS), 0.0, touching.restitution)
         candidates = np.flatnonzero((v <= noise) & moves)
         solution = solve_round(A, v, added_rates, candidates, np.where(is_struck, e, 0.0), noise)
         z = scatter(solution.z, candidates, len(v))
@@ -216,20 +217,18 @@ def solve_simultaneous(
 
 
 def solve_sequence(
-    contacts_touching: TouchingContacts, A: Array, moves: Mask, added_rates: Array, is_plastic: Mask
+    touching: TouchingContacts, A: Array, moves: Mask, added_rates: Array, is_plastic: Mask
 ) -> ContactImpulses:
     """Solve the impulses of contacts that are struck one after another (sequential_impacts.py)."""
-    e = np.where(is_plastic, 0.0, contacts_touching.restitution)
-    noise = contacts_touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates)
+    e = np.where(is_plastic, 0.0, touching.restitution)
+    noise = touching.noise + tolerances.CONTACT_RATE * np.abs(added_rates)
 
     def solve_together(v: Array, own: Indices, e: Array, noise: Array) -> tuple[Array, Mask]:
         part = A[np.ix_(own, own)]
         sequence = solve_round(part, v[own], np.zeros(len(own)), np.arange(len(own)), e, noise)
         return sequence.z, sequence.depends
 
-    sequence = strike_in_sequence(
-        contacts_touching, A, contacts_touching.rate + added_rates, noise, moves, e, solve_together
-    )
+    sequence = strike_in_sequence(touching, A, touching.rate + added_rates, noise, moves, e, solve_together)
     v = np.where(np.abs(sequence.rate) <= sequence.noise, 0.0, sequence.rate)
     comes_to_rest = (sequence.count > 1) & (e > 0.0) & (v == 0.0)
     total, v = bring_plastic_to_rest(A, sequence.impulses, v, moves, is_plastic)

@@ -146,7 +146,7 @@ class ContactRates:
 
 
 def strike_in_sequence(
-    contacts_touching: TouchingContacts,
+    touching: TouchingContacts,
     A: Array,
     start: Array,
     noise: Array,
@@ -156,7 +156,7 @@ def strike_in_sequence(
 ) -> ImpactSequence:
     """Strike contacts one after another until none closes.
 
-    contacts_touching: the contacts (k,)
+    touching: the contacts (k,)
     A (k, k): rates of opening from unit impulses
     start (k,): rates of opening after the given impulses
     noise (k,): rounding error of these rates
@@ -165,7 +165,7 @@ def strike_in_sequence(
 
     Raises EndlessImpacts.
     """
-    contact_rates = ContactRates(np.where(np.abs(start) <= noise, 0.0, start), contacts_touching.length, A)
+    contact_rates = ContactRates(np.where(np.abs(start) <= noise, 0.0, start), touching.length, A)
     depends, count = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=int)
     coupled, e, movable = is_coupled(A), restitution.tolist(), np.flatnonzero(moves).tolist()
     plastic_contacts: set[int] = set()  # plastic contacts struck since the last flight

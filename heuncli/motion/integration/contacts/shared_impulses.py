@@ -13,11 +13,10 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.records import record
+from heuncli.base.spelling import choose_verb_form, join_names
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 from heuncli.scene.file_format.models import SIMULTANEOUS, ImpactModel
-
-MAX_NAMES = 6  # that a sentence lists
 
 
 @record
@@ -180,15 +179,3 @@ def format_sharing_warning(
     )
     assumed = f"rigid bodies do not determine the split, impacts: {impacts} is assumed (heun explain impacts)"
     return [f"{lead} {join_names(first_group.names)} share the impulse: {assumed}"]
-
-
-def join_names(names: Sequence[str]) -> str:
-    """Join names as in a sentence, only the first of many."""
-    if len(names) > MAX_NAMES:
-        return f"{', '.join(names[:MAX_NAMES])} and {len(names) - MAX_NAMES} more"
-    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
-
-
-def choose_verb_form(names: Sequence[str], one: str, several: str) -> str:
-    """Return the form of a verb that fits so many names."""
-    return one if len(names) == 1 else several

@@ -27,6 +27,8 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import join_names
 from heuncli.motion.integration.contacts.friction_groups import (
     FrictionGroup,
     FrictionPlaces,
@@ -35,9 +37,8 @@ from heuncli.motion.integration.contacts.friction_groups import (
     make_groups,
     measure_response,
 )
-from heuncli.motion.integration.contacts.friction_search import StateSearch
+from heuncli.motion.integration.contacts.friction_search import FrictionQuestion, StateSearch
 from heuncli.motion.integration.contacts.latches import measure_coordinate_rate
-from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.results.results import Array, Mask
 
@@ -48,102 +49,116 @@ UNPROVED = (
 SHARED = "{} stick as one: how they share what holds the machine is indeterminate"
 
 
-class FrictionStates:
-    """The states of the frictions of a run that may stick. Changes with every event.
+class PlaceStates(NamedTuple):
+    """The states of the k places where friction may stick; a place is one coordinate that one friction may hold.
 
-    sticks (k,): whether each place sticks; coordinate_or_sign (k,): its coordinate then, else the sign of its slip
-    groups: those of several places that stick as one
+    sticks (k,): whether each sticks
+    coordinate_or_sign (k,): its coordinate if it sticks, else the sign of its slip
+    groups: the groups of several places that stick as one
+    """
+
+    sticks: Mask
+    coordinate_or_sign: Array
+    groups: tuple[FrictionGroup, ...]
+
+
+class FrictionEvent(NamedTuple):
+    """Where friction is decided anew.
+
+    t, state: the instant [s] and the state from there on
+    contact_states: those that stops and latches have from there on
+    row: closure row of the contact that caused the event, None if no contact did
+    is_struck: whether an impulse came before the state
+    """
+
+    t: float
+    state: Array
+    contact_states: Array
+    row: int | None
+    is_struck: bool
+
+
+class FrictionStates:
+    """The states of the frictions of a run that may stick: the present ones, and those before the present event.
+
+    Changes with every event.
     """
 
     def __init__(self, evaluator: Evaluator, end_time: float) -> None:
         self.evaluator, self.layout, self.end_time = evaluator, evaluator.layout, end_time
         self.places = FrictionPlaces(evaluator)
-        self.sticks = np.zeros(len(self.places.indices), dtype=bool)
-        self.coordinate_or_sign = np.zeros(len(self.places.indices))
-        self.groups: tuple[FrictionGroup, ...] = ()
-        # before the event
-        self.earlier: tuple[Mask, Array, tuple[FrictionGroup, ...]] = self.sticks, self.coordinate_or_sign, self.groups
+        k = len(self.places.indices)
+        self.present = self.earlier = PlaceStates(np.zeros(k, dtype=bool), np.zeros(k), ())
 
     def add_to(self, contact_states: Array) -> Array:
         """Return contact states with those of the friction."""
-        return self.places.set_states(contact_states, self.sticks, self.coordinate_or_sign, self.groups)
+        present = self.present
+        return self.places.set_states(contact_states, present.sticks, present.coordinate_or_sign, present.groups)
 
     def begin_event(self) -> None:
         """Take the present states as those before an event."""
-        self.earlier = self.sticks, self.coordinate_or_sign, self.groups
+        self.earlier = self.present
 
-    def decide(self, t: float, state: Array, contact_states: Array, row: int | None, is_struck: bool) -> list[str]:
-        """Decide what sticks and slips from a state on; return sentences on what changes.
-
-        contact_states: those that stops and latches have from here on
-        row: of the contact that caused the event; is_struck: an impulse came before the state
-        """
-        places, released = self.places, self.places.release_all(contact_states)
-        opened = places.evaluate(t, state, released)
-        response = measure_response(self.evaluator, places.contacts, released, opened)
-        stuck = self.earlier[0] & (not is_struck)
-        search = self.make_search(t, state, contact_states, opened, response, stuck, row, is_struck)
+    def decide(self, event: FrictionEvent) -> list[str]:
+        """Decide what sticks and slips from a state on; return sentences on what changes."""
+        places, released_states = self.places, self.places.release_all(event.contact_states)
+        released_results = places.evaluate(event.t, event.state, released_states)
+        response = measure_response(self.evaluator, places.contacts, released_states, released_results)
+        search = StateSearch(places, self.make_question(event, released_results, response))
         choice = search.find_choice() if search.groups else ()
         unproved = search.find_unproved(choice)
         chosen_states = search.with_choice(choice)
-        self.groups = search.list_sticking(choice)
-        if self.groups and not has_fixed_transmissions(
-            self.evaluator, places.contacts, chosen_states, released, opened, self.groups, self.end_time
+        groups = search.list_sticking(choice)
+        if groups and not has_fixed_transmissions(
+            self.evaluator, places.contacts, chosen_states, released_states, released_results, groups, self.end_time
         ):
             raise search.indeterminate_error(choice)
-        self.sticks = np.array(chosen_states[places.indices] > 0.0, dtype=bool)
-        self.coordinate_or_sign = chosen_states[self.layout.friction_slice]
-        return self.describe_changes(t) + [UNPROVED.format(name, t) for name in unproved]
+        sticks = np.array(chosen_states[places.indices] > 0.0, dtype=bool)
+        self.present = PlaceStates(sticks, chosen_states[self.layout.friction_slice], groups)
+        return self.describe_changes(event.t) + [UNPROVED.format(name, event.t) for name in unproved]
 
-    def make_search(
-        self,
-        t: float,
-        state: Array,
-        contact_states: Array,
-        opened: Evaluation,
-        response: PlaceResponse,
-        stuck: Mask,
-        row: int | None,
-        is_struck: bool,
-    ) -> StateSearch:
-        """Make the search for the states; arguments as those of `decide`.
+    def make_question(
+        self, event: FrictionEvent, released_results: Evaluation, response: PlaceResponse
+    ) -> FrictionQuestion:
+        """Collect what is known of the places before the search.
 
-        opened: the results while no friction sticks or acts; stuck (k,): what stuck up to here
+        released_results: the results while no friction sticks or acts
         """
         places = self.places
-        _, coordinate_or_sign, earlier_groups = self.earlier
-        slip, is_at_rest = self.find_slips(opened, response, stuck, row)
+        stuck, coordinate_or_sign = self.earlier.sticks & (not event.is_struck), self.earlier.coordinate_or_sign
+        slip, is_at_rest = self.find_slips(released_results, response, stuck, event.row)
         at_rest = np.flatnonzero(is_at_rest).tolist()
         can_join = np.full(len(places.indices), places.is_given)  # no friction depends on how it shares
-        groups = make_groups(response, at_rest, can_join, earlier_groups)
-        broken, earlier_slips = None, {}
+        groups = make_groups(response, at_rest, can_join, self.earlier.groups)
+        broken_loose, earlier_slips = None, {}
         for n, group in enumerate(groups):
-            is_event = places.has_row(group, row)
-            if is_event and stuck[group.leader] and broken is None:
-                broken = n
+            is_event = places.has_row(group, event.row)
+            if is_event and stuck[group.leader] and broken_loose is None:
+                broken_loose = n
             sign = find_common_sign(group, coordinate_or_sign)
-            if not (is_event or is_struck or stuck[list(group.members)].any()) and sign:
+            if not (is_event or event.is_struck or stuck[list(group.members)].any()) and sign:
                 earlier_slips[n] = sign
-        coordinates = np.where(stuck, coordinate_or_sign, opened.rows["gap"][0, places.rows])
-        return StateSearch(places, t, state, contact_states, groups, slip, coordinates, broken, earlier_slips, response)
+        coordinates = np.where(stuck, coordinate_or_sign, released_results.rows["gap"][0, places.rows])
+        return FrictionQuestion(
+            event.t, event.state, event.contact_states, groups, slip, coordinates, broken_loose, earlier_slips, response
+        )
 
     def describe_changes(self, t: float) -> list[str]:
         """Return sentences on what begins to stick or to slip."""
-        before, _, earlier_groups = self.earlier
         sentences = [
             f"{name} {'sticks' if now else 'slips'} from t = {t:.6g} s"
-            for name, then, now in zip(self.places.names, before, self.sticks, strict=True)
+            for name, then, now in zip(self.places.names, self.earlier.sticks, self.present.sticks, strict=True)
             if now != then
         ]
-        known = [group.members for group in earlier_groups]
+        known = [group.members for group in self.earlier.groups]
         return sentences + [
             SHARED.format(join_names([self.places.names[k] for k in group.members]))
-            for group in self.groups
+            for group in self.present.groups
             if group.members not in known
         ]
 
     def find_slips(
-        self, opened: Evaluation, response: PlaceResponse, stuck: Mask, row: int | None
+        self, released_results: Evaluation, response: PlaceResponse, stuck: Mask, row: int | None
     ) -> tuple[Array, Mask]:
         """Return the sign of the slip of each place (k,), and which are at rest, to rounding.
 
@@ -151,7 +166,8 @@ class FrictionStates:
         to the rounding of an instant.
         """
         measured = [
-            measure_coordinate_rate(self.layout, opened, contact, self.end_time) for contact in self.places.contacts
+            measure_coordinate_rate(self.layout, released_results, contact, self.end_time)
+            for contact in self.places.contacts
         ]
         rate, noise = np.array(measured).reshape(-1, 2).T
         rested = stuck | (np.array(self.places.rows) == row) | (np.abs(rate) <= noise)
@@ -186,5 +202,5 @@ def find_common_sign(group: FrictionGroup, coordinate_or_sign: Array) -> int:
 def read_places(evaluator: Evaluator, t: float, state: Array) -> Array:
     """Return the coordinates (k,) that sticking friction holds, at a state."""
     layout = evaluator.layout
-    opened = evaluator.evaluate(np.array([t]), state[None, :], holding=layout.open_contacts)
-    return np.asarray(opened.rows["gap"][0, [layout.contacts[i].row for i in layout.friction_contacts]])
+    released_results = evaluator.evaluate(np.array([t]), state[None, :], holding=layout.open_contacts)
+    return np.asarray(released_results.rows["gap"][0, [layout.contacts[i].row for i in layout.friction_contacts]])

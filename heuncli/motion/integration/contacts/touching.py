@@ -145,10 +145,10 @@ def make_unit_load(layout: Layout, evaluation: Evaluation, contact: Contact, mul
     return load
 
 
-def find_opening_rates(contacts_touching: TouchingContacts, columns: Table) -> Array:
+def find_opening_rates(touching: TouchingContacts, columns: Table) -> Array:
     """Return the rates of opening that columns of jumps give, (k, n_c)."""
     motion = np.concatenate([columns["alpha"], columns["a"]], axis=2)
-    return np.asarray(np.einsum("kbi,cbi->kc", contacts_touching.loads, motion))
+    return np.asarray(np.einsum("kbi,cbi->kc", touching.loads, motion))
 
 
 def find_free_response(layout: Layout, loads: Array) -> Array:
@@ -159,11 +159,11 @@ def find_free_response(layout: Layout, loads: Array) -> Array:
     return np.asarray(size)
 
 
-def can_move_bodies(layout: Layout, contacts_touching: TouchingContacts, A: Array) -> Mask:
+def can_move_bodies(layout: Layout, touching: TouchingContacts, A: Array) -> Mask:
     """Return whether each contact could move a body if it bore a load, (k,); if not, bilateral constraints hold all
     that it pushes.
     """
-    return np.asarray(np.diag(A) > tolerances.NO_ANSWER * find_free_response(layout, contacts_touching.loads))
+    return np.asarray(np.diag(A) > tolerances.NO_ANSWER * find_free_response(layout, touching.loads))
 
 
 def scatter(z: Array, indices: Indices, n: int) -> Array:

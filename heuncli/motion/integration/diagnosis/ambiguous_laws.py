@@ -20,9 +20,8 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
+from heuncli.base.spelling import join_names
 from heuncli.kernel.choose import scene as kernel
-from heuncli.motion.integration.contacts.friction_problems import make_jamming_problem
-from heuncli.motion.integration.contacts.shared_impulses import join_names
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import IntegratedScene
 from heuncli.multibody.mechanism.couplings import Coordinate, Coupling
@@ -141,6 +140,39 @@ def make_half_turn_error(
 
 
 # Jamming
+
+JAMMING_MESSAGES = {  # code, what was found, what to do next
+    kernel.JAMS: (
+        "friction-jams",
+        "the joint jams (no solution): 1 N of friction causes more than 1 N of further friction",
+        "use a smaller coefficient or radius, a longer guide, or a load nearer to it",
+    ),
+    kernel.TWO: (
+        "friction-not-unique",
+        "two solutions exist: 1 N of friction causes more than 1 N of further friction",
+        "use a smaller coefficient or radius, a longer guide, or a load nearer to it",
+    ),
+    kernel.UNPROVED: (
+        "friction-not-unique",
+        "the solution may not be unique: 1 N of friction causes nearly 1 N of further friction, or more",
+        "use smaller coefficients or radii, longer guides, or a constant friction torque or force in one of the joints",
+    ),
+}
+
+
+def make_jamming_problem(mechanism: Mechanism, status: int, row: int, t: float) -> Problem:
+    """Make the problem from the status that the kernel found for a row of its table of loads."""
+    load = next(load for load, rows in mechanism.iter_load_rows() if row in range(rows.start, rows.stop))
+    code, reason, hint = JAMMING_MESSAGES[status]
+    if isinstance(load, ThreadLoad):
+        hint = (
+            "drive the spindle or add inertia to it, such as its motor's; use a smaller coefficient, or a steeper lead"
+        )
+        reason = reason.replace("the joint jams", "it jams")
+        return Problem(code, f"at t = {t:.9g} s friction in the thread couplings.{load.name}: {reason}", hint=hint)
+    assert isinstance(load, JointLoad), load
+    joint = mechanism.joints[load.joint].name
+    return Problem(code, f"at t = {t:.9g} s friction forces.{load.name} in joints.{joint}: {reason}", hint=hint)
 
 
 def find_jammed(mechanism: Mechanism, evaluation: Evaluation, instant: int) -> list[Problem]:

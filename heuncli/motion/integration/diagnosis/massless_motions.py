@@ -97,10 +97,11 @@ def add_artificial_inertia(scene: PreparedScene, lacking: Mapping[int, Array]) -
         return scene
     if any(body.mass == 0.0 for body in scene.mechanism.bodies):
         require_turning(scene, motions)
+    carried = compute_branch_inertias(scene, poses)
     rows = [
         row
         for body, axes in find_axes_in_any_pose(scene, lacking).items()
-        for row in make_artificial_inertia_rows(scene, body, axes)
+        for row in make_artificial_inertia_rows(scene, body, axes, tolerances.ARTIFICIAL_SHARE * carried[body])
     ]
     return replace(
         scene,
@@ -359,16 +360,41 @@ def find_axes_in_any_pose(scene: PreparedScene, lacking: Mapping[int, Array]) ->
     return {body: find_span_vectors(np.concatenate(turning)) for body, turning in turnings.items()}
 
 
-def make_artificial_inertia_rows(scene: PreparedScene, place: int, axes: Array) -> list[kernel.ArtificialInertia]:
+def compute_branch_inertias(scene: PreparedScene, poses: TreePoses) -> list[float]:
+    """Return for each body in tree order a bound on the moments of inertia that it carries about its joint point at
+    the start [kg m^2]: its own, and those of all bodies beyond it.
+    """
+    links, bodies = scene.layout.spanning.links, scene.mechanism.bodies
+    order = [link.body for link in links]
+    centers = scene.start.position[order] + np.einsum(
+        "nij,nj->ni", poses.R, np.array([bodies[i].center for i in order]).reshape(-1, 3)
+    )
+    masses = np.array([bodies[i].mass for i in order])
+    moments = np.array([np.trace(bodies[i].inertia) for i in order]) + masses * np.sum(centers**2, axis=1)
+    firsts = masses[:, None] * centers
+    for k in range(len(links) - 1, -1, -1):
+        if (parent := links[k].parent) >= 0:
+            for sums in (masses, moments, firsts):
+                sums[parent] += sums[k]
+    arms = poses.r
+    inertias: list[float] = (moments - 2.0 * np.sum(arms * firsts, axis=1) + masses * np.sum(arms**2, axis=1)).tolist()
+    return inertias
+
+
+def make_artificial_inertia_rows(
+    scene: PreparedScene, place: int, axes: Array, least: float
+) -> list[kernel.ArtificialInertia]:
     """Return artificial inertia for a body about some axes, of the order of its mass's own; one row of the kernel's
     table each.
+
+    least: [kg m^2]; below it the rounding of what the body carries would count as inertia of its own
     """
     mechanism, i = scene.mechanism, scene.layout.spanning.links[place].body
     body = mechanism.bodies[i]
     arms = [p - body.center for j in mechanism.joints for end, p in ((j.a, j.p), (j.b, j.q)) if end == i]
     reach = max([tolerances.ARTIFICIAL_RADIUS * scene.layout.size, *(float(np.sqrt(a @ a)) for a in arms)])
     mass = body.mass or max(other.mass for other in mechanism.bodies)
-    inertia = max(mass * reach**2, find_massless_axes(body, scene.layout.size)[1])
+    inertia = max(least, mass * reach**2, find_massless_axes(body, scene.layout.size)[1])
     return [kernel.ArtificialInertia(body=place, root=math.sqrt(inertia), axis=axis) for axis in axes]
 
 

@@ -30,7 +30,7 @@ from heuncli.results.results import Array
 
 if TYPE_CHECKING:  # loaded only for scenes with contacts
     from heuncli.motion.integration.contacts.contact_events import Contacts
-    from heuncli.motion.integration.contacts.latches import LatchConditions
+    from heuncli.motion.integration.contacts.latches import LatchCondition
 
 
 class Interruptions:
@@ -66,7 +66,9 @@ class Interruptions:
             self.continue_after(event)
         return None
 
-    def apply_triggered(self, t: float, blows: tuple[int, ...], latch_conditions: LatchConditions | None) -> str | None:
+    def apply_triggered(
+        self, t: float, blows: tuple[int, ...], latch_conditions: tuple[LatchCondition, ...] | None
+    ) -> str | None:
         """Apply the impulses whose conditions became true at the instant reached, as `apply_until` does for others.
 
         latch_conditions: conditions of the latches there
@@ -82,7 +84,7 @@ class Interruptions:
         given_impulse: GivenImpulse,
         time: float,
         row: int | None = None,
-        latch_conditions: LatchConditions | None = None,
+        latch_conditions: tuple[LatchCondition, ...] | None = None,
     ) -> ImpulseEvent | None:
         """Solve a given impulse at the state reached, with that of its contacts; row: of the contact that closed."""
         state = self.integrated_scene.embed_state(time, self.progress.integrated_state)
@@ -91,7 +93,7 @@ class Interruptions:
         return self.contacts.handle_event(given_impulse, state, time, row, latch_conditions)
 
     def handle_contacts(
-        self, t: float, row: int | None = None, latch_conditions: LatchConditions | None = None
+        self, t: float, row: int | None = None, latch_conditions: tuple[LatchCondition, ...] | None = None
     ) -> None:
         """Handle the contacts at the instant reached.
 

@@ -39,7 +39,7 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.stage_cache import NO_CACHE, Stages
 from heuncli.multibody.tree.layout import Layout
 from heuncli.multibody.tree.prepare import PreparedScene, find_missing_inertia
-from heuncli.results.results import Array, Indices, Mask
+from heuncli.results.results import Array, Mask
 
 # Replay
 
@@ -57,13 +57,14 @@ def resample_run(integrated_scene: IntegratedScene, run: Trajectory, times: Arra
         out[is_at_event], is_known = event.after_state, is_known | is_at_event
     out[is_requested] = run.states[sample_index[is_requested]]
     unknown = (~is_known).nonzero()[0]
-    step = run.ends.searchsorted(times[unknown])  # the step in which an instant lies
-    is_interpolated, states = interpolate_stored(integrated_scene, run, times[unknown], step)
-    if len(states):
-        out[unknown[is_interpolated]] = integrated_scene.embed(times[unknown[is_interpolated]], states)
-        unknown, step = unknown[~is_interpolated], step[~is_interpolated]
-    if not len(unknown):
+    unknown_times = times[unknown]
+    is_interpolated, states = interpolate_stored(integrated_scene, run, unknown_times)
+    if is_interpolated.all():
+        out[unknown] = integrated_scene.embed(unknown_times, states)
         return out
+    out[unknown[is_interpolated]] = integrated_scene.embed(unknown_times[is_interpolated], states[is_interpolated])
+    unknown = unknown[~is_interpolated]
+    step = run.ends.searchsorted(times[unknown])  # the step in which an instant lies
     base = np.searchsorted(run.records.steps, step, side="right") - 1
     # consecutive steps are replayed together
     breaks = np.flatnonzero((np.diff(step) > 1) & (np.diff(base) > 0)) + 1
@@ -75,24 +76,21 @@ def resample_run(integrated_scene: IntegratedScene, run: Trajectory, times: Arra
     return out
 
 
-def interpolate_stored(
-    integrated_scene: IntegratedScene, run: Trajectory, times: Array, step: Indices
-) -> tuple[Mask, Array]:
-    """Return at which instants, within these steps, the integrated states follow from stored data, and the states
-    there.
+def interpolate_stored(integrated_scene: IntegratedScene, run: Trajectory, times: Array) -> tuple[Mask, Array]:
+    """Return at which instants the integrated states follow from stored data, (n_t,), and the states, (n_t, n), there.
 
     These are instants in steps with a stored polynomial, and ends of steps where the next one's start is stored.
     """
     n = integrated_scene.layout.n_state
-    states = np.empty((len(times), n))
-    is_interpolated = np.zeros(len(times), dtype=bool)
     if not len(times) or not len(run.ends):
-        return is_interpolated, states
+        return np.zeros(len(times), dtype=bool), np.empty((len(times), n))
     if run.polynomials is not None:
-        is_interpolated = run.polynomials.has_polynomial(times, step, run.ends)
+        is_interpolated, states = run.polynomials.interpolate_states(times, run.ends, n)
         if is_interpolated.all():
-            return is_interpolated, run.polynomials.interpolate_states(times, step, n)
-        states[is_interpolated] = run.polynomials.interpolate_states(times[is_interpolated], step[is_interpolated], n)
+            return is_interpolated, states
+    else:
+        is_interpolated, states = np.zeros(len(times), dtype=bool), np.empty((len(times), n))
+    step = run.ends.searchsorted(times)
     at_end = times == run.ends[step]
     if at_end.any():
         next_record = np.minimum(run.records.steps.searchsorted(step + 1), len(run.records) - 1)
@@ -101,7 +99,7 @@ def interpolate_stored(
             at_end &= ~np.isin(step + 1, list(run.records_after_impulses))
         states[at_end] = run.records.records[next_record[at_end], :n]
         is_interpolated = is_interpolated | at_end
-    return is_interpolated, states[is_interpolated]
+    return is_interpolated, states
 
 
 def replay_steps(integrated_scene: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:

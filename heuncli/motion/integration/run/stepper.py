@@ -248,7 +248,7 @@ class Stepper:
         )
         return Trajectory(
             times=times,
-            states=progress.integrated_scene.embed(times, states),
+            states=progress.integrated_scene.embed_run(times, states),
             ends=steps.copy_column("ends"),
             steps=kernel.loop.steps,
             evaluations=kernel.loop.evaluations,

@@ -14,7 +14,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.motion.integration.conditions import Conditions, Coordinates, read_coordinates
-from heuncli.motion.integration.contacts.latches import LatchConditions, evaluate_latches
+from heuncli.motion.integration.contacts.latches import LatchCondition, evaluate_latches
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
 
@@ -25,7 +25,7 @@ class DueTriggers(NamedTuple):
     """The impulses that are due at an instant, and the values of the latches' conditions there."""
 
     blows: tuple[int, ...]
-    latch_conditions: LatchConditions | None
+    latch_conditions: tuple[LatchCondition, ...] | None
 
 
 class Triggers:
@@ -45,7 +45,7 @@ class Triggers:
         self.truths_at_start: list[float] = []
         self.strike_counts: dict[int, int] = dict.fromkeys(self.numbers, 0)
         self.has_latches = any(stop.latch is not None for stop in layout.mechanism.stops)
-        self.latch_conditions: LatchConditions | None = None  # of the latches, at the last evaluation
+        self.latch_conditions: tuple[LatchCondition, ...] | None = None  # of the latches, at the last evaluation
         self.branches_left: list[float] | None = None  # the branches held at the end of the last piece
         self.last_event_time, self.simultaneous_count = -1.0, 0
 
@@ -94,15 +94,15 @@ class Triggers:
         branches = self.layout.pack.expressions.branches()
         truths = self.conditions.evaluate_held(t, branches, read_coordinates(self.layout, t, state))
         previous_truths, self.previous_truths = self.previous_truths, truths
-        latch_conditions, previous_latch_conditions = (
-            evaluate_latches(self.layout, truths, previous_truths),
-            self.latch_conditions,
-        )
-        self.latch_conditions = latch_conditions
+        latch_conditions = evaluate_latches(self.layout, truths, previous_truths)
+        previous_conditions, self.latch_conditions = self.latch_conditions, latch_conditions
         has_changed = self.has_latches and (
-            previous_latch_conditions is None
-            or any(latch_conditions.is_value_passed)
-            or previous_latch_conditions[:2] != latch_conditions[:2]
+            previous_conditions is None
+            or any(now.is_value_passed for now in latch_conditions)
+            or any(
+                (now.is_extended, now.is_drawn_back) != (before.is_extended, before.is_drawn_back)
+                for now, before in zip(latch_conditions, previous_conditions, strict=True)
+            )
         )
         blows = self.find_due_impulses(t, previous_truths, truths)
         return DueTriggers(blows, latch_conditions if self.has_latches else None) if blows or has_changed else None
@@ -123,7 +123,7 @@ class Triggers:
             self.count_impulses(t, due)
         return due
 
-    def evaluate_latches_at_contact(self, t: float, state: Array) -> LatchConditions | None:
+    def evaluate_latches_at_contact(self, t: float, state: Array) -> tuple[LatchCondition, ...] | None:
         """Return the conditions of latches where a contact closes or opens.
 
         A condition that rounding of the state makes true counts as true: such is one that names the stop's own limit.

@@ -258,6 +258,14 @@ def _bushing_departures(plane_view: PlaneView, load: BushingLoad, height: float)
     shift, turn = (np.array([e.constant != 0.0 for e in part.extra_load]) for part in (load.shift, load.turn))
     if shift[k] or np.delete(turn, k).any():
         yield Departure(f"{name} has an out-of-plane load", 1.0, True)
+    in_plane = np.concatenate((np.arange(3) != k, np.arange(3) == k))
+    for blocks in ((load.shift.stiffness, load.turn.stiffness, load.coupling),
+                   (load.shift.damping, load.turn.damping, load.coupling_damping)):  # fmt: skip
+        shift_block, turn_block, coupling = blocks
+        whole = np.block([[shift_block, coupling], [coupling.T, turn_block]])
+        if whole[np.ix_(in_plane, ~in_plane)].any():
+            yield Departure(f"{name} couples the plane with other directions", 1.0, True)
+            return
 
 
 def _component_departures(what: str, vector: Sequence[Expression], n: Array, kind: str) -> Iterator[Departure]:

@@ -180,7 +180,7 @@ def iter_resistances(load: fl.LoadEntry) -> Iterator[tuple[str, object]]:
         value = getattr(load, key)
         if isinstance(value, fl.ShiftLaws | fl.TurnLaws):
             value = (value.x, value.y, value.z)
-        for part in value if isinstance(value, tuple) else (value,):
+        for part in value if isinstance(value, tuple) and not isinstance(value[0], tuple) else (value,):
             yield key, getattr(part, "constant", part)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from heuncli.scene.file_format.rules import (  # noqa: F401 (each registers its rules)
     analysis,
     bodies,
+    bushings,
     couplings,
     expect,
     joints,

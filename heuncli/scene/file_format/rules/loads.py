@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from heuncli.base import units as u
-from heuncli.base.joint_kinds import FREE, POINT, TYPES, JointKind, format_kind_names, kinds_accepting_load
+from heuncli.base.joint_kinds import (
+    FREE,
+    POINT,
+    TYPES,
+    JointKind,
+    format_kind_names,
+    kinds_accepting_load,
+    propose_pins,
+)
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.expressions.discontinuities import find_first_negative
-from heuncli.scene.expressions.programs import Expression, out_of_range_texts
 from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format.foreign_words import MISSING_KEY_HINTS
 from heuncli.scene.file_format.rules.bodies import FULL_FRICTION_HINT
@@ -37,11 +43,11 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
         if isinstance(load, fl.TorqueEntry):
             if not kind.accepts_load("torque"):
                 where = " or ".join(f"{TORQUE_WORDS[k.motions[0]]} {k.name}" for k in kinds_accepting_load("torque"))
-                hint = "between two points use an actuator, on a body a couple"
+                hint = propose_pins(kind, "between two points use an actuator, on a body a couple")
                 yield Violation((*path, "joint"), f"type: torque acts {where}, not in a {kind.name}", hint)
         elif isinstance(load, fl.MotorEntry):
             if kind.coordinates != ("angle",):
-                hint = "in a slide use a force of type torque, with a value in guide.speed"
+                hint = propose_pins(kind, "in a slide use a force of type torque, with a value in guide.speed")
                 yield Violation((*path, "joint"), f"a motor acts in a pin, not in a {kind.name}", hint)
         elif isinstance(load, fl.TurnSpringEntry):
             if load.torque is not None and kind.coordinates != ("angle",):
@@ -50,11 +56,11 @@ def check_load_joint(draft: DraftDocument) -> Iterator[Violation]:
             elif not kind.accepts_load("turn_spring"):
                 allowed = format_kind_names(kinds_accepting_load("turn_spring"), "or")
                 message = f"a turn_spring acts in a {allowed}, not in a {kind.name}"
-                yield Violation((*path, "joint"), message, "between two points use a spring")
+                yield Violation((*path, "joint"), message, propose_pins(kind, "between two points use a spring"))
         elif isinstance(load, fl.DamperEntry):
             two_motion_kinds = [k for k in kinds_accepting_load("damper") if len(k.motions) == 2]
             if not kind.accepts_load("damper"):
-                hint = "between two points use a spring with damping"
+                hint = propose_pins(kind, "between two points use a spring with damping")
                 yield Violation((*path, "joint"), f"a damper has no effect in a {kind.name}", hint)
             if load.torque is not None or load.force is not None:
                 yield from check_damper_law(name, load, kind)
@@ -196,20 +202,6 @@ def check_brake(draft: DraftDocument) -> Iterator[Violation]:
             elif (t := find_first_negative(value, duration)) is not None:
                 message = f"{key} must not be negative, but is {value.value(t):g} at t = {t:.4g} s"
                 yield Violation(path, message, "it resists motion in both directions: give its magnitude")
-
-
-@rule("bushing-table")
-def check_bushing_table(draft: DraftDocument) -> Iterator[Violation]:
-    """The tables of a bushing have a value at zero deflection."""
-    for name, load in draft.document.forces.items():
-        for key in ("stiffness", "turning") if isinstance(load, fl.BushingEntry) else ():
-            laws = getattr(load, key)
-            parts = (laws.x, laws.y, laws.z) if isinstance(laws, fl.ShiftLaws | fl.TurnLaws) else laws
-            for law in parts if isinstance(parts, tuple) else (parts,):
-                if isinstance(law, Expression) and math.isnan(law.value(0.0, (0.0,))):
-                    message, hint = out_of_range_texts(law.tables[0])
-                    full_message = f"{key} has no value at zero deflection of the bushing: {message}"
-                    yield Violation(("forces", name, key), full_message, hint)
 
 
 def check_friction_coefficient(name: str, load: fl.FrictionEntry, kind: JointKind) -> Iterator[Violation]:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import product
 
 from heuncli.base import tolerances
 from heuncli.base.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.base.load_kinds import LOAD_KINDS
 from heuncli.scene.file_format import format_loads as fl
 from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format.resolve_loads import is_matrix
 from heuncli.scene.file_format.rotations import IDENTITY, unit_vector
 from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.scene.file_format.semantics import orientation_matrix
@@ -19,6 +21,12 @@ SPATIAL_HINT = "for a spatial model declare space: spatial"
 FORBIDDEN_VELOCITY = {"velocity": ("z",), "angular_velocity": ("x", "y")}
 FORBIDDEN_LOAD = {"N": ("z",), "N·m": ("x", "y")}  # by its unit
 FORBIDDEN_IMPULSE = {"vector": ("z",), "couple": ("x", "y")}
+# Matrices of bushings: which of their rows and of their columns lie in the plane.
+SHIFTS, TURNS = (True, True, False), (False, False, True)
+IN_PLANE = {
+    "stiffness": (SHIFTS, SHIFTS), "turning": (TURNS, TURNS), "coupling": (SHIFTS, TURNS),
+    "damping": (SHIFTS, SHIFTS), "turning_damping": (TURNS, TURNS), "coupling_damping": (SHIFTS, TURNS),
+}  # fmt: skip
 
 
 @rule("not-planar")
@@ -73,6 +81,12 @@ def _check_bushing(path: Path_, load: fl.BushingEntry) -> Iterator[Violation]:
         orientation = getattr(load, key)
         if orientation is not None and abs(z_axis_cosine(orientation) - 1.0) > tolerances.UPRIGHT:
             yield Violation((*path, key), "in a planar model the axes of a bushing rotate about z only", SPATIAL_HINT)
+    for key, (rows, columns) in IN_PLANE.items():
+        matrix = getattr(load, key)
+        for i, j in product(range(3), range(3)) if is_matrix(matrix) else ():
+            if matrix[i][j] != 0.0 and rows[i] != columns[j]:
+                message = f"in a planar model {key} does not couple the plane with other directions"
+                yield Violation((*path, key, i, j), message, SPATIAL_HINT)
     for key, forbidden in (("preload", ("z",)), ("turning_preload", ("x", "y"))):
         if getattr(load, key) is not None:
             yield from _check_components((*path, key), getattr(load, key), forbidden)

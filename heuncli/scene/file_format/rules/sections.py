@@ -1,7 +1,5 @@
 """Rules about sections: one cut or a series of cuts, in a body with known mass distribution, with properties in one
-form.
-
-A rule about sensors: each reads the load of a cut, or the reaction of a joint.
+form; and about sensors, each of which reads the load of a cut or the reaction of a joint.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator
 
 from heuncli.base import tolerances
-from heuncli.base.joint_kinds import TYPES, JointKind, format_kind_names
+from heuncli.base.joint_kinds import TYPES, JointKind, format_kind_names, propose_pins
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.spelling import suggest
 from heuncli.scene.file_format import format as f
@@ -72,6 +72,7 @@ def check_stop_form(draft: DraftDocument) -> Iterator[Violation]:
             assert kind is not None
             kinds_text = format_kind_names([kind for kind in TYPES.values() if limitable_coordinates(kind)], "and")
             hint = f"a {kind.name} has {' and '.join(allowed_keys)}" if allowed_keys else f"stops limit {kinds_text}"
+            hint = propose_pins(kind, hint)
             yield Violation(limits_path, f"a {kind.name} has no {quantities[0]} to limit", hint, key=True)
             continue
         low, high = getattr(stop, quantities[0])

@@ -1,35 +1,33 @@
-"""Read the joints of an SDF, and make those of URDF from them."""
+"""Read the joints of an SDF."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.base.spelling import suggest
 from heuncli.scene.file_format.models import ZERO, Vec
-from heuncli.scene.importers.attitudes import rotate_vector, rotation_from_roll_pitch_yaw
 from heuncli.scene.importers.description import LEFT_OUT_CODE
 from heuncli.scene.importers.sdf.frames import (
     MODEL,
-    NO_POSE,
     WORLD,
-    FrameTree,
-    invert_pose,
 )
 from heuncli.scene.importers.sdf.values import read_child_flag, read_child_number, read_child_word, read_values
-from heuncli.scene.importers.urdf.document import NO_LIMIT, X_AXIS, Mimic, UrdfJoint, UrdfLink
+from heuncli.scene.importers.urdf.document import (
+    NO_LIMIT,
+    Mimic,
+)
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
-KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball")
-KIND_HINTS = {
-    "universal": "write two joints of type revolute with a link without mass between",
-    "revolute2": "write two joints of type revolute with a link between",
-    "screw": "write a joint of type prismatic, import, and add a coupling of type screw to the spec",
-    "gearbox": "write a joint of type revolute, import, and add a coupling of type ratio to the spec",
-}
-JOINT_NOISE = ("sensor", "physics", "plugin")
-JOINT_PARTS = ("pose", "parent", "child", "axis")
+SCREW, GEARBOX = "screw", "gearbox"
+KINDS = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2", SCREW, GEARBOX)
+# Of a universal joint the first axis is fixed in the parent, the second in the child; of a gearbox they are those of
+# the two joints that it couples.
+KINDS_OF_TWO_AXES = ("universal", "revolute2", GEARBOX)
+IGNORED_JOINT_TAGS = ("sensor", "physics", "plugin")
+# Values of screws and gearboxes, which some programs write with every joint.
+TAGS_OF_SOME_KINDS = ("thread_pitch", "screw_thread_pitch", "gearbox_ratio", "gearbox_reference_body")
 AXIS_PARTS = ("xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position")
 LIMIT_PARTS = ("lower", "upper", "effort", "velocity", "stiffness", "dissipation")
 DYNAMICS_PARTS = ("damping", "friction", "spring_stiffness", "spring_reference")
@@ -56,8 +54,27 @@ class JointAxis(NamedTuple):
     reference: float
 
 
+NO_AXIS = JointAxis((0.0, 0.0, 1.0), "", None, None, None, 0.0, 0.0, 0.0, 0.0)  # of a joint that is fixed or a ball
+
+
+class Gearbox(NamedTuple):
+    """The relation theta_2 = -ratio theta_1 of a gearbox.
+
+    reference: scoped name of the link from which both angles count: theta_1 to the parent about the first axis,
+    theta_2 to the child about the second
+    """
+
+    ratio: float
+    reference: str
+
+
 class SdfJoint(NamedTuple):
-    """A joint as the file has it. Its ends are scoped names of frames."""
+    """A joint as the file has it. Its ends are scoped names of frames.
+
+    second_axis: of a joint of two axes, which turn one after the other
+    lead: of a screw, along the axis for each revolution about it [m]; otherwise 0
+    gear: of a gearbox, which is no joint of the tree
+    """
 
     name: str
     element: XmlElement
@@ -65,6 +82,9 @@ class SdfJoint(NamedTuple):
     parent: str
     child: str
     axis: JointAxis
+    second_axis: JointAxis | None = None
+    lead: float = 0.0
+    gear: Gearbox | None = None
 
     @property
     def path(self) -> str:
@@ -82,34 +102,82 @@ def read_joint(
     """Read a joint; None, and problems, if something in it is wrong.
 
     has_model_axes: whether axes are along the model's frame where nothing else is said, as up to SDF 1.4
+    fields: reads attributes and collects problems
     """
     name = fields.read_word(element, "name", "joint")
     path = f"joint {scope}{name}" if name is not None else "joint"
     kind = fields.read_word(element, "type", path)
     if kind is not None and kind not in KINDS:
-        hint = KIND_HINTS.get(kind, f"known: {', '.join(KINDS)}")
+        hint = f"known: {', '.join(KINDS)}"
         fields.report("import-joint", element, path, f"a joint of type '{kind}' cannot be read", hint)
         kind = None
     for part in element.children:
-        if part.tag in JOINT_NOISE or ":" in part.tag:
+        if part.tag in IGNORED_JOINT_TAGS or ":" in part.tag:
             ignored_tags[f"{part.tag} in joints"] += 1
-    fields.report_unknown_parts(element, path, *JOINT_PARTS, *JOINT_NOISE)
+    known_tags = ("pose", "parent", "child", "axis", *_list_axis_tags(kind))
+    fields.report_unknown_parts(element, path, *known_tags, *TAGS_OF_SOME_KINDS, *IGNORED_JOINT_TAGS)
     ends = [read_child_word(element, tag, path, fields) for tag in ("parent", "child")]
-    parent, child = (None if end is None else WORLD if end == WORLD else f"{scope}{end}" for end in ends)
-    axis = fields.find_child(element, "axis", path) if kind not in ("fixed", "ball") else None
-    if axis is None and kind not in (None, "fixed", "ball"):
-        fields.report("import-missing", element, path, "<axis> is missing", "add <axis><xyz>0 0 1</xyz></axis>")
-        kind = None
+    parent, child = (None if end is None else _scope_name(end, scope) for end in ends)
     problem_count = len(fields.problems)
-    own = f"{scope}{name}"
-    parts = _read_axis(
-        axis or XmlElement("axis", {}, [], element.line, element.column), scope, own, has_model_axes, path, fields
-    )
+    scoped_name = f"{scope}{name}"
+    axes: list[JointAxis] = []
+    for tag in _list_axis_tags(kind):
+        axis = fields.find_child(element, tag, path)
+        if axis is None:
+            hint = f"add <{tag}><xyz>0 0 1</xyz></{tag}>"
+            fields.report("import-missing", element, path, f"<{tag}> is missing", hint)
+        else:
+            axes.append(_read_axis(axis, scope, scoped_name, has_model_axes, path, fields))
+    lead = _read_lead(element, path, fields) if kind == SCREW else 0.0
+    gear = _read_gear(element, scope, path, fields) if kind == GEARBOX else None
     if name is None or kind is None or parent is None or child is None or len(fields.problems) > problem_count:
         return None
-    if kind == "revolute" and parts.limits is None:
-        kind = "continuous"
-    return SdfJoint(own, element, kind, parent, child, parts)
+    if not axes:
+        return SdfJoint(scoped_name, element, kind, parent, child, NO_AXIS._replace(frame=scoped_name))
+    # all others turn about their first axis; second_axis, lead and gear tell what else they do
+    if kind not in ("prismatic", "continuous"):
+        kind = find_kind_of_turning(axes[0])
+    second_axis = axes[1] if len(axes) > 1 else None
+    return SdfJoint(scoped_name, element, kind, parent, child, axes[0], second_axis, lead, gear)
+
+
+def _scope_name(name: str, scope: str) -> str:
+    """Return the scoped name of a frame; the world has no scope."""
+    return name if name == WORLD else f"{scope}{name}"
+
+
+def _list_axis_tags(kind: str | None) -> tuple[str, ...]:
+    """List the tags of the axes that a kind of joint has."""
+    if kind in (None, "fixed", "ball"):
+        return ()
+    return ("axis", "axis2") if kind in KINDS_OF_TWO_AXES else ("axis",)
+
+
+def _read_lead(element: XmlElement, path: str, fields: UrdfFields) -> float:
+    """Read the travel of a screw for each revolution [m]: positive if it is right-handed.
+
+    Up to SDF 1.9 it stands as <thread_pitch> in radians per metre, positive if it is left-handed.
+    """
+    lead = read_child_number(element, "screw_thread_pitch", path, fields, 0.0)
+    turns = read_child_number(element, "thread_pitch", path, fields, 0.0)
+    if lead == 0.0 and turns == 0.0:  # None: already reported
+        hint = "write <screw_thread_pitch>, the metres for each revolution"
+        fields.report("import-missing", element, path, "the lead of the screw is missing, or 0", hint)
+    return lead or (-2.0 * math.pi / turns if turns else 0.0)
+
+
+def _read_gear(element: XmlElement, scope: str, path: str, fields: UrdfFields) -> Gearbox | None:
+    """Read the ratio of a gearbox, and from which link its angles count."""
+    ratio = read_child_number(element, "gearbox_ratio", path, fields, 1.0)
+    reference = read_child_word(element, "gearbox_reference_body", path, fields)
+    if ratio == 0.0:
+        fields.report("import-joint", element, path, "gearbox_ratio is 0", "give the ratio of the angles")
+    return None if ratio is None or reference is None else Gearbox(ratio, f"{scope}{reference}")
+
+
+def find_kind_of_turning(axis: JointAxis) -> str:
+    """Return the kind of a joint that turns: revolute if it has limits."""
+    return "continuous" if axis.limits is None else "revolute"
 
 
 def _read_axis(
@@ -124,7 +192,7 @@ def _read_axis(
         numbers = read_values(xyz_part, path, fields, 3, is_length=True)
         direction = direction if numbers is None else (numbers[0], numbers[1], numbers[2])
         expressed_in = xyz_part.attributes.get("expressed_in", "").strip()
-        frame = joint if not expressed_in else WORLD if expressed_in == WORLD else f"{scope}{expressed_in}"
+        frame = _scope_name(expressed_in, scope) if expressed_in else joint
         if direction == ZERO:
             fields.report("import-joint", xyz_part, path, "the axis is 0 0 0", "give a direction, e.g. 0 0 1")
     if read_child_flag(axis, "use_parent_model_frame", path, fields, has_model_axes and frame == joint):
@@ -137,6 +205,7 @@ def _read_axis(
 
 
 def _leave_out_initial_position(axis: XmlElement, path: str, fields: UrdfFields) -> None:
+    """Note an initial position other than 0 as left out."""
     for part in axis.find_all("initial_position"):
         if read_values(part, path, fields, 1) not in (None, [0.0]):
             message = "<initial_position> is left out"
@@ -163,6 +232,7 @@ def _read_limits(axis: XmlElement, path: str, fields: UrdfFields) -> tuple[tuple
 
 
 def _read_bound(part: XmlElement, tag: str, path: str, fields: UrdfFields) -> float | None:
+    """Read one bound; None if it is absent or unlimited."""
     found = part.find_all(tag)
     if len(found) == 1 and found[0].text.lower() in UNLIMITED_WORDS:
         return None
@@ -199,90 +269,3 @@ def _read_mimic(axis: XmlElement, scope: str, path: str, fields: UrdfFields) -> 
     if joint is None or multiplier is None or offset is None or reference is None:
         return None
     return Mimic(part, f"{scope}{joint}", multiplier, offset - multiplier * reference)
-
-
-def make_joints(
-    joints: list[SdfJoint], links: dict[str, UrdfLink], frames: FrameTree, model: XmlElement
-) -> dict[str, UrdfJoint]:
-    """Make the joints of URDF in the order of the file, and add the links without mass that they need to `links`: the
-    world, and the frames, which are fixed to what they are attached to, and so become points.
-    """
-    fields, urdf_joints = frames.fields, dict[str, UrdfJoint]()
-    frame_names = {name for name, frame in frames.frames.items() if frame.element.tag == "frame"}
-    link_names = {*links, WORLD}
-    by_name = {joint.name: joint for joint in joints}
-    for name, frame in frames.frames.items():
-        if name in by_name:
-            joint = by_name[name]
-            parent, child = (_find_end(end, tag, link_names, frame_names, joint, frames) for end, tag in joint.ends)
-            if parent is None or child is None:
-                continue
-            if child == WORLD:
-                message, hint = "its child is the world", "exchange <parent> and <child>"
-                fields.report("import-tree", joint.element, joint.path, message, hint)
-            elif joint.axis.frame not in frames.frames:
-                message = f"its axis is expressed in '{joint.axis.frame}', which is not there"
-                fields.report(
-                    "import-tree",
-                    joint.element,
-                    joint.path,
-                    message,
-                    suggest(joint.axis.frame, frames.frames, "frames"),
-                )
-            else:
-                if parent == WORLD and WORLD not in links:
-                    links[WORLD] = make_massless_link(WORLD, model)
-                _make_joint(joint, parent, child, links, urdf_joints, frames)
-        elif name in frame_names and (link := frames.find_link(name, link_names)) not in (None, WORLD):
-            attached_to = frame.attached_to if frame.attached_to in frame_names else link
-            assert attached_to is not None
-            links[name] = make_massless_link(name, frame.element)
-            pose = frames.compute_pose(name, attached_to)
-            mount = frames.choose_name(f"{name}_mount")
-            urdf_joints[mount] = UrdfJoint(mount, frame.element, "fixed", attached_to, name, pose, X_AXIS)
-    return urdf_joints
-
-
-def make_massless_link(name: str, element: XmlElement) -> UrdfLink:
-    """Make a link without mass and shapes that stands at the place of an element of the file."""
-    return UrdfLink(name, XmlElement("link", {}, [], element.line, element.column), None)
-
-
-def _find_end(
-    name: str, tag: str, link_names: set[str], frame_names: set[str], joint: SdfJoint, frames: FrameTree
-) -> str | None:
-    """Find the link, or for a parent the frame, that an end of a joint names; None, and a problem, if there is none."""
-    link = frames.find_link(name, link_names)
-    if link is None:
-        hint = suggest(name, frames.frames, "frames")
-        frames.fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is not there", hint)
-    return name if tag == "parent" and name in frame_names and link not in (None, WORLD) else link
-
-
-def _make_joint(
-    joint: SdfJoint,
-    parent: str,
-    child: str,
-    links: dict[str, UrdfLink],
-    urdf_joints: dict[str, UrdfJoint],
-    frames: FrameTree,
-) -> None:
-    """Make one joint, and a second that fixes the child to it where its pose differs from that of the child."""
-    in_child = frames.compute_pose(joint.name, child)
-    is_at_child = in_child == NO_POSE or joint.kind == "fixed"
-    in_parent = frames.compute_pose(child if is_at_child else joint.name, parent)
-    axis = joint.axis.direction
-    turn = frames.compute_pose(joint.axis.frame, joint.name)
-    if turn.rpy != ZERO:
-        axis = rotate_vector(rotation_from_roll_pitch_yaw(turn.rpy), axis)
-    own_child = child
-    if not is_at_child:
-        own_child = frames.choose_name(f"{joint.name}_frame")
-        links[own_child] = make_massless_link(own_child, joint.element)
-        name = frames.choose_name(f"{joint.name}_mount")
-        urdf_joints[name] = UrdfJoint(name, joint.element, "fixed", own_child, child, invert_pose(in_child), X_AXIS)
-    part = joint.axis
-    urdf_joints[joint.name] = UrdfJoint(
-        joint.name, joint.element, joint.kind, parent, own_child, in_parent, axis, part.limits, part.effort,
-        part.mimic, part.damping, part.friction, part.stiffness, part.reference,
-    )  # fmt: skip

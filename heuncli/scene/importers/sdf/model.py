@@ -23,7 +23,8 @@ from heuncli.scene.importers.sdf.frames import (
     FrameTree,
     read_pose,
 )
-from heuncli.scene.importers.sdf.joints import SdfJoint, make_joints, make_massless_link, read_joint
+from heuncli.scene.importers.sdf.joint_tree import make_joints
+from heuncli.scene.importers.sdf.joints import SdfJoint, read_joint
 from heuncli.scene.importers.sdf.values import (
     as_attribute,
     read_attribute_flag,
@@ -31,7 +32,16 @@ from heuncli.scene.importers.sdf.values import (
     read_child_number,
     read_moments,
 )
-from heuncli.scene.importers.urdf.document import MOMENTS, Inertial, LinkPose, Robot, UrdfJoint, UrdfLink
+from heuncli.scene.importers.urdf.document import (
+    MOMENTS,
+    Inertial,
+    LinkPose,
+    LoopJoint,
+    Robot,
+    UrdfJoint,
+    UrdfLink,
+    make_massless_link,
+)
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.xml_elements import XmlElement
 
@@ -78,11 +88,12 @@ class RobotReader:
         self.frames.report_wrong_bases(self.links)
         links = dict(self.links)
         joints: dict[str, UrdfJoint] = {}
+        loop_joints: tuple[LoopJoint, ...] = ()
         if len(self.fields.problems) == problem_count == 0:
-            joints = make_joints(self.joints, links, self.frames, model)
+            joints, loop_joints = make_joints(self.joints, links, self.frames, model)
             _place_in_world(links, joints, self.frames, model, is_free)
         is_complete = not self.fields.problems
-        return Robot(model, name, links, joints, dict(self.ignored_tags), is_complete)
+        return Robot(model, name, links, joints, dict(self.ignored_tags), is_complete, loop_joints)
 
     def _read_model(self, model: XmlElement, scope: str, path: str) -> None:
         """Read the parts of a model. scope: what stands before the names in it, such as `arm::`."""
@@ -145,6 +156,10 @@ class RobotReader:
         return self.frames.add(Frame(f"{scope}{name}", part, base, placed[0], attached_to), path)
 
     def _add_link(self, part: XmlElement, scope: str) -> None:
+        if part.attributes.get("name") == WORLD and not scope:
+            message, hint = "a link may not be named world", "delete it: joints with the parent world hold to the world"
+            self.fields.report("import-tree", part, "link world", message, hint)
+            return
         if not self._add_frame(part, scope, "link", make_scoped(MODEL, scope), None):
             return
         name = f"{scope}{part.attributes['name']}"

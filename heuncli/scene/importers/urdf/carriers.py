@@ -15,7 +15,7 @@ which it is fixed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
@@ -31,7 +31,7 @@ from heuncli.scene.importers.attitudes import (
     round_vector,
 )
 from heuncli.scene.importers.description import DescribedPoint, assign_names, format_original_name
-from heuncli.scene.importers.urdf.document import UrdfJoint
+from heuncli.scene.importers.urdf.document import LoopJoint, UrdfJoint
 from heuncli.scene.importers.urdf.tree import LinkTree
 
 # Carriers
@@ -206,6 +206,7 @@ class SpecJoint(NamedTuple):
     original: the name in the file
     start, end: its points on the parent and on the child
     joint: the joint of the URDF, if any
+    in_loop: whether it is a part of a closed loop, whose other joints move with it
     """
 
     original: str
@@ -215,12 +216,54 @@ class SpecJoint(NamedTuple):
     keys: dict[str, Any]
     remarks: tuple[str, ...] = ()
     joint: UrdfJoint | None = None
+    in_loop: bool = False
 
 
 def iter_spec_joints(
+    tree: LinkTree,
+    placed_links: dict[str, PlacedLink],
+    is_grounded: bool,
+    points: RobotPoints,
+    loop_joints: Sequence[LoopJoint] = (),
+) -> Iterator[SpecJoint]:
+    """Yield every joint of the spec, those that close loops last; its points are added to those of the bodies."""
+    links_in_loops = find_links_in_loops(tree, loop_joints)
+    for one in _iter_tree_joints(tree, placed_links, is_grounded, points):
+        yield one._replace(in_loop=one.joint is not None and one.joint.child in links_in_loops)
+    for joint, pose_in_child in loop_joints:
+        parent, child = placed_links[joint.parent], placed_links[joint.child]
+        if joint.kind == "fixed" and parent.carrier == child.carrier:
+            continue
+        place = add_vectors(parent.offset, rotate_vector(parent.R, joint.pose.xyz))
+        offset = add_vectors(child.offset, rotate_vector(child.R, pose_in_child.xyz))
+        R = compose_rotations(parent.R, rotation_from_roll_pitch_yaw(joint.pose.rpy))
+        end = PlacedLink(R, ZERO, child.carrier, offset)
+        for spec_joint in _iter_joints(joint, place, end, parent.carrier, points):
+            yield spec_joint._replace(remarks=(*spec_joint.remarks, "closes a loop"), in_loop=True)
+
+
+def find_links_in_loops(tree: LinkTree, loop_joints: Sequence[LoopJoint]) -> set[str]:
+    """Find the links whose joint in the tree is a part of a loop: on the way from one end of a loop joint to the
+    other.
+    """
+    found: set[str] = set()
+    for joint, _ in loop_joints:
+        ways = [_list_ancestors(tree, name) for name in (joint.parent, joint.child)]
+        found |= set(ways[0]) ^ set(ways[1])
+    return found
+
+
+def _list_ancestors(tree: LinkTree, name: str) -> list[str]:
+    """List a link and those that carry it, up to the root."""
+    names = [name]
+    while (joint := tree.parent_joints.get(names[-1])) is not None:
+        names.append(joint.parent)
+    return names
+
+
+def _iter_tree_joints(
     tree: LinkTree, placed_links: dict[str, PlacedLink], is_grounded: bool, points: RobotPoints
 ) -> Iterator[SpecJoint]:
-    """Yield every joint of the spec; its points are added to those of the bodies."""
     root = tree.root.name
     if is_grounded and placed_links[root].carrier == root:
         ends = points.add(GROUND, "link", root, ZERO), points.add(root, "link", root, ZERO)

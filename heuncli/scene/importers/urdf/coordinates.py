@@ -11,6 +11,7 @@ from typing import Any
 
 from heuncli.base.errors import Problem
 from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.spelling import list_words
 from heuncli.scene.importers.description import (
     LEFT_OUT_CODE,
     DescribedEntry,
@@ -76,25 +77,34 @@ class RobotCoordinates:
         ]
         self.names = {joint.name: name for _, joint, name in self.single_coordinate_joints}
         self.types = {joint.name: spec_joint.type for spec_joint, joint, _ in self.single_coordinate_joints}
+        self.names_in_loops = {joint.name: name for one, joint, name in self.single_coordinate_joints if one.in_loop}
         for spec_joint, joint, name in self.single_coordinate_joints:
             self._add_joint(joint, name, QUANTITIES[spec_joint.type])
 
     @property
     def header_lines(self) -> tuple[str, ...]:
         """Explain how to move the joints."""
+        lines: tuple[str, ...] = ()
+        if self.names_in_loops:
+            names = list_words([*self.names_in_loops.values()])
+            lines = (f"Joints of closed loops are free, and start as drawn: {names}. Add a drive for each freedom.",)
         if not self.parameters:
-            return ()
+            return lines
         first = self.parameters[0].name
         joint = next(joint for _, joint, name in self.single_coordinate_joints if name == first)
-        return explain_motion(
-            first, QUANTITIES[self.types[joint.name]].example_value, free=self.options.free, at_rest=True
-        )
+        example_value = QUANTITIES[self.types[joint.name]].example_value
+        return (*lines, *explain_motion(first, example_value, free=self.options.free, at_rest=True))
 
     def _add_joint(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         leader = self.leaders.get(joint.name)
-        if leader is not None:
+        leader_name = "" if leader is None else leader.leader.name
+        if joint.mimic is not None and not self.names_in_loops.keys().isdisjoint({joint.name, leader_name}):
+            message = "a joint of a closed loop follows another, or is followed"
+            hint = "delete the <mimic>, import, and add a coupling of type ratio to the spec"
+            self.fields.report("import-mimic", joint.mimic.element, joint.path, message, hint)
+        elif leader is not None:
             self._add_follower(joint, name, quantity, leader)
-        else:
+        elif joint.name not in self.names_in_loops:
             value = self._start_value(joint, quantity)
             remark = "; ".join(
                 filter(None, (format_original_name("joint", name, joint.name), self._format_limits(joint, quantity)))

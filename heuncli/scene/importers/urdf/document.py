@@ -15,10 +15,12 @@ from heuncli.scene.importers.urdf.foreign_parts import find_mechanical_hint, lea
 from heuncli.scene.importers.xml_elements import XmlElement, make_xacro_hint
 
 MAX_LINKS = 100_000
+WORLD_LINK = "world"  # a root link of this name is the ground
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 ROTARY_TYPES, SLIDING_TYPES = ("revolute", "continuous"), ("prismatic",)
 X_AXIS: Vec = (1.0, 0.0, 0.0)
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+LOWER_MOMENTS = ("iyx", "izx", "izy")  # the products once more, as some programs write them
 LINK_PARTS = ("inertial", "visual", "collision")
 PLACES_IN_LINKS = ("origin", "pose", "frame", "axis")  # a link has none: its joint places it
 INERTIAL_PARTS = ("origin", "mass", "inertia")
@@ -112,10 +114,27 @@ class UrdfJoint:
         return self.kind in (*ROTARY_TYPES, *SLIDING_TYPES)
 
 
+def make_massless_link(name: str, element: XmlElement) -> UrdfLink:
+    """Make a link without mass and shapes that stands at the place of an element of the file."""
+    return UrdfLink(name, XmlElement("link", {}, [], element.line, element.column), None)
+
+
+class LoopJoint(NamedTuple):
+    """A joint that closes a loop: each of its ends is carried by another joint, or is the root.
+
+    joint: with its pose in the parent
+    pose_in_child: of the same frame in the child, with all joints at 0
+    """
+
+    joint: UrdfJoint
+    pose_in_child: LinkPose
+
+
 @record
 class Robot:
     """All links and joints of a file, in order.
 
+    loop_joints: those that close loops, of SDF; `joints` has the others
     ignored_tags: how often each tag without mechanical meaning occurs, in the order of the file
     is_complete: whether no link or joint was dropped for an error, so that whatever is missing is missing in the file
     """
@@ -126,6 +145,7 @@ class Robot:
     joints: dict[str, UrdfJoint]
     ignored_tags: dict[str, int]
     is_complete: bool
+    loop_joints: tuple[LoopJoint, ...] = ()
 
 
 def read_robot(root: XmlElement, fields: UrdfFields) -> Robot:
@@ -148,6 +168,8 @@ def read_robot(root: XmlElement, fields: UrdfFields) -> Robot:
         elif leave_out_part(element, path, ("link", "joint"), fields, ignored_tags, ""):
             left_out_count += 1
     is_complete = len(links) + len(joints) + left_out_count == len(root.children)
+    if WORLD_LINK not in links and any(joint.parent == WORLD_LINK for joint in joints.values()):
+        links[WORLD_LINK] = make_massless_link(WORLD_LINK, root)  # Drake needs no such link
     return Robot(
         root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(ignored_tags), is_complete
     )
@@ -219,11 +241,24 @@ def _read_inertial(element: XmlElement, path: str, fields: UrdfFields) -> Inerti
     mass = fields.read_number(mass_part, "value", path)
     if inertia_part is None:
         return None if mass is None or pose is None else Inertial(element, mass, pose, None, has_center)
-    fields.report_unknown_attributes(inertia_part, path, *MOMENTS)
+    _report_unequal_halves(inertia_part, path, fields)
+    fields.report_unknown_attributes(inertia_part, path, *MOMENTS, *LOWER_MOMENTS)
     moments = [fields.read_moment(inertia_part, name, path) for name in MOMENTS]
     if mass is None or pose is None or None in moments:
         return None
     return Inertial(inertia_part, mass, pose, tuple(value for value in moments if value is not None), has_center)
+
+
+def _report_unequal_halves(inertia: XmlElement, path: str, fields: UrdfFields) -> None:
+    """Report products of inertia that a file gives twice, above and below the diagonal, with two values."""
+    for name in LOWER_MOMENTS:
+        twin = f"i{name[2]}{name[1]}"
+        if not {name, twin} <= inertia.attributes.keys():
+            continue
+        lower, upper = (fields.read_moment(inertia, one, path) for one in (name, twin))
+        if lower is not None and upper is not None and lower != upper:
+            message = f"{twin} is {upper:g}, but {name} is {lower:g}: a tensor of inertia is symmetric"
+            fields.report("import-inertia", inertia, path, message, f"correct one of them, or delete {name}")
 
 
 def read_pose(element: XmlElement, path: str, fields: UrdfFields) -> LinkPose | None:

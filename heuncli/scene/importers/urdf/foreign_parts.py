@@ -23,7 +23,7 @@ NON_MECHANICAL_TAGS = frozenset({
     "disable_collisions", "enable_collisions", "disable_default_collisions", "verify_collisions", "collision_pair",
     # semantics (SRDF), remarks, looks
     "group", "group_state", "end_effector", "passive_joint", "author", "comment", "description", "license", "date",
-    "version", "metadata", "verbose", "camera", "light", "color", "texture", "rviz",
+    "version", "metadata", "properties", "verbose", "camera", "light", "color", "texture", "rviz",
 })  # fmt: skip
 DEFAULT_TEXTS = {"gravity": ("1", "true"), "kinematic": ("0", "false")}  # Gazebo's defaults, which change nothing
 COMMON_TAGS = ("gazebo", "material", "mujoco", "transmission", "sensor", "plugin", "ros2_control", "safety_controller")

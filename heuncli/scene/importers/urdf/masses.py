@@ -11,18 +11,20 @@ Without repair, the moments may violate this by what heun accepts as rounding. A
     zero        a link with a mass and no moment at all becomes a point mass
     point       a link with a mass and no <inertia> becomes a point mass
     shape       a link with a mass and no <inertia> gets the inertia of its shapes, scaled to its mass
-    massless    a link without mass that moves gets a point mass of REPAIRED_MASS at its origin; a mass of 0
-                loses its inertia
+    massless    a link without mass at the end of a chain gets a point mass of REPAIRED_MASS at its origin; a mass of
+                0 loses its inertia
 
 Moments that are rounding beside mass * size^2 count as 0 before they are judged.
 
-A link without mass has shapes of the density of --density. The collision elements are used if all of them are boxes,
+A link without mass between two joints is a body of mass 0, if a joint beyond it moves something with a mass. Others
+have shapes of the density of --density. The collision elements are used if all of them are boxes,
 cylinders and spheres, otherwise the visual ones. A URDF cylinder is centred at the origin, with its axis along z.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import Any
 
 from heuncli.base import tolerances
@@ -43,6 +45,7 @@ from heuncli.scene.importers.description import DescribedEntry, ImportOptions
 from heuncli.scene.importers.spec_text import format_number
 from heuncli.scene.importers.urdf.document import Inertial, Robot, UrdfLink, read_pose
 from heuncli.scene.importers.urdf.fields import UrdfFields
+from heuncli.scene.importers.urdf.tree import LinkTree
 from heuncli.scene.importers.xml_elements import XmlElement
 
 # Masses
@@ -223,6 +226,24 @@ def _make_tensor(moments: tuple[float, ...]) -> Matrix:
 
 def _format_moments(moments: Vec) -> str:
     return ", ".join(format_number(float(f"{moment:.6g}")) for moment in moments)
+
+
+MASSLESS = LinkMass(0.0, ZERO, ZERO, (ZERO, ZERO, ZERO), {"mass": "a frame between joints"})
+
+
+def find_massless_frames(tree: LinkTree, heads: Collection[str], links_with_mass: Collection[str]) -> set[str]:
+    """Find the links without mass that are frames between joints: one joint moves them, another carries from them
+    something with a mass.
+
+    heads: first links of the rigid groups without mass
+    """
+    has_load: set[str] = set()  # links with a mass on them or beyond them
+    for link in reversed(tree.links):
+        joint = tree.parent_joints.get(link.name)
+        if joint is not None and (link.name in links_with_mass or link.name in has_load) and joint.kind != "floating":
+            has_load.add(joint.parent)
+    frames = {name for name in heads if name in has_load}
+    return {name for name in frames if name in tree.parent_joints and tree.parent_joints[name].has_one_coordinate}
 
 
 def make_repaired_mass(link: UrdfLink) -> LinkMass:

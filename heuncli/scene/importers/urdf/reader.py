@@ -41,10 +41,12 @@ from heuncli.scene.importers.urdf.carriers import (
     place_links,
 )
 from heuncli.scene.importers.urdf.coordinates import RobotCoordinates
-from heuncli.scene.importers.urdf.document import Robot, UrdfLink, read_robot
+from heuncli.scene.importers.urdf.document import WORLD_LINK, Robot, UrdfLink, read_robot
 from heuncli.scene.importers.urdf.fields import UrdfFields
 from heuncli.scene.importers.urdf.masses import (
+    MASSLESS,
     LinkMass,
+    find_massless_frames,
     find_size,
     has_supported_shapes,
     make_repaired_mass,
@@ -84,7 +86,13 @@ def build_machine(
     bodies = dict(zip(carriers, assign_names("link", carriers), strict=True))
     points = RobotPoints()
     spec_joints = [
-        *iter_spec_joints(validated_robot.tree, validated_robot.placed_links, validated_robot.is_grounded, points)
+        *iter_spec_joints(
+            validated_robot.tree,
+            validated_robot.placed_links,
+            validated_robot.is_grounded,
+            points,
+            validated_robot.robot.loop_joints,
+        )
     ]
     points.assign_names(bodies)
     names = assign_names("joint", [one.original for one in spec_joints])
@@ -128,6 +136,8 @@ def _make_body(
         source, shapes = validated_robot.shapes[link]
         notes = {"shapes": f"from the {source} elements" + (": overlaps count twice" if len(shapes) > 1 else "")}
         return DescribedBody(name, None, None, None, points.get_points(link), shapes, start, remark, notes)
+    if mass is MASSLESS:
+        return DescribedBody(name, 0.0, None, None, points.get_points(link), (), start, remark, mass.notes)
     inertia = rotate_tensor(compose_rotations(R, rotation_from_roll_pitch_yaw(mass.rpy)), mass.inertia)
     center = rotate_vector(R, mass.center)
     return DescribedBody(name, mass.mass, center, inertia, points.get_points(link), (), start, remark, mass.notes)
@@ -219,7 +229,6 @@ def _joint_kind(validated_robot: ValidatedRobot, link: str) -> str:
 
 # Reader
 
-WORLD_LINK = "world"  # a root link of this name is the ground
 MASSLESS_HINT = (
     "give it an <inertial>; --density fills boxes, cylinders, spheres, meshes; --repair massless gives it 1 mg"
 )
@@ -272,11 +281,15 @@ def _validate(
     link_places, uncarried = place_links(tree, attitudes, {*masses, *shapes, *meshes}, is_grounded)
     heads = find_group_heads(tree)
     uncarried_heads = list(dict.fromkeys(heads[name] for name in uncarried))
-    if uncarried_heads and "massless" in options.repair:
+    frames = find_massless_frames(tree, uncarried_heads, {*masses, *shapes, *meshes})
+    masses = masses | dict.fromkeys(frames, MASSLESS)
+    uncarried_heads = [name for name in uncarried_heads if name not in frames]
+    if "massless" in options.repair:
         masses = masses | {name: make_repaired_mass(robot.links[name]) for name in uncarried_heads}
-        link_places, _ = place_links(tree, attitudes, {*masses, *shapes}, is_grounded)
     else:
         _report_uncarried(uncarried_heads, robot, tree, fields)
+    if uncarried:
+        link_places, _ = place_links(tree, attitudes, {*masses, *shapes, *meshes}, is_grounded)
     if not masses and not shapes and not fields.problems:
         message = "no link has a mass"
         fields.report(
@@ -290,7 +303,7 @@ def _report_uncarried(uncarried_heads: list[str], robot: Robot, tree: LinkTree, 
     for name in uncarried_heads:
         joint = tree.parent_joints.get(name)
         reason = "is to be free" if joint is None else f"is moved by the joint {joint.name} ({joint.kind})"
-        message = f"neither it nor anything fixed to it has mass, and it {reason}"
+        message = f"neither it nor anything on or beyond it has mass, and it {reason}"
         link = robot.links[name]
         fields.report("import-massless", link.element, link.path, message, MASSLESS_HINT)
 

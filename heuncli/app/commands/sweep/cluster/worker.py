@@ -15,17 +15,18 @@ import time
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-import heuncli
-from heuncli.analyses.variants.evaluation import Recipe, Values, VariantEvaluator
+from heuncli.analyses.variants.evaluation import Recipe, VariantEvaluator
 from heuncli.analyses.variants.measures import VariantResult
+from heuncli.analyses.variants.parameters import Values
 from heuncli.app.cli.variant_workers import solve_contained
+from heuncli.base.files import PACKAGE_FOLDER
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.form import KERNEL
 from heuncli.scene.file_format.named_files import FileNotPreloaded
 from heuncli.version import VERSION
 
 Variant = tuple[int, Values]  # its number in the plan, and its values
-PACKAGE = os.path.dirname(os.path.abspath(heuncli.__file__))  # noqa: PTH100, PTH120
+PACKAGE = os.path.abspath(PACKAGE_FOLDER)  # noqa: PTH100
 _TASK_LOCK = threading.Lock()
 
 

@@ -1,4 +1,4 @@
-"""Derivatives of velocities by a displacement at fixed rates of the chosen coordinates: (dv/dq) q' of a state space.
+"""Outputs of a state space, and the derivatives of velocities by a displacement at fixed rates that they need.
     v = row(q) q',   dv = row dq' + (d row/dq q') dq
 The kernel differentiates angular velocities and velocities of all bodies along displacements of the tree, at fixed
 rates of the tree. The change of these rates that closed chains require for the displacement is added (drift).
@@ -6,14 +6,29 @@ rates of the tree. The change of these rates that closed chains require for the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from heuncli.analyses.lagrange.coordinates import CoordinateChoice, make_candidate_rows
+from heuncli.analyses.lagrange.equations import make_partials
+from heuncli.analyses.lagrange.freed_scene import Instant
+from heuncli.analyses.lagrange.results import get_units
+from heuncli.base.errors import Problem, SolveError
+from heuncli.base.joint_kinds import RATES
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
+from heuncli.base.spelling import suggest
+from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.linearise import LinearisedEquations, find_velocity_derivatives
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Joint
 from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array
+
+PROBLEM_CODE = "no-state-space"
+AXES = "xyz"
+POINT_QUANTITIES = ("x", "y", "z", "vx", "vy", "vz")
 
 
 @record
@@ -139,3 +154,99 @@ def compute_rate_slopes(
         spins @ partials + drift_twists[:, :3],
         speeds @ partials + drift_twists[:, 3:],
     )
+
+
+@record
+class OutputRow:
+    """An output by its rows on the coordinates (f,).
+
+    by_place: of a position; of a rate, its change by a displacement at fixed rates
+    by_rate: of a rate
+    by_acceleration: of the acceleration of a coordinate
+    """
+
+    by_place: Array
+    by_rate: Array
+    by_acceleration: Array
+    unit: str
+
+
+class StateOutputs(NamedTuple):
+    """The outputs of a state space: C (outputs, states), D (outputs, inputs), names and units."""
+
+    C: Array
+    D: Array
+    names: tuple[str, ...]
+    units: list[str]
+
+
+def compute_outputs(
+    slopes: RateSlopes,
+    instant: Instant,
+    choice: CoordinateChoice,
+    free: Sequence[int],
+    acceleration_rows: tuple[Array, Array],
+    requested: Sequence[str],
+) -> StateOutputs:
+    """Return the outputs; by default the coordinates.
+
+    free: indices of the coordinates that are states
+    acceleration_rows: their accelerations by the states (f, 2 f) and by the inputs (f, m)
+    """
+    by_states, by_inputs = acceleration_rows
+    n, m = by_inputs.shape
+    names = tuple(requested) or tuple(choice.names[i] for i in free)
+    candidate_rows = make_candidate_rows(slopes.layout, slopes.linear_equations)
+    outputs = [make_output(slopes, instant, choice, candidate_rows, name) for name in names]
+    C = [
+        np.concatenate([output.by_place[free], output.by_rate[free]]) + output.by_acceleration[free] @ by_states
+        for output in outputs
+    ]
+    D = [output.by_acceleration[free] @ by_inputs for output in outputs]
+    return StateOutputs(
+        np.array(C).reshape(len(names), 2 * n),
+        np.array(D).reshape(len(names), m),
+        names,
+        [output.unit for output in outputs],
+    )
+
+
+def make_output(
+    slopes: RateSlopes, instant: Instant, choice: CoordinateChoice, rows: dict[str, Array], name: str
+) -> OutputRow:
+    """Return an output by its name. Raises SolveError [no-state-space] if nothing has this name."""
+    owner, _, quantity = name.rpartition(".")
+    quantity_of_rate = {rate: place for place, rate in RATES.items()}
+    zero = np.zeros(len(choice.names))
+    if name in rows:
+        return OutputRow(rows[name] @ choice.S, zero, zero, get_units(name).value)
+    mechanism = slopes.layout.mechanism
+    coordinate = f"{owner}.{quantity_of_rate.get(quantity, quantity)}"
+    if coordinate in rows:
+        joint = next(joint for joint in mechanism.joints if joint.name == owner)
+        by_place = zero if coordinate in choice.names else slopes.compute_joint_slope(joint, quantity_of_rate[quantity])
+        return OutputRow(by_place, rows[coordinate] @ choice.S, zero, get_units(coordinate).rate)
+    if quantity == "acceleration":
+        place = next((f"{owner}.{q}" for q in ("angle", "travel") if f"{owner}.{q}" in rows), None)
+        if place in choice.names:
+            return OutputRow(zero, zero, rows[place] @ choice.S, get_units(place).acceleration)
+    if quantity in POINT_QUANTITIES:
+        for i, body in enumerate(mechanism.bodies):
+            point = owner.removeprefix(f"{body.name}.")
+            if owner.startswith(f"{body.name}.") and point in body.points:
+                return make_point_output(slopes, instant, choice, i, body.points[point], quantity)
+    hint = suggest(name, list(rows), "outputs") or "coordinates, their rates, BODY.POINT.x or .vx"
+    raise SolveError(Problem(PROBLEM_CODE, f"--outputs {name}: no coordinate and no point has this name", hint=hint))
+
+
+def make_point_output(
+    slopes: RateSlopes, instant: Instant, choice: CoordinateChoice, body: int, point: Array, quantity: str
+) -> OutputRow:
+    """Return a component of the position or velocity of a body's point, `x` or `vx`; point (3,): body axes."""
+    axis, zero = AXES.index(quantity[-1]), np.zeros(len(choice.names))
+    states = make_body_states(instant.freed_scene.layout, instant.freed_recovered)
+    position = states.point_position(body, point)[0]
+    partials = make_partials(slopes.layout, slopes.linear_equations, choice.S).point_partials(body, position)[axis]
+    if quantity in AXES:
+        return OutputRow(partials, zero, zero, "m")
+    return OutputRow(slopes.compute_point_slope(body, position)[axis], partials, zero, "m/s")
