@@ -29,7 +29,8 @@ from heuncli.scene.file_format.load import Overrides, load, load_with_cases
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
 from heuncli.scene.file_format.source import SourceFile
-from heuncli.study.model.options import MemoryBudget, Options, require_choice, require_positive, require_tolerance
+from heuncli.study.model.memory import MemoryBudget
+from heuncli.study.model.options import Options, require_choice, require_positive, require_tolerance
 from heuncli.study.quantities.captions import set_captions
 from heuncli.study.queries.study import Study
 from heuncli.study.workflow import solve as solve_study

@@ -36,7 +36,8 @@ from heuncli.scene.file_format.file_contents import read_logo
 from heuncli.scene.file_format.models import Logo, ReportSettings, Spec
 from heuncli.scene.file_format.named_files import NamedFiles
 from heuncli.scene.file_format.reading import STANDARD_INPUT, digest
-from heuncli.study.model.options import MemoryBudget, Options, require_choice
+from heuncli.study.model.memory import MemoryBudget
+from heuncli.study.model.options import Options, require_choice
 from heuncli.study.model.selection import Selection, select_paths
 from heuncli.study.model.setup import attach_locations
 from heuncli.study.quantities.labels import make_labels

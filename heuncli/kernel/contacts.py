@@ -1,10 +1,14 @@
 """Contacts: where within a trial step an open one first closes, or a closed one would have to pull.
 
-The margin of a unilateral row is its gap while it is open, its multiplier while it carries (both times its sense), and
-the size of its gap while others keep it closed: a drive may open it. That of a friction is in sticking.py. It is
-followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
-The step is repeated up to there until both agree. What happens then is decided outside
-(motion/integration/contacts/restitution.py).
+The margin of a unilateral row depends on its mode:
+
+    APART    open                          sense * gap
+    CARRIES  closed                        sense * multiplier
+    LEANS    kept closed by others         |gap|: a drive may open it
+
+It is never positive; |gap| never exceeds its rounding. That of a friction is in sticking.py. It is followed along the
+dense output and bounded by its second differences; parts in doubt are halved, from left to right. The step is repeated
+up to there until both agree. What happens then is decided outside (motion/integration/contacts/restitution.py).
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ from heuncli.kernel.kinematics import update_kinematics
 from heuncli.kernel.response import evaluate, project_state
 from heuncli.kernel.sticking import UNREACHED, find_friction_threshold, measure_friction_margin
 
-HALVINGS = 46  # of a step, down to the rounding of its instants
+MAX_STEP_HALVINGS = 46  # of a step, down to the rounding of its instants
 POINTS = 8  # in which a part of a step is checked
 MAX_MARGIN_PARTS = 400  # of a step that are checked before only rounding can be in doubt
 # Which margins may pass their thresholds within a step; those of closed contacts need the loads.
@@ -83,7 +87,9 @@ def update_margin_extremes(scene: cython.pointer[Scene], t: cython.double) -> cy
 
 
 def find_pushing_rope(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Return whether a rope that ends the run would have to push at the start of a piece; run.contact names it."""
+    """Set run.contact to the rope that ends the run because it would have to push at the start of a piece; return
+    whether there is one.
+    """
     i: cython.Py_ssize_t
     most: cython.double = 0.0
     for i in range(scene.contact_count):
@@ -113,12 +119,12 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
     FORCES_TOO.
 
     A gap that is open, or leaves with a rate, closes where it is zero again, to the rounding of its sum; one that
-    touches at rest is known to the accuracy of the projection. If run.late is set, a gap that comes within that closes
-    there already. It shows the effect of rounding: a run that just grazes a limit, or misses it, is compared with one
-    that touches it.
+    touches at rest is known to the accuracy of the projection. If run.late is set (stepping.py), a gap that comes
+    within that closes there already. It shows the effect of rounding: a run that just grazes a limit, or misses it, is
+    compared with one that touches it.
     """
     i: cython.Py_ssize_t
-    doubt: cython.int = NO_MARGIN
+    needed: cython.int = NO_MARGIN
     size: cython.double
     threshold: cython.double
     likely: cython.double
@@ -130,39 +136,39 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
-        contact.level = UNREACHED
+        contact.threshold = UNREACHED
         if contact.friction and may_change_state(scene, contact, run):
-            contact.level = find_friction_threshold(scene, contact, fabs(run.end), run.late)
-            doubt = FORCES_TOO if row.mode == CARRIES or doubt == FORCES_TOO else GAPS_ONLY
+            contact.threshold = find_friction_threshold(scene, contact, fabs(run.end), run.late)
+            needed = FORCES_TOO if row.mode == CARRIES or needed == FORCES_TOO else GAPS_ONLY
         if contact.sense == 0:
             continue
         if row.mode == LEANS:
             threshold = scene.limits.reopened * scene.size / row.weight
             if contact.most + 0.5 * (contact.most - contact.least) > threshold or run.landing.contact_attempts:
-                contact.level = threshold
-                doubt = GAPS_ONLY if doubt == NO_MARGIN else doubt
+                contact.threshold = threshold
+                needed = GAPS_ONLY if needed == NO_MARGIN else needed
             continue
         size = size_of_row_gap(scene, row)
         threshold = scene.limits.touching * size
-        early = row.mode == APART and run.late and closes_early(contact, threshold)
+        early = row.mode == APART and run.late and may_close_early(contact, threshold)
         likely = contact.most + 0.5 * (contact.most - contact.least)
         if likely < (-threshold if early else 0.0) and not run.landing.contact_attempts:
             continue
         if row.mode == CARRIES:
-            contact.level = scene.limits.rounding * fabs(least)
-            doubt = FORCES_TOO
+            contact.threshold = scene.limits.rounding * fabs(least)
+            needed = FORCES_TOO
         elif early:
-            contact.level = -threshold
+            contact.threshold = -threshold
         else:
-            contact.level = threshold
-            if contact.start < -contact.level or contact.start_rate * run.h < -contact.level:
-                contact.level = scene.limits.rounding * size
+            contact.threshold = threshold
+            if contact.start < -contact.threshold or contact.start_rate * run.h < -contact.threshold:
+                contact.threshold = scene.limits.rounding * size
             # a contact that opens does not close again where it opened
             if contact.start > 0.0 and contact.start_rate <= 0.0:
-                contact.level += contact.start
-        if row.mode == APART and doubt == NO_MARGIN:
-            doubt = GAPS_ONLY
-    return doubt
+                contact.threshold += contact.start
+        if row.mode == APART and needed == NO_MARGIN:
+            needed = GAPS_ONLY
+    return needed
 
 
 def may_change_state(
@@ -174,8 +180,8 @@ def may_change_state(
     return contact.most + 0.5 * (contact.most - contact.least) > 0.0 or run.landing.contact_attempts > 0
 
 
-def closes_early(contact: cython.pointer[Contact], threshold: cython.double) -> cython.bint:
-    """Return whether a gap is open by more than its rounding, or comes back to it."""
+def may_close_early(contact: cython.pointer[Contact], threshold: cython.double) -> cython.bint:
+    """Return whether a gap may be closed before it is zero: it is open by more than rounding, or comes back to it."""
     return contact.start < -threshold or (contact.start_rate > 0.0 and contact.start < -0.5 * threshold)
 
 
@@ -184,16 +190,16 @@ def evaluate_within_step(
     method: cython.pointer[Method],
     run: cython.pointer[Run],
     x: cython.double,
-    doubt: cython.int,
+    needed: cython.int,
 ) -> cython.void:
     """Evaluate the scene at x of the trial step from its dense output.
 
-    doubt: GAPS_ONLY: positions and rates; FORCES_TOO: also loads
+    needed: GAPS_ONLY: positions and rates; FORCES_TOO: also loads
     """
     t: cython.double = clip_time(run, run.t + x * run.h)
     interpolate(scene, method, run, x, run.stage)
     project_state(scene, t, run.stage)
-    if doubt == FORCES_TOO:
+    if needed == FORCES_TOO:
         evaluate(scene, t, run.stage, run.fine)
         run.evaluations += 1
     else:
@@ -208,11 +214,11 @@ def find_contact_event(
     x: cython.double
     event_time: cython.double
     least_distance: cython.double = scene.limits.least_step * fabs(run.end)
-    doubt: cython.int = set_contact_thresholds(scene, run)
-    if doubt == NO_MARGIN:
+    needed: cython.int = set_contact_thresholds(scene, run)
+    if needed == NO_MARGIN:
         return NO_EVENT
     ensure_interpolant(scene, method, run)
-    x = find_first_contact(scene, method, run, doubt)
+    x = find_first_contact(scene, method, run, needed)
     if x > 1.0:
         run.landing.contact_attempts = 0
         return NO_EVENT
@@ -254,7 +260,7 @@ def locate_closing(
 
 
 def find_first_contact(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], doubt: cython.int
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], needed: cython.int
 ) -> cython.double:
     """Return x just before the first instant of the trial step at which a margin is above its threshold; 2 if there is
     none.
@@ -268,13 +274,13 @@ def find_first_contact(
     while top >= 0:
         looks += 1
         middle = 0.5 * (x + ends[top])
-        if top == HALVINGS or looks > MAX_MARGIN_PARTS or middle <= x or middle >= ends[top]:
-            evaluate_within_step(scene, method, run, ends[top], doubt)
+        if top == MAX_STEP_HALVINGS or looks > MAX_MARGIN_PARTS or middle <= x or middle >= ends[top]:
+            evaluate_within_step(scene, method, run, ends[top], needed)
             if find_exceeded_margin(scene, run):
                 return x
             x = ends[top]
             top -= 1
-        elif stays_below_thresholds(scene, method, run, x, ends[top], doubt):
+        elif stays_below_thresholds(scene, method, run, x, ends[top], needed):
             x = ends[top]
             top -= 1
         else:
@@ -284,12 +290,12 @@ def find_first_contact(
 
 
 def find_exceeded_margin(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Return whether a margin is above its threshold; run.contact names the last of them."""
+    """Set run.contact to the last contact whose margin is above its threshold; return whether there is one."""
     i: cython.Py_ssize_t
     found: cython.bint = False
     for i in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
-        if not contact_margin(scene, contact) <= contact.level:
+        if not contact_margin(scene, contact) <= contact.threshold:
             run.contact = contact.row + 1
             found = True
     return found
@@ -301,7 +307,7 @@ def stays_below_thresholds(
     run: cython.pointer[Run],
     x0: cython.double,
     x1: cython.double,
-    doubt: cython.int,
+    needed: cython.int,
 ) -> cython.bint:
     """Return whether no margin rises above its threshold between x0 and x1.
 
@@ -311,14 +317,14 @@ def stays_below_thresholds(
     i: cython.int
     k: cython.Py_ssize_t
     for i in range(POINTS + 1):
-        evaluate_within_step(scene, method, run, x0 + (x1 - x0) * i / POINTS, doubt)
+        evaluate_within_step(scene, method, run, x0 + (x1 - x0) * i / POINTS, needed)
         if find_exceeded_margin(scene, run):
             return False
         for k in range(scene.contact_count):
             record_margin(scene, cython.address(scene.contacts[k]), i)
     for k in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[k])
-        if contact.highest + 0.25 * contact.bent <= contact.level:
+        if contact.highest + 0.25 * contact.bent <= contact.threshold:
             continue
         if contact.friction:
             return False
@@ -343,13 +349,13 @@ def record_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]
     if rate > contact.fastest:
         contact.fastest = rate
     if i > 1:
-        bend = fabs(x - 2.0 * contact.previous + contact.first)
+        bend = fabs(x - 2.0 * contact.previous + contact.before_previous)
         if bend > contact.bent:
             contact.bent = bend
-        bend = fabs(rate - 2.0 * contact.rate_previous + contact.rate_first)
+        bend = fabs(rate - 2.0 * contact.rate_previous + contact.rate_before_previous)
         if bend > contact.rate_bent:
             contact.rate_bent = bend
-    contact.first = contact.previous
+    contact.before_previous = contact.previous
     contact.previous = x
-    contact.rate_first = contact.rate_previous
+    contact.rate_before_previous = contact.rate_previous
     contact.rate_previous = rate

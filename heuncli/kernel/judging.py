@@ -1,9 +1,9 @@
-"""Accept or reject a step that was tried: accepted, tried again with another length, or not solvable.
+"""Judge a step that was tried: accept it, try another length, or give up.
 
-A step of given length is accepted if it has an end. The error of any other is measured body by body and the largest
-counts, for a resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts), rates
-against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I
-(1993), II.4.
+A step of given length is accepted if its end could be computed. The error of any other is measured body by body and the
+largest counts, for a resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts),
+rates against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations
+I (1993), II.4.
 """
 
 from __future__ import annotations
@@ -61,7 +61,9 @@ def measure_step_error(
 def measure_group_error(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], b: cython.int
 ) -> cython.double:
-    """Return the error of a group, h e5 / sqrt(1 + 0.01 (e3 / e5)^2) from two estimates, or h e from one."""
+    """Return the error of a group: h e^2 / sqrt(e^2 + 0.01 c^2), e and c the norms of the finer and the coarser
+    estimate, or h e from one.
+    """
     group: cython.pointer[Group] = cython.address(run.groups[b])
     i: cython.Py_ssize_t
     e: cython.double
@@ -107,41 +109,42 @@ def find_rate_floor(scene: cython.pointer[Scene], run: cython.pointer[Run], is_e
 
 
 def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
-    """Update the largest rate so far that drives and single loads impose, at the instant evaluated last, and whether
-    all moves so much slower that its rates may be rounding.
+    """Update the largest rate so far that drives and each load on its own impose, at the instant evaluated last, and
+    whether all moves so much slower that its rates may be rounding.
 
     Where they balance, all that they act on rests but for rounding: two springs that pull against each other, a
     pendulum that hangs still in a rotor.
     """
     i: cython.Py_ssize_t
-    u: cython.double
     rate: cython.double = 0.0
-    square: cython.double = 0.0
-    inertia: cython.double
+    rate_of_drive: cython.double
+    largest_square: cython.double = 0.0
+    load_size: cython.double
+    mass_size: cython.double
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
         if freedom.driven:
-            u = fabs(freedom.u) * norm(freedom.s)
+            rate_of_drive = fabs(freedom.u) * norm(freedom.s)
             if freedom.kind == SHIFT:
-                u /= scene.size
-            if u > rate:
-                rate = u
+                rate_of_drive /= scene.size
+            if rate_of_drive > rate:
+                rate = rate_of_drive
     for i in range(scene.load_count):
         load: cython.pointer[Load] = cython.address(scene.loads[i])
         if load.a == load.b:  # within one body
             continue
-        inertia = find_least_inertia(scene, run, load)
-        u = sum_magnitudes(load.force) + sum_magnitudes(load.moment) / scene.size
-        if inertia > 0.0 and u > square * inertia:
-            square = u / inertia
-    if square > rate * rate:
-        rate = sqrt(square)
+        mass_size = find_least_mass_size(scene, run, load)
+        load_size = sum_magnitudes(load.force) + sum_magnitudes(load.moment) / scene.size
+        if mass_size > 0.0 and load_size > largest_square * mass_size:
+            largest_square = load_size / mass_size
+    if largest_square > rate * rate:
+        rate = sqrt(largest_square)
     if rate > run.control.imposed_rate:
         run.control.imposed_rate = rate
     run.control.is_balanced = run.control.rate < scene.limits.balanced_rate * run.control.imposed_rate
 
 
-def find_least_inertia(
+def find_least_mass_size(
     scene: cython.pointer[Scene], run: cython.pointer[Run], load: cython.pointer[Load]
 ) -> cython.double:
     """Return the least of mass times size [kg m] of the two bodies on which a load acts; UNBOUNDED for the ground.
@@ -149,12 +152,12 @@ def find_least_inertia(
     F / (m size) is a squared rate [1/s^2]: a load F that acts along the size of a mass m gives it the energy of that
     rate. Loads on a body without mass move others: they are taken to act on the lightest.
     """
-    first: cython.double = find_body_inertia(scene, run, load.a)
-    second: cython.double = find_body_inertia(scene, run, load.b)
+    first: cython.double = find_body_mass_size(scene, run, load.a)
+    second: cython.double = find_body_mass_size(scene, run, load.b)
     return first if first < second else second
 
 
-def find_body_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], k: cython.int) -> cython.double:
+def find_body_mass_size(scene: cython.pointer[Scene], run: cython.pointer[Run], k: cython.int) -> cython.double:
     """Return mass times size of a body [kg m]: of the ground (-1) UNBOUNDED, of one without mass the lightest's."""
     if k < 0:
         return UNBOUNDED
@@ -162,7 +165,7 @@ def find_body_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run], k:
 
 
 def sum_magnitudes(a: Vec3) -> cython.double:
-    """|x| + |y| + |z|."""
+    """Return |x| + |y| + |z|."""
     return fabs(a.x) + fabs(a.y) + fabs(a.z)
 
 
@@ -180,7 +183,7 @@ def propose_shorter_turn(scene: cython.pointer[Scene], run: cython.pointer[Run])
 
 
 def assess_step(
-    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run], evaluation_code: cython.int
 ) -> cython.int:
     """Judge a step that was tried, and propose another length where it is to be tried AGAIN.
 
@@ -192,17 +195,17 @@ def assess_step(
     if run.following:
         return ACCEPTED
     if run.determined:
-        return AGAIN if trouble < 0 else ACCEPTED
+        return AGAIN if evaluation_code < 0 else ACCEPTED
     if method.fixed:
-        return assess_given_step(method, run, trouble)
+        return assess_given_step(method, run, evaluation_code)
     error = (
         estimate_implicit_error(scene, method, run) if method.implicit else estimate_explicit_error(scene, method, run)
     )
     if run.projects_stages:
-        if propose_length_off_singularity(scene, run, error, trouble):
+        if propose_length_off_singularity(scene, run, error, evaluation_code):
             return AGAIN
         noise = find_singular_noise(scene, run)
-    if error != error or trouble < 0:
+    if error != error or evaluation_code < 0:
         # outside the scene's range of motion: try a much smaller step, or stop
         run.control.proposed = UNDEFINED_STEP_FACTOR * run.h
         run.control.rejected_before = 1
@@ -221,13 +224,15 @@ def assess_step(
     return ACCEPTED
 
 
-def assess_given_step(method: cython.pointer[Method], run: cython.pointer[Run], trouble: cython.int) -> cython.int:
+def assess_given_step(
+    method: cython.pointer[Method], run: cython.pointer[Run], evaluation_code: cython.int
+) -> cython.int:
     """Return ACCEPTED, or why a step whose length is given cannot be taken."""
     if method.implicit and not run.newton.has_stages:
         return UNSOLVED
     if not update_group_rates(run):
         return NOT_A_NUMBER
-    return CLOSURES_LOST if trouble < 0 else ACCEPTED
+    return CLOSURES_LOST if evaluation_code < 0 else ACCEPTED
 
 
 def update_group_rates(run: cython.pointer[Run]) -> cython.bint:
@@ -279,7 +284,7 @@ def estimate_implicit_error(
 
 
 def propose_length_off_singularity(
-    scene: cython.pointer[Scene], run: cython.pointer[Run], error: cython.double, trouble: cython.int
+    scene: cython.pointer[Scene], run: cython.pointer[Run], error: cython.double, evaluation_code: cython.int
 ) -> cython.bint:
     """Propose another length that may keep the stages off a singular pose, at last the best of those tried. Returns
     whether one is to be tried.
@@ -288,9 +293,11 @@ def propose_length_off_singularity(
     noise: cython.double = UNBOUNDED
     if scene.pivot_of_step > 0.0:
         noise = scene.limits.pivot_rounding * run.h * run.control.rate / (scene.pivot_of_step * run.control.tolerance)
-    broken: cython.bint = error != error or trouble < 0
+    broken: cython.bint = error != error or evaluation_code < 0
+    # all lengths are tried, or the step must end where it ends
     if run.control.retries >= scene.limits.singular_retries or run.ends_piece:
         return False
+    # it is good enough at once
     if not (noise > SINGULAR_NOISE or broken or (error > 1.0 and run.control.retries > 0)):
         return False
     worst: cython.double = error if error > noise else noise

@@ -27,8 +27,9 @@ TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # for whe
 STRAND, ARC, WOUND = range(7, 10)
 TRACK, ALONG = range(10, 12)  # for paths
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
-GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(5)  # normal force of a joint's friction: given, the joint's force or
-# parts of it, the multiplier of a coupling's row
+# Normal force of a joint's friction: given; the joint's whole force; its part across the axis; the forces at two ends;
+# the multiplier of a coupling's row.
+GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(5)
 FOUND, JAMS, TWO, UNPROVED = range(4)  # solutions of joint friction: one, none, two, perhaps not one
 
 
@@ -251,7 +252,8 @@ class Closure(Record):
     support_count: int  # numbers of its reflector
     coupled_count: int  # independent rows that fill it
     reflector: float  # 2 / |v|^2 of its reflector 1 - 2 v v' / |v|^2
-    pose_scale: float  # 1 / sqrt of a part of its possible response across its arms, and of its response
+    # 1 / sqrt of the larger of its response and a part of the response if its load were perpendicular to its arms
+    pose_scale: float
 
 
 class Contact(Record):
@@ -278,15 +280,15 @@ class Contact(Record):
     start_rate: float
     least: float  # what the stages of a step saw of it
     most: float
-    level: float  # above it the contact closes, or opens
-    highest: float  # over a part of a step: the largest, the largest second difference, the one before, and before that
-    bent: float
-    previous: float
-    first: float
-    fastest: float  # the same of its rate
+    threshold: float  # above it the contact closes, or opens
+    highest: float  # over a part of a step: its largest margin so far
+    bent: float  # the largest second difference of the margins at its points
+    previous: float  # the margin one point back
+    before_previous: float  # and two points back
+    fastest: float  # the same of the margin's rate
     rate_bent: float
     rate_previous: float
-    rate_first: float
+    rate_before_previous: float
 
 
 class PathPiece(Record):

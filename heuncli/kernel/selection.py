@@ -1,8 +1,8 @@
 """Choose the closure rows that carry the motion: an independent set, by an orthogonal factorisation of J with pivoting.
 
-The rank of the closures is a matter of geometry: masses and squares do not affect it. J on the tree's freedoms, island
-by island; rotations and couples are scaled by the island's length, which makes rows of the order of 1, and those with
-longer levers are shortened to that. Redundancy is decided from the same matrix (loads/redundancy/self_stress.py).
+The rank of the closures is a matter of geometry: masses and velocities do not affect it. J on the tree's freedoms,
+island by island; rotations and couples are scaled by the island's length, which makes rows of the order of 1, and those
+with longer levers are shortened to that. Redundancy is decided from the same matrix (loads/redundancy/self_stress.py).
 
 Below: the choice made at a pose, saved as numbers, and restored. What is computed at a state depends on it, too:
 another set of independent rows agrees to rounding only.
@@ -38,6 +38,7 @@ def select_independent_rows(
     set_inertia_roots(scene)
     for i in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[i])
+        # while rows are chosen: 0 may be chosen, -1 not; afterwards its place among the chosen
         row.rank = 0 if row.mode == CARRIES else -1
         set_pose_scale(scene, row, reset_scales)
     order_all(scene, scene.least_row)
@@ -57,8 +58,8 @@ def select_independent_rows(
 
 
 def order_all(scene: cython.pointer[Scene], threshold: cython.double) -> cython.double:
-    """Order the closure rows of all islands by their pivots: rows with a rank, and more than `threshold` left. Returns
-    the smallest pivot.
+    """Order the closure rows of all islands by their pivots: those that may be chosen, and of which more than
+    `threshold` is left. Returns the smallest pivot.
     """
     i: cython.Py_ssize_t
     least_pivot: cython.double = 1.0
@@ -92,7 +93,7 @@ def order_island_rows(
 
 
 def list_candidates(scene: cython.pointer[Scene], island: cython.pointer[Island]) -> cython.Py_ssize_t:
-    """Build the rows of an island's J that have a rank, and list the nonzero ones. Returns how many these are."""
+    """Build the rows of an island's J that may be chosen, and list the nonzero ones. Returns how many these are."""
     k: cython.Py_ssize_t
     width: cython.Py_ssize_t = island.freedom_count
     shift: cython.int = part_shift(width)
@@ -183,26 +184,28 @@ def remaining_square(
     scene: cython.pointer[Scene],
     width: cython.Py_ssize_t,
     k: cython.Py_ssize_t,
-    n: cython.Py_ssize_t,
+    begin: cython.Py_ssize_t,
     shift: cython.int,
 ) -> cython.double:
-    """Return the square of what the n rows chosen before leave of row k, summed over the parts where it is not zero."""
+    """Return the square of what the `begin` rows chosen before leave of row k, summed over the parts where it is not
+    zero.
+    """
     i: cython.Py_ssize_t
     end: cython.Py_ssize_t
     square: cython.double = 0.0
     offset: cython.Py_ssize_t = width * k
     if shift == 0:
-        for i in range(n, width):
+        for i in range(begin, width):
             square += scene.J[offset + i] * scene.J[offset + i]
         return square
-    while n < width:
-        end = ((n >> shift) + 1) << shift
+    while begin < width:
+        end = ((begin >> shift) + 1) << shift
         if end > width:
             end = width
-        if scene.row_bits[k] & (1 << (n >> shift)):
-            for i in range(n, end):
+        if scene.row_bits[k] & (1 << (begin >> shift)):
+            for i in range(begin, end):
                 square += scene.J[offset + i] * scene.J[offset + i]
-        n = end
+        begin = end
     return square
 
 
@@ -277,6 +280,10 @@ def list_nonzeros(
             scene.pivot_row_velocities[count] = i
             count += 1
     return count
+
+
+# An island's freedoms are divided into at most 31 equal parts; row_bits has a bit for each part in which a row has an
+# entry, so that rows without a common bit need not be multiplied.
 
 
 def part_shift(width: cython.Py_ssize_t) -> cython.int:
@@ -378,9 +385,9 @@ def set_row_threshold(scene: cython.pointer[Scene], t: cython.double, y: cython.
     """
     scene.least_row = scene.limits.independent
     select_independent_rows(scene, t, y, True)
-    gap: cython.double = scene.rank_of_gap * project_state(scene, t, y)
-    if gap > scene.least_row:
-        scene.least_row = gap
+    feigned: cython.double = scene.rank_of_gap * project_state(scene, t, y)  # what the gap may add to a row
+    if feigned > scene.least_row:
+        scene.least_row = feigned
         select_independent_rows(scene, t, y, True)
     threshold: cython.double = scene.limits.passing_of_start * order_all(scene, 0.0)
     if threshold > scene.limits.passing:

@@ -13,6 +13,7 @@ NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
 # A record of the track: whether the step's polynomial is recorded, its start, its length.
 HAS_COURSE, STEP_START, STEP_LENGTH = range(3)
 MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
+# A branch turns: a condition, clamp or sign in an expression takes its other side.
 # What happens in an interval of time, and what bounds leave undecided.
 NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
 AS_HELD, BRANCH_TURNED, UNCERTAIN = range(3)  # branches at an instant
@@ -113,7 +114,7 @@ class Course(Struct):
     """The course of the coordinates over an interval of time."""
 
     degree: int  # degree of their polynomials
-    late: int  # 1: events are where they are certain, not where margins are zero
+    late: int  # 1: as `late` of the run
     slot: int  # a branch that turns
     undecided: int  # 1: bounds left open whether all values were seen
     begin: float  # the instant of x = 0
@@ -245,7 +246,9 @@ class Run(Struct):
     following: int  # 1: the steps are given by the track, none is judged
     watches_contacts: int  # 1: contacts are watched
     stops_at_turns: int  # 1: the loop is left where a piece begins and where branches turn
-    late: int  # 1: events are met late by the rounding of an instant, to see what that makes
+    # 1: every event is moved by its rounding (gaps close earlier, branches change later): how much the results of this
+    # run differ shows how exactly events are met
+    late: int
 
     begins_piece: int  # 1: a piece begins
     ends_piece: int  # 1: this step reaches the end of the piece

@@ -20,7 +20,8 @@ from math import fabs
 from heuncli.kernel.closures import size_of_row_gap, size_of_row_rate
 from heuncli.kernel.declarations import *
 
-# Relative to the largest rate of a step: what began at rest and is slower has not stopped again, but not left its start
+# Relative to the largest rate of a step: a friction that began at rest and is slower has not stopped again, it has not
+# yet left its start.
 BEGINS_TO_SLIP = 1e-9
 UNREACHED = 1e300  # a threshold that no margin passes; minus it, the margin of what causes no event
 
@@ -92,7 +93,7 @@ def find_friction_threshold(
 ) -> cython.double:
     """Return the margin above which the state changes, from its rounding over a step whose extremes are known.
 
-    end_time: of the piece [s]; late: at twice the rounding, to see how exactly the instant is met
+    end_time: of the piece [s]; late: of the run (stepping.py): at twice the rounding
 
     What begins at rest may begin with the rounding of its rate against its slip: in the shortest steps that is more
     than all that it gains.

@@ -13,7 +13,8 @@ An elastic rope, which also has its energy here:
 
     S = sum of the parts       conditions between two bodies, as closure rows have them (sheaves.py); those of an
                                elastic rope belong to no row, and its load applies `value` times their unit loads
-    x = S - l0,  V = 1/2 k x^2 l0: a number, or a law in time
+    x = S - l0                 l0: free length, a number or a law in time
+    V = 1/2 k x^2
     k = k0 L / l0              k0: at the length L, for a shorter rope of the same kind is stiffer
 
 A rope that only pulls stores nothing if it is shorter than l0: it is slack there.
@@ -48,7 +49,7 @@ def find_span_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -
 
 
 def find_bushing_rotation(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Return phi."""
+    """Return the rotation vector phi of b relative to a, bushing axes."""
     T: Mat3 = bushing_axes(scene, load)
     B: Mat3 = load.to_frame if load.b < 0 else product(scene.bodies[load.b].R, load.to_frame)
     x: Vec3 = rotate_back(T, Vec3(B.xx, B.yx, B.zx))
@@ -58,7 +59,7 @@ def find_bushing_rotation(scene: cython.pointer[Scene], load: cython.pointer[Loa
 
 
 def find_bushing_shift(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Return d."""
+    """Return the shift d, bushing axes."""
     return rotate_back(bushing_axes(scene, load), find_span_vector(scene, load))
 
 
@@ -288,22 +289,32 @@ def measure_rope(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Ro
     return RopeMotion(S, rate)
 
 
+def has_length_law(load: cython.pointer[Load]) -> cython.bint:
+    """Return whether the free length of a rope is a law in time."""
+    return load.y.count > 0
+
+
+def only_pulls(load: cython.pointer[Load]) -> cython.bint:
+    """Return whether a rope is slack where it is shorter than its free length."""
+    return load.in_body != 0
+
+
 def free_length(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Jet:
     """Return l0 with its rate."""
-    if load.y.count:
+    if has_length_law(load):
         return jet(scene.programs, load.y, scene.programs.variables[0])
     return Jet(load.length, 0.0, 0.0)
 
 
 def rope_stiffness(load: cython.pointer[Load], free: cython.double) -> cython.double:
     """Return k at a length l0."""
-    return load.stiffness * load.length / free if load.y.count else load.stiffness
+    return load.stiffness * load.length / free if has_length_law(load) else load.stiffness
 
 
 def rope_stretch(load: cython.pointer[Load], S: cython.double, free: cython.double) -> cython.double:
     """Return x; 0 if the rope is slack."""
     x: cython.double = S - free
-    return 0.0 if load.in_body and x < 0.0 else x
+    return 0.0 if only_pulls(load) and x < 0.0 else x
 
 
 def rope_energy(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
@@ -314,8 +325,8 @@ def rope_energy(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cyt
 
 
 def rope_power(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """value S' + dV/dt [W]: the power that damping takes, and that a winch gives when it draws the rope in or pays it
-    out.
+    """Return value S' + dV/dt [W]: the power that damping takes, and that a winch gives when it draws the rope in or
+    pays it out.
 
     dV/dt = k x (S' - l0') - 1/2 k x^2 l0' / l0
     """
@@ -323,7 +334,7 @@ def rope_power(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cyth
     x: cython.double = rope_stretch(load, load.span, free.value)
     pull: cython.double = rope_stiffness(load, free.value) * x
     power: cython.double = load.value * load.rate + pull * (load.rate - free.rate)
-    if load.y.count:
+    if has_length_law(load):
         power -= 0.5 * pull * x * free.rate / free.value
     return power
 
@@ -350,16 +361,16 @@ def rope_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Ro
 
 
 def rope_power_tangent(
-    scene: cython.pointer[Scene], load: cython.pointer[Load], pull: cython.double, d: RopeMotion
+    scene: cython.pointer[Scene], load: cython.pointer[Load], value_change: cython.double, d: RopeMotion
 ) -> cython.double:
-    """Return the change of value S' + dV/dt for a change `pull` of `value`, and d of S and S', at one instant."""
+    """Return the change of value S' + dV/dt for a change of `value`, and d of S and S', at one instant."""
     free: Jet = free_length(scene, load)
-    power: cython.double = pull * load.rate + load.value * d.rate
+    power: cython.double = value_change * load.rate + load.value * d.rate
     x: cython.double = rope_stretch(load, load.span, free.value)
-    if x == 0.0 and load.in_body:
+    if x == 0.0 and only_pulls(load):
         return power
     k: cython.double = rope_stiffness(load, free.value)
     power += k * (d.S * (load.rate - free.rate) + x * d.rate)
-    if load.y.count:
+    if has_length_law(load):
         power -= k * x * d.S * free.rate / free.value
     return power

@@ -42,7 +42,7 @@ from heuncli.study.rainflow import (
     find_turning_points,
 )
 from heuncli.study.search.columns import ChannelSearch, StudyColumns
-from heuncli.study.search.extremes import GOOD_ENOUGH, replace_non_finite, sort_distinct
+from heuncli.study.search.grid import GOOD_ENOUGH, replace_non_finite, sort_distinct
 from heuncli.study.search.turnings import add_turning_points
 
 

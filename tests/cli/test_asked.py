@@ -26,7 +26,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.model.selection import restrict_spec, select_paths
 from heuncli.study.queries.measure import MeasureRequest, measure_value
 from heuncli.study.queries.study import Study
-from heuncli.study.solve import load_errors
+from heuncli.study.solve import load_errors, motion_errors
 from heuncli.study.workflow import describe, solve
 from tests.shared.command import SPEC_TEXTS as SPECS_OF
 from tests.shared.command import Heun
@@ -281,7 +281,8 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
             "make_force_blocks",
         ),
         results: ("find_determinate_sums",),
-        load_errors: ("energy_block", "total_load"),
+        motion_errors: ("energy_block",),
+        load_errors: ("total_load",),
     }.items():
         for name in names:
             monkeypatch.setattr(module, name, forbidden)

@@ -15,7 +15,8 @@ from heuncli.motion.integration.run.progress import GrowingRows
 from heuncli.motion.integration.trajectory import StepRecords
 from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES
 from heuncli.scene.file_format.load import load
-from heuncli.study.model.options import Options, format_bytes, iter_numbers_by_block, truncate_to_two_digits
+from heuncli.study.model.memory import format_bytes, iter_numbers_by_block, truncate_to_two_digits
+from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection
 from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from heuncli.base.errors import SpecError
+from heuncli.loads.kinetostatics.moved_reactions import PlacedSensor
 from heuncli.loads.kinetostatics.reactions import JointLoads
-from heuncli.loads.kinetostatics.sensors import PlacedSensor
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
@@ -10,7 +12,9 @@ import pytest
 from heuncli.base.errors import SolveError
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.study.compose.warnings import warn_unbalanced
-from tests.shared.scenes import near, solved
+from heuncli.study.solve.error_estimates import Weights
+from heuncli.study.solve.load_errors import LoadErrors
+from tests.shared.scenes import near, solved, study
 
 
 def slider_crank(angle: float, rod: float, more: str) -> str:
@@ -124,3 +128,41 @@ def test_loads_that_do_not_balance_are_told() -> None:
     assert warn_unbalanced(1e-12) == []
     (told,) = warn_unbalanced(0.9)
     assert told.startswith("force balance error 0.9 of the largest force")
+
+
+PENDULUM = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: PLACE}}
+bodies: {bar: {mass: 2, center: PLACE, inertia: [0.1, 0.2, 0.3], points: {o: PLACE}}}
+joints: {pivot: {type: pin, from: ground.O, to: bar.o, axis: [1, 1, 1], initial: {rate: 3}}}
+analysis: {type: state}
+"""
+
+
+def find_roundings(place: tuple[float, ...]) -> tuple[float, float]:
+    """Return the rounding that is stated of the foundation's forces and moments, without differences of runs."""
+    run = study(PENDULUM.replace("PLACE", str(list(place))))
+    errors = LoadErrors(run.setup, weights=Weights(0.0, 1.0))
+    errors.add(run.history.solutions.select(np.array([0, 0])), *np.ones((2, 1), dtype=bool))
+    stated = errors.errors()
+    return stated["foundation", "N"], stated["foundation", "N·m"]
+
+
+def find_worst_moment(lever: tuple[float, ...], force_error: float) -> float:
+    """Return the largest component of d x e over all e whose components are +-force_error, in exact arithmetic."""
+    x, y, z = map(Fraction, lever)
+    moments = [
+        moment
+        for a, b, c in product([-Fraction(force_error), Fraction(force_error)], repeat=3)
+        for moment in (y * c - z * b, z * a - x * c, x * b - y * a)
+    ]
+    return float(max(moments))
+
+
+@pytest.mark.parametrize("place", [(500.0, 0.0, 0.0), (300.0, -400.0, 0.0), (300.0, 400.0, 0.0), (-3e5, 4e5, 2e5)])
+def test_the_rounding_of_the_foundation_s_moment_covers_both_products(place: tuple[float, ...]) -> None:
+    """(d x F)_z = d_x F_y - d_y F_x: if each component of F may be off by e, it is off by (|d_x| + |d_y|) e."""
+    force_rounding, moment_rounding = find_roundings(place)
+    worst = find_worst_moment(place, force_rounding)
+    assert worst <= moment_rounding <= 3.0 * worst

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from heuncli.study.queries.curves import MAX_ADDED, find_bounds, halve_steps
-from heuncli.study.search.extremes import find_jump_sides
+from heuncli.study.search.grid import find_jump_sides
 
 
 def sines(times: np.ndarray) -> np.ndarray:

@@ -25,7 +25,8 @@ from heuncli.output.fe_decks.decks import DECKS, DeckNames, DeckNodes, explain_i
 from heuncli.output.tables.nouns import format_count
 from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES
-from heuncli.study.model.options import MemoryBudget, require_positive
+from heuncli.study.model.memory import MemoryBudget
+from heuncli.study.model.options import require_positive
 from heuncli.study.model.selection import select_paths
 from heuncli.study.model.setup import attach_locations
 from heuncli.study.queries.at_option import InstantRequest, make_extreme_requests, parse

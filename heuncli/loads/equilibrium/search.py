@@ -314,13 +314,13 @@ class RestSearch:
         state = pose.state.copy()
         for place in layout.counters.values():
             state[place] = previous.state[place]
-        recovered = replace(pose.evaluation, states=state[None, :])
-        joint_values = joint_coordinates(layout, recovered, make_body_states(layout, recovered))
+        evaluation = replace(pose.evaluation, states=state[None, :])
+        joint_values = joint_coordinates(layout, evaluation, make_body_states(layout, evaluation))
         for joint, place in layout.counters.items():
             state[place] = joint_values[(own := layout.mechanism.joints[joint]).name][
                 "angle" if own.path is None else "travel"
             ][0]
-        return replace(pose, state=state, evaluation=replace(recovered, states=state[None, :]))
+        return replace(pose, state=state, evaluation=replace(evaluation, states=state[None, :]))
 
     def polish(self, pose: Pose, law: RestLaw) -> tuple[Pose, RestLaw]:
         """Take Newton's steps along all directions that are not indifferent, as long as they improve the pose."""

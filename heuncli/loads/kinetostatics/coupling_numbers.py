@@ -205,6 +205,21 @@ DRIVE_ELEMENT_NUMBERS: dict[str, Callable[..., dict[str, Array]]] = {
 }
 
 
+def collect_by_quantity(loads: CouplingLoads, joints: Sequence[Joint], states: BodyStates) -> dict[str, list[Array]]:
+    """Collect the numbers shown for a coupling by what they are: `force`, `moment` or `angle`."""
+    by_quantity: dict[str, list[Array]] = {}
+    for number in list_numbers(loads):
+        by_quantity.setdefault("moment" if number.is_moment else "force", []).append(number.values)
+    coupling = loads.coupling.entry
+    if coupling.type in DRIVE_ELEMENT_NUMBERS:
+        numbers = DRIVE_ELEMENT_NUMBERS[coupling.type](coupling, loads.carried_load, is_impulse=False)
+        for name, values in numbers.items():
+            by_quantity.setdefault("moment" if name == "torque" else "force", []).append(values)
+    if coupling.type == "cam":
+        by_quantity["angle"] = [pressure_angle(loads, joints, states)]
+    return by_quantity
+
+
 # Thread friction
 
 

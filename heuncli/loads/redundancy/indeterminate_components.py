@@ -118,7 +118,10 @@ def mask_parts(block: Block, parts: Mapping[str, Mask]) -> None:
 
 def mark_bearings(block: Block, load: JointLoads, share: Array, stress: SelfStress, axes: Array | None) -> None:
     """Mark the indeterminate components of a joint's bearings, in place; axes as of `mark_joint`."""
-    from heuncli.loads.kinetostatics.bearings import find_bearing_factors, split_to_bearings  # few joints have them
+    from heuncli.loads.kinetostatics.moved_reactions import (  # few joints have them
+        find_bearing_factors,
+        split_to_bearings,
+    )
 
     pair = load.joint.bearings
     assert pair is not None

@@ -31,7 +31,7 @@ from heuncli.study.queries.curves import MAX_SEARCH_INSTANTS, choose_curve_insta
 from heuncli.study.queries.measure import NotOneNumber, Peak, find_peak, make_several_error
 from heuncli.study.queries.measure_uncertainty import find_unit, measure_uncertainty
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import find_jump_sides
+from heuncli.study.search.grid import find_jump_sides
 
 CASE_SUFFIX = " (case "  # at the end of a title
 VISIBLE_JUMP = 0.01  # share of the range: larger jumps are drawn as jumps

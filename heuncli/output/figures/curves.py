@@ -19,8 +19,8 @@ from heuncli.output.drawing.figure import Arrow, Band, Bars, Item, Scaling, Spot
 from heuncli.output.drawing.style import PANEL_HEIGHT
 from heuncli.output.figures.courses import FigureSource, NumberCourse, find_jumps, find_values, is_varying
 from heuncli.results.results import Array, Results
-from heuncli.study.quantities.digits import PREFIXES, UNKNOWN, ReaderStyle, choose_reader_style, format_error
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.digits import UNKNOWN, ReaderStyle, choose_reader_style, format_error
+from heuncli.study.quantities.table_units import PREFIXES, Units
 from heuncli.study.queries.measure import Peak
 
 MAX_PERIODS, MAX_STRETCHES = 60, 240  # with more periods the curve is an envelope of at most so many stretches

@@ -26,9 +26,8 @@ from heuncli.output.figures.windows import Window
 from heuncli.output.machine_geometry.views import SceneView
 from heuncli.results.results import Array
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.digits import choose_prefix
 from heuncli.study.quantities.labels import Labels
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.table_units import Units, choose_prefix
 
 LONGEST_ARROW = 0.2  # share of the figure's larger side: largest force
 LONGEST_MOMENT = 0.14  # share: largest moment

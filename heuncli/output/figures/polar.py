@@ -30,7 +30,7 @@ from heuncli.study.quantities.captions import describe_object
 from heuncli.study.quantities.digits import UNKNOWN, ReaderStyle
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
-from heuncli.study.search.extremes import find_jump_sides
+from heuncli.study.search.grid import find_jump_sides
 
 HEIGHT = 520.0  # pixels
 MIN_ASPECT = 0.75  # minimum ratio of the sides of a panel

@@ -32,9 +32,8 @@ from heuncli.results.results import Array
 from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.setup import build_with_cuts
 from heuncli.study.quantities.captions import describe_object
-from heuncli.study.quantities.digits import choose_prefix
 from heuncli.study.quantities.labels import Labels, make_labels
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.table_units import Units, choose_prefix
 
 HEIGHT = 560.0  # pixels, maximum
 N_SMOOTH_FACES, MAX_SMOOTH_BODIES = 60, 40  # faces about an axis, and up to how many bodies

@@ -16,7 +16,7 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.snapshots.golden_file import BEYOND, UNKNOWN, Value
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.study.search.extremes import find_jump_sides
+from heuncli.study.search.grid import find_jump_sides
 
 INSTANTS = 16  # in each tenth of a run
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)  # golden ratio: instants that avoid resonance with periodic motions

@@ -50,7 +50,7 @@ from heuncli.study.quantities.labels import make_labels
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch
-from heuncli.study.search.extremes import find_jump_sides, sort_distinct
+from heuncli.study.search.grid import find_jump_sides, sort_distinct
 
 SI = Units({})
 RATE_SPAN = 1e-5  # share of the run for the rate at its end, if an event ends it

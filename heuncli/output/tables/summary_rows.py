@@ -28,7 +28,7 @@ from heuncli.study.quantities.captions import describe_path
 from heuncli.study.quantities.channels import Channel, iter_impulse_channels
 from heuncli.study.quantities.cut_series import collect_cut_series
 from heuncli.study.queries.study import Study
-from heuncli.study.search.extremes import sort_distinct
+from heuncli.study.search.grid import sort_distinct
 
 MIN_TURN = 0.75 * 2.0 * math.pi  # of a joint whose angle tells the instants
 DIRECTION_DECIMALS = 2  # shown of a unit vector; what is equal in these is one direction

@@ -23,7 +23,7 @@ from heuncli.study.quantities.digits import StatedErrors
 from heuncli.study.quantities.labels import Labels
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch, find_largest_turns
-from heuncli.study.search.extremes import sort_distinct
+from heuncli.study.search.grid import sort_distinct
 
 MIN_FRAMES = 120  # frames of a motion
 MAX_TURN = 0.3  # rad: how far a body may turn from one frame to the next

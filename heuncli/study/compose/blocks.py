@@ -27,34 +27,39 @@ JSON is written of that block (output/tables/export.py). After it:
 
 A section goes the same way: SectionEntry, Section, Cuts (loads/kinetostatics/cuts.py), its block, its channels. Those
 of a series of cuts are a CutSeries (study/quantities/cut_series.py); a search cuts it as one whole length, a Stretch
-(loads/kinetostatics/stretch.py). A sensor reads the one or the other (loads/kinetostatics/sensors.py, sensors.py here).
+(loads/kinetostatics/stretch.py). A sensor reads the one or the other (loads/kinetostatics/moved_reactions.py,
+section_blocks.py here).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
-from functools import partial
+from collections.abc import Sequence, Set
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from heuncli.base import tolerances
-from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, list_whole_joint_actions
+from heuncli.loads.kinetostatics.actions import Action, AppliedLoad
 from heuncli.loads.kinetostatics.balance import system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, point_motions
-from heuncli.loads.kinetostatics.coupling_numbers import make_coupling_block
-from heuncli.loads.kinetostatics.couplings import CouplingLoads, list_coupling_actions
+from heuncli.loads.kinetostatics.coupling_numbers import (
+    DRIVE_ELEMENT_NUMBERS,
+    efficiency,
+    make_coupling_block,
+    pressure_angle,
+)
+from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.loads.kinetostatics.foundation import Momenta, find_momenta, foundation_block, make_element_keys
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_axes, rotate_block
 from heuncli.multibody.mechanism.loads import GROUND, BushingLoad, JointLoad, PairLoad
-from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
+from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock
 from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.selection import select_blocks
 
 if TYPE_CHECKING:
-    from heuncli.loads.kinetostatics.cuts import Cuts
+    pass
 
 
 def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
@@ -108,7 +113,11 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     if "points" in reports:
         blocks_by_name["points"] = point_motions(mechanism, states)
     if "sections" in reports:
-        blocks_by_name["sections"] = make_section_blocks(recovery, SHARES in reports)
+        blocks_by_name["sections"] = {}
+        if recovery.setup.cuts:
+            from heuncli.study.compose.section_blocks import make_section_blocks  # few scenes have sections
+
+            blocks_by_name["sections"] = make_section_blocks(recovery, SHARES in reports)
     if "forces" in reports:
         blocks_by_name["forces"] = make_force_blocks(
             [own for own in recovery.loads if mechanism.spec_block(own.load) == "forces"], states
@@ -125,7 +134,7 @@ def make_reaction_blocks(recovery: Recovery, by_cause: bool) -> dict[str, Any]:
         "couplings": {own.coupling.name: make_coupling_results(recovery, own) for own in recovery.couplings},
     }
     if recovery.setup.sensors:
-        from heuncli.study.compose.sensors import make_sensor_blocks  # few scenes have them
+        from heuncli.study.compose.section_blocks import make_sensor_blocks  # few scenes have them
 
         blocks["sensors"] = make_sensor_blocks(recovery, by_cause)
     return blocks
@@ -177,7 +186,7 @@ def make_joint_block(load: JointLoads, planar: bool = False) -> JointBlock:
         carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
         block["pressure"] = carried / load.joint.bearing
     if load.joint.bearings is not None:
-        from heuncli.loads.kinetostatics.bearings import make_bearing_blocks  # few joints have them
+        from heuncli.loads.kinetostatics.moved_reactions import make_bearing_blocks  # few joints have them
 
         block["bearings"] = make_bearing_blocks(load, planar)
     if load.joint.path is not None and load.joint.path.radius:
@@ -192,53 +201,6 @@ def make_stop_blocks(joints: Sequence[JointLoads]) -> Block:
         for load in joints
         for own in load.stops
     }
-
-
-def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
-    """Make the blocks of all sections; by_cause: with their shares."""
-    scene, states = recovery.setup.scene, recovery.states
-    block: Block = {}
-    if not recovery.setup.cuts:
-        return block
-    # only scenes with sections load it
-    from heuncli.loads.kinetostatics.sections import find_attachments, make_section_block
-
-    actions = [
-        *list_whole_joint_actions(recovery.joints),
-        *recovery.applied_actions,
-        *list_coupling_actions(recovery.couplings),
-    ]
-    for requested_cuts in recovery.setup.cuts:
-        attached = find_attachments(requested_cuts.body, states, actions)
-        cuts = requested_cuts.place_for_loads(attached)
-        is_open = find_open_section(recovery, cuts)
-        gravity, planar = scene.mechanism.gravity, scene.mechanism.planar
-        block[cuts.name] = make_section_block(cuts, states, gravity, attached, is_open, planar)
-        if is_open:
-            from heuncli.loads.redundancy.indeterminate_components import list_indeterminate_section_names
-
-            block[cuts.name]["open"] = list_indeterminate_section_names(is_open)
-        if cuts.beam is not None:
-            from heuncli.loads.kinetostatics.deflection import make_deflection_block  # few scenes ask for it
-
-            find_open = partial(find_open_section, recovery)
-            block[cuts.name] |= make_deflection_block(cuts, states, gravity, attached, find_open, planar)
-        if by_cause:
-            from heuncli.loads.kinetostatics.shares import make_section_shares_block
-
-            block[cuts.name]["shares"] = make_section_shares_block(cuts, scene.layout, states, recovery.shares, is_open)
-    return block
-
-
-def find_open_section(recovery: Recovery, cuts: Cuts) -> Mapping[str, Mask]:
-    """Return which loads of cuts are indeterminate, by name; empty where none is."""
-    if recovery.indeterminate is None:
-        return {}
-    from heuncli.loads.redundancy.indeterminate_components import find_indeterminate_section
-
-    return find_indeterminate_section(
-        cuts, recovery.states, recovery.joints, recovery.couplings, recovery.indeterminate
-    )
 
 
 def make_bushing_block(load: BushingLoad, applied_load: AppliedLoad, states: BodyStates) -> ForceBlock:
@@ -257,9 +219,7 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
     spec_coupling, names = coupling_loads.coupling.entry, [body.name for body in mechanism.bodies]
     block = make_coupling_block(coupling_loads, names, find_pretension(coupling_loads, recovery.loads))
-    if spec_coupling.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.coupling_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
-
+    if spec_coupling.type in DRIVE_ELEMENT_NUMBERS:
         is_impulse = bool(recovery.solutions.loads.shape[1] < len(layout.tables["loads"]))  # at an impulse no load acts
         block |= {
             k: v
@@ -269,8 +229,6 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
             if k not in block
         }
     if coupling_loads.friction is not None:
-        from heuncli.loads.kinetostatics.coupling_numbers import efficiency  # few scenes have it
-
         found = efficiency(coupling_loads, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
         own_load = next((own for own in recovery.loads if own.action is coupling_loads.friction), None)
         if own_load is not None and own_load.reserve is not None:
@@ -278,8 +236,6 @@ def make_coupling_results(recovery: Recovery, coupling_loads: CouplingLoads) -> 
             block["reserve"] = own_load.reserve
         block["efficiency"] = found
     if spec_coupling.type == "cam":
-        from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
-
         block["pressure_angle"] = pressure_angle(coupling_loads, mechanism.joints, recovery.states)
     return block
 

@@ -200,13 +200,13 @@ class Recovery:
         # hardly any scene needs it
         from heuncli.motion.integration.diagnosis.ambiguous_laws import find_separation_velocity
 
-        layout, recovered = self.setup.scene.layout, self.solutions
+        layout, solutions = self.setup.scene.layout, self.solutions
         return [
             replace(
                 own,
                 rate=np.where(
                     own.length == 0.0,
-                    compute_vector_magnitudes(find_separation_velocity(layout, own.load, recovered)),
+                    compute_vector_magnitudes(find_separation_velocity(layout, own.load, solutions)),
                     own.rate,
                 ),
             )

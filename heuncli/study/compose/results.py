@@ -44,8 +44,8 @@ from heuncli.study.compose.warnings import (
     make_status,
     warn_near_singular,
 )
-from heuncli.study.model.model_note import explain_restart
-from heuncli.study.model.options import can_compose_in_parts, count_numbers_per_instant, has_few_numbers
+from heuncli.study.model.memory import can_compose_in_parts, count_numbers_per_instant, has_few_numbers
+from heuncli.study.model.method_choice import explain_restart
 from heuncli.study.model.selection import select_sums
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History

@@ -152,14 +152,14 @@ def solve_moved_states(
     recovery: Recovery, close_instants: Indices, run: Trajectory, jumps: Sequence[float]
 ) -> Evaluation:
     """Solve the states of some instants again, each moved in some directions by the uncertainty of its closure."""
-    layout, recovered = recovery.setup.scene.layout, recovery.solutions
-    gap = np.maximum(recovered.gap[close_instants] / layout.size, tolerances.UNSEEN_GAP)
+    layout, solutions = recovery.setup.scene.layout, recovery.solutions
+    gap = np.maximum(solutions.gap[close_instants] / layout.size, tolerances.UNSEEN_GAP)
     # a pose closer to singular than its own gap counts as that close: gap/σ is at most σ
-    sigma = np.maximum(np.sqrt(np.maximum(recovered.pivot[close_instants], 0.0)), np.sqrt(gap))
+    sigma = np.maximum(np.sqrt(np.maximum(solutions.pivot[close_instants], 0.0)), np.sqrt(gap))
     shifts = (gap / sigma)[:, None, None] * make_directions(layout)
-    states = recovered.states[close_instants][:, None] + shifts
-    times = np.repeat(recovered.times[close_instants], DIRECTIONS)
-    causes = recovered.causes is not None
+    states = solutions.states[close_instants][:, None] + shifts
+    times = np.repeat(solutions.times[close_instants], DIRECTIONS)
+    causes = solutions.causes is not None
     return evaluate_run(recovery.setup.runner, run, times, states.reshape(len(times), -1), jumps, causes=causes)
 
 
@@ -311,12 +311,12 @@ def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | Non
 
     A split of the reactions, by least norm or stiffness, changes with the pose: it is found at each instant.
     """
-    decided, recovered = recovery.decided, recovery.solutions
+    decided, solutions = recovery.decided, recovery.solutions
     if decided is None or decided.choices or decided.words or recovery.setup.scene.mechanism.joint_friction:
         return None
     stress = decided.found_self_stress
     ordinary = (
-        np.ones(len(recovered.times), dtype=bool)
+        np.ones(len(solutions.times), dtype=bool)
         if stress is None
         else stress.count <= recovery.generic_self_stress_count
     )
@@ -329,7 +329,7 @@ def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | Non
             find_newly_open(own.block[own.name], other.block[other.name])
             for own, other in zip(iter_leaves(determinate_blocks), iter_leaves(blocks), strict=True)
         )
-    return Verdicts(recovered.times, recovered.dependent_count, recovered.holding, ordinary, found)
+    return Verdicts(solutions.times, solutions.dependent_count, solutions.holding, ordinary, found)
 
 
 def find_newly_open(determinate: Array, values: Array) -> Mask | None:

@@ -29,23 +29,20 @@ from heuncli.multibody.tree.prepare import PreparedScene
 from heuncli.results.results import Array, Block
 from heuncli.scene.file_format.couplings import Rope
 from heuncli.scene.file_format.models import Spec
+from heuncli.study.model.method_choice import choose_first_method, explain_choice
 from heuncli.study.model.model_note import (
     add_rest_sentences,
-    choose_first_method,
-    describe_attitudes,
     describe_files,
     describe_members,
     describe_reductions,
-    explain_method,
     make_model_block,
 )
 from heuncli.study.model.selection import EVERYTHING, Selection
 
 if TYPE_CHECKING:
     from heuncli.loads.kinetostatics.cuts import Cuts
-    from heuncli.loads.kinetostatics.sensors import PlacedSensor
+    from heuncli.loads.kinetostatics.moved_reactions import PlacedSensor
     from heuncli.loads.redundancy.self_stress import CachedStress
-    from heuncli.multibody.tree.layout import Layout
     from heuncli.study.model.rest_pose import Rest
 
 
@@ -92,7 +89,7 @@ class Setup:
         """What reads reactions elsewhere."""
         if not self.spec.sensors:
             return ()
-        from heuncli.loads.kinetostatics.sensors import make_sensors  # few scenes have them
+        from heuncli.loads.kinetostatics.moved_reactions import make_sensors  # few scenes have them
 
         return make_sensors(self.spec, self.scene.mechanism)
 
@@ -105,12 +102,6 @@ class Setup:
         from heuncli.multibody.reduction.spins import find_constant_spins
 
         return {i: spin.axis for i, spin in find_constant_spins(self.scene).items()}
-
-
-def explain_choice(method: Method, layout: Layout, spec: Spec, *, is_auto: bool) -> list[str]:
-    """Explain how a method represents attitudes and, if `auto` chose it, why."""
-    reasons = [*describe_attitudes(method, layout)]
-    return [*reasons, *explain_method(method, layout, spec)] if is_auto and not method.is_determined else reasons
 
 
 def set_up(

@@ -28,7 +28,7 @@ from heuncli.results.results import Array, Magnitudes, Results
 from heuncli.results.results_schema import ESTIMATE_OF_ERROR_KIND
 from heuncli.study.quantities.channels import Channel, iter_channels, iter_impulse_channels
 from heuncli.study.quantities.labels import DEFAULT_UNITS, Labels
-from heuncli.study.quantities.table_units import Units
+from heuncli.study.quantities.table_units import PREFIXES, Units, choose_prefix
 
 DIGITS = 6
 LARGE, SMALL = 1e7, 1e-4  # families beyond these are written with an exponent
@@ -285,16 +285,6 @@ def format_with_error(value: float, error: float) -> str:
 
 
 READER_DIGITS = 4
-# SI unit -> the units that replace it by size, each with how many of it make one; the first is the smallest.
-PREFIXES: dict[str, tuple[tuple[str, float], ...]] = {
-    "N": (("N", 1.0), ("kN", 1e-3), ("MN", 1e-6)),
-    "N·m": (("N·m", 1.0), ("kN·m", 1e-3), ("MN·m", 1e-6)),
-    "Pa": (("Pa", 1.0), ("kPa", 1e-3), ("MPa", 1e-6)),
-    "m": (("mm", 1e3), ("m", 1.0)),
-    "W": (("W", 1.0), ("kW", 1e-3), ("MW", 1e-6)),
-    "J": (("J", 1.0), ("kJ", 1e-3), ("MJ", 1e-6)),
-}
-FULL_UNIT = 1.0  # the smallest size at which a unit is used
 
 
 class ReaderStyle(NamedTuple):
@@ -341,9 +331,3 @@ def choose_reader_style(unit: str, scale: float, units: Units, error: float = 0.
     shown = per_si * scale
     digits = READER_DIGITS - 1 - math.floor(math.log10(shown)) if math.isfinite(shown) and shown > 0.0 else 0
     return ReaderStyle(shown_unit, per_si, max(digits, 0), per_si * error)
-
-
-def choose_prefix(unit: str, scale: float) -> tuple[str, float]:
-    """Return the largest display unit in which `scale` (SI) is at least 1, and how many of it make one SI unit."""
-    fitting = [row for row in PREFIXES[unit] if row[1] * scale >= FULL_UNIT]
-    return fitting[-1] if fitting else PREFIXES[unit][0]

@@ -2,7 +2,8 @@
 
 Results are SI throughout; a number and its error are converted before its digits are counted. Units of forces and
 lengths also apply to their products: with kN and mm moments are in kN·mm, velocities in mm/s; with deg angular
-velocities are in deg/s. Each of these can be chosen separately (kNm, m/s, rpm). Seconds stay.
+velocities are in deg/s. Each of these can be chosen separately (kNm, m/s, rpm). Seconds stay. In figures and in the
+report for a client a unit that nobody chose follows from the size of the number: mm or m, N, kN or MN.
 """
 
 from __future__ import annotations
@@ -22,6 +23,16 @@ DERIVED: Mapping[str, tuple[str, tuple[str, ...]]] = MappingProxyType({
 })  # fmt: skip
 SHOWN = {"m", "rad", "N", "Pa", "W", *DERIVED}  # SI units of what tables show
 SPELLINGS = {"Nm": "N·m", "kNm": "kN·m", "Nmm": "N·mm", "Ns": "N·s", "Nms": "N·m·s"}
+# SI unit -> the units that replace it by size, each with how many of it make one; the first is the smallest.
+PREFIXES: dict[str, tuple[tuple[str, float], ...]] = {
+    "N": (("N", 1.0), ("kN", 1e-3), ("MN", 1e-6)),
+    "N·m": (("N·m", 1.0), ("kN·m", 1e-3), ("MN·m", 1e-6)),
+    "Pa": (("Pa", 1.0), ("kPa", 1e-3), ("MPa", 1e-6)),
+    "m": (("mm", 1e3), ("m", 1.0)),
+    "W": (("W", 1.0), ("kW", 1e-3), ("MW", 1e-6)),
+    "J": (("J", 1.0), ("kJ", 1e-3), ("MJ", 1e-6)),
+}
+FULL_UNIT = 1.0  # the smallest size at which a unit is used
 HINT = (
     "for example --units kN,mm,deg,rpm; any unit of a length, angle, force, moment, stress, ... that heun explain "
     "format lists"
@@ -40,6 +51,12 @@ class Units(NamedTuple):
     def is_chosen(self, unit: str) -> bool:
         """Return whether the user chose the display unit of an SI unit, or one from which it is derived."""
         return unit in self.display_units and self.display_units[unit] != STRESS.get(unit)
+
+
+def choose_prefix(unit: str, scale: float) -> tuple[str, float]:
+    """Return the largest display unit in which `scale` (SI) is at least 1, and how many of it make one SI unit."""
+    fitting = [row for row in PREFIXES[unit] if row[1] * scale >= FULL_UNIT]
+    return fitting[-1] if fitting else PREFIXES[unit][0]
 
 
 def parse_units(words: str) -> Units:

@@ -42,6 +42,7 @@ from heuncli.study.queries.study import Study
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import ChannelSearch, StudyColumns
 from heuncli.study.search.cuts import find_cut_extremes, find_stretch
+from heuncli.study.search.grid import find_jump_sides, sort_distinct
 
 SECTIONS = frozenset({"sections"})
 DEFLECTION_PATHS = tuple(f"deflection.{name}" for name in DEFLECTIONS)
@@ -237,7 +238,7 @@ class WholeBar:
         all_extremes = [extreme for both in searched_extremes.values() for extreme in both]
         lines = {
             time: self.make_lines(time)
-            for time in extremes.sort_distinct(np.array([extreme.time for extreme in all_extremes])).tolist()
+            for time in sort_distinct(np.array([extreme.time for extreme in all_extremes])).tolist()
         }
         s, low, high = self._find_bounds(times, [extreme.s for extreme in all_extremes])
         return {
@@ -273,7 +274,7 @@ class WholeBar:
         """
         for _ in range(MAX_HALVINGS):
             nodes = self._compute_section(times, self.setup)
-            jumps = extremes.find_jump_sides(times)
+            jumps = find_jump_sides(times)
             moving = MovingEdges.from_section(nodes, self.corner_tolerance)
             moving_ends = find_corners(nodes["s"], 0.0) if moving is None else np.array(moving.end_places)
             corners = self.stretch.corners - float(self.stretch.find_height(np.array(0.0)))

@@ -24,7 +24,7 @@ from heuncli.study.queries.measure import NOT_CLAIMED, find_reports
 from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.crossings import Bracket, find_roots
-from heuncli.study.search.extremes import find_jump_sides, sort_distinct
+from heuncli.study.search.grid import find_jump_sides, sort_distinct
 
 MIN_CURVE_INSTANTS = 400  # instants of a curve: nearly two a pixel
 MAX_SEARCH_INSTANTS = 4000  # largest number of the search's instants that a curve uses

@@ -30,7 +30,7 @@ from heuncli.study.quantities.channels import Channel, make_path_channel
 from heuncli.study.queries.measure_uncertainty import find_search_error
 from heuncli.study.queries.study import Study
 from heuncli.study.search.columns import ChannelSearch
-from heuncli.study.search.extremes import BOTH_SIDES
+from heuncli.study.search.grid import BOTH_SIDES
 
 NOT_CLAIMED = "not reliable from t = {:.4g} s on"
 

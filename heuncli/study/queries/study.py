@@ -31,6 +31,7 @@ from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import MAX_INSTANTS as MOST_INSTANTS
 from heuncli.study.search.columns import ChannelSearch, StudyColumns, choose_search_times
+from heuncli.study.search.grid import BOTH_SIDES, fill_short_stretches, sort_distinct
 from heuncli.study.solve.history import History, resample
 
 if TYPE_CHECKING:
@@ -119,10 +120,10 @@ class Study:
             from heuncli.study.search.cuts import find_passages, has_moving_joints  # where there are sections
 
             if has_moving_joints(self.setup):
-                times = extremes.sort_distinct(
+                times = sort_distinct(
                     np.concatenate([times, find_passages(lambda instants: self._recover(instants, NO_REPORTS), times)])
                 )
-        return extremes.fill_short_stretches(times), is_enough
+        return fill_short_stretches(times), is_enough
 
     def resample(self, times: Array) -> Results:
         """Return the results of the run at other instants within it, (n,) ascending; a state always has its one
@@ -257,8 +258,8 @@ class Study:
 
     def _recover(self, times: Array, reports: frozenset[str]) -> Recovery:
         """Recover the results at other instants."""
-        recovered = resample(self.setup.runner, self.history, times, by_cause=SHARES in reports)
-        return recover(self.setup, recovered, self.options.least_norm)
+        solutions = resample(self.setup.runner, self.history, times, by_cause=SHARES in reports)
+        return recover(self.setup, solutions, self.options.least_norm)
 
     @property
     def chunk_size(self) -> int:
@@ -306,8 +307,8 @@ class Study:
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
         # closed chains need both sides, to report where numbers are indeterminate
-        is_one_sided = search.sides != extremes.BOTH_SIDES and not self.setup.scene.layout.rows
-        sides = search.sides if is_one_sided else extremes.BOTH_SIDES
+        is_one_sided = search.sides != BOTH_SIDES and not self.setup.scene.layout.rows
+        sides = search.sides if is_one_sided else BOTH_SIDES
         bounds = extremes.search_extremes(
             study_columns.sample,
             times,

@@ -17,7 +17,7 @@ from heuncli.study.compose.recovery import RANK_REPORTS, Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.quantities.channels import Channel
 from heuncli.study.search import extremes
-from heuncli.study.search.extremes import BOTH_SIDES, replace_non_finite, sort_distinct
+from heuncli.study.search.grid import BOTH_SIDES, replace_non_finite, sort_distinct
 from heuncli.study.solve.history import History, resample
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ class StudyColumns:
         first = self.n_single
         low, high, places = peaks.low.copy(), peaks.high.copy(), [(NOWHERE, NOWHERE)] * first
         peak_times = np.stack([peaks.low_at, peaks.high_at])[:, first:]
-        instants = extremes.sort_distinct(peak_times)
+        instants = sort_distinct(peak_times)
         results = self.compute_results(instants)
         for k, channel in enumerate(self.collect(results)[first:]):
             name, values, side_places = channel.name.split(".")[0], channel.searched_values, []

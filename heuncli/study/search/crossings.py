@@ -16,15 +16,8 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Mask
-from heuncli.study.search.extremes import (
-    MAX_PROBES,
-    MAX_ROUNDS,
-    Best,
-    Targets,
-    find_intervals,
-    find_jump_sides,
-    sort_distinct,
-)
+from heuncli.study.search.extremes import MAX_PROBES, MAX_ROUNDS
+from heuncli.study.search.grid import Best, Targets, find_intervals, find_jump_sides, sort_distinct
 from heuncli.study.search.intervals import Intervals
 
 # takes sorted instants (n,), returns the number there, (n,); nan where there is none

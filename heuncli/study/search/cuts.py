@@ -23,7 +23,7 @@ from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array, Block, Cu
 from heuncli.results.results_schema import RESULTANTS
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
-from heuncli.study.search.extremes import sort_distinct
+from heuncli.study.search.grid import sort_distinct
 
 SIGN_CHANGE_HALVINGS = (
     2  # halvings of pieces whose loads change their sign: stresses and reduction lines have kinks there

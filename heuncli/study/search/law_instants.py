@@ -23,7 +23,7 @@ from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array
 from heuncli.scene.expressions.programs import Expression
 from heuncli.study.model.setup import Setup
-from heuncli.study.search.extremes import sort_distinct
+from heuncli.study.search.grid import sort_distinct
 from heuncli.study.search.turnings import NO_INSTANTS, SampledTurns, find_doubtful, refine_until_predicted
 from heuncli.study.solve.history import History, resample
 

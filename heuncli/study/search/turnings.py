@@ -17,10 +17,10 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.results.results import Array, Indices, Mask
-from heuncli.study.search.extremes import (
+from heuncli.study.search.extremes import MAX_ROUNDS
+from heuncli.study.search.grid import (
     BOTH_SIDES,
     GOOD_ENOUGH,
-    MAX_ROUNDS,
     ColumnSampler,
     Targets,
     find_intervals_above,

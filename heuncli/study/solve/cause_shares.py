@@ -16,8 +16,13 @@ from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
+from heuncli.loads.kinetostatics.moved_reactions import (
+    PlacedSensor,
+    Reaction,
+    iter_bearing_terms,
+    make_bearing_loads,
+)
 from heuncli.loads.kinetostatics.reactions import JointLoads, rotate_joint_loads
-from heuncli.loads.kinetostatics.sensors import PlacedSensor, Reaction
 from heuncli.loads.kinetostatics.shares import (
     CauseResults,
     Shares,
@@ -46,8 +51,6 @@ def add_shares(
                 block = blocks["joints"][load.joint.name]
                 block["shares"] = joint_shares_block(shares, load)
                 if load.joint.bearings is not None:
-                    from heuncli.loads.kinetostatics.bearings import make_bearing_loads  # few joints have them
-
                     for key, own in make_bearing_loads(load, mechanism.planar).items():
                         block["bearings"][key]["shares"] = shares.to_blocks(own)
         for coupled in shares.couplings:
@@ -79,7 +82,7 @@ class ComparedShares(NamedTuple):
 
 def iter_compared_shares(
     setup: Setup,
-    recovered: Evaluation,
+    solutions: Evaluation,
     states: BodyStates,
     applied_actions: Sequence[Action],
     kinds: Set[str],
@@ -87,7 +90,7 @@ def iter_compared_shares(
 ) -> Iterator[ComparedShares]:
     """Yield the shares of the compared kinds of loads, of joints, couplings, foundation and sections."""
     layout = setup.scene.layout
-    shares = find_shares(layout, recovered, states, applied_actions, find_cause_columns(layout.mechanism))
+    shares = find_shares(layout, solutions, states, applied_actions, find_cause_columns(layout.mechanism))
     factor = compute_term_ratio(shares.cause_results, terms)
     joint_shares = [rotate_joint_loads(load, states, setup.selection.axes) for load in shares.joints]
     shares_of_kinds = (
@@ -115,7 +118,7 @@ KindValues = list[tuple[str, str, Array]]  # kind, quantity, values with the ins
 def list_joint_shares(joints: Sequence[JointLoads]) -> KindValues:
     """Return the shares of reactions and of drives."""
     found: KindValues = []
-    for name in ("force", "moment"):
+    for name in WRENCH:
         values = [np.moveaxis(getattr(load, name), 0, 1) for load in joints]
         found += [("reactions", name, np.stack(values, axis=1))] if values else []
     for load in joints:
@@ -127,14 +130,11 @@ def list_joint_shares(joints: Sequence[JointLoads]) -> KindValues:
 
 def list_moved_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindValues:
     """Return the shares of the bearings of joints, and of what sensors read."""
-    found: KindValues = []
-    if any(load.joint.bearings is not None for load in shares.joints):
-        from heuncli.loads.kinetostatics.bearings import iter_bearing_terms  # few joints have them
-
-        found += [("bearings", "force", np.moveaxis(values, 0, 1)) for values, *_ in iter_bearing_terms(shares.joints)]
+    bearing_terms = iter_bearing_terms(shares.joints)
+    found: KindValues = [("bearings", "force", np.moveaxis(values, 0, 1)) for values, *_ in bearing_terms]
     for sensor in setup.sensors:
-        read = sensor.read(states, find_sensor_shares(setup, sensor, states, shares), setup.scene.mechanism.planar)
-        found += [("sensors", name, np.moveaxis(values, 0, 1)) for name, values in zip(WRENCH, read, strict=True)]
+        wrench = sensor.read(states, find_sensor_shares(setup, sensor, states, shares), setup.scene.mechanism.planar)
+        found += [("sensors", name, np.moveaxis(values, 0, 1)) for name, values in zip(WRENCH, wrench, strict=True)]
     return found
 
 

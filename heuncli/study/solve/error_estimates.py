@@ -1,15 +1,20 @@
-"""Compare two runs of a motion: differences of each quantity, the terms whose rounding its sums carry, and the errors
-of loads and energy that follow.
+"""Estimate the errors of loads and energy, by kind: twice the difference between runs, plus the rounding of sums.
 
-load_errors.py collects them over a run, and has the kinds of errors and what each is relative to.
+Errors are the largest over the whole run, including instants that are not requested; each is relative to the largest
+result of its kind at the requested instants. Forces of a kind are compared with its largest force, or its largest
+moment divided by its longest arm; its moments with the largest moment, or the largest force times the size of the
+scene. The arm is the size of the scene; for the foundation it is the reach of the scene from the point that its moment
+is taken about. Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or the
+range of potential energy and work, because these have no zero of their own. Where larger terms cancel and only rounding
+is left of a kind, its error is given as 0.
 
-Momenta and energies have no error in common with positions. A small body in a large scene may turn by far more than its
-position errors suggest; orbital and spin moments of momentum may have opposite errors.
+motion_errors.py and load_errors.py collect the differences over a run; here are what one quantity collects (Extent),
+the terms whose rounding its sums carry (BalanceTerms), and the errors that follow (ErrorEstimates).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property, reduce
 
 import numpy as np
@@ -17,12 +22,10 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import AppliedLoad
-from heuncli.loads.kinetostatics.balance import system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.foundation import find_momenta, inertia_rows
+from heuncli.loads.kinetostatics.foundation import inertia_rows
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.loads import RopeLoad
-from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.path_words import BY_CAUSE
 from heuncli.results.results import Array, ErrorEstimate, Mask
 from heuncli.results.results_schema import IMPULSES
@@ -142,47 +145,14 @@ def relative_error(error: float, terms: float, *scales: float) -> float:
 MOTION_KINDS = ("motion", "attitudes", "rodrigues")  # kinds of errors of a motion
 
 
-def iter_momentum_quantities(
-    mechanism: Mechanism, states: BodyStates, moment_point: Array
-) -> Iterator[tuple[str, Array, Array]]:
-    """Yield by unit the values of the bodies and the sums over them (n_t, m, 3), and the rounding (n_t,)."""
-    body_momenta, vector = find_momenta(mechanism, states, moment_point), system_vector(mechanism, states)
-    body_vectors = [np.stack([*own.values()], axis=1) for own in vector.values() if isinstance(own, dict)]
-    for unit, parts, totals in (
-        ("N·s", (body_momenta.linear,), ()),
-        ("N·m·s", (body_momenta.orbital, body_momenta.spin), (body_momenta.orbital + body_momenta.spin,)),
-        ("N·m/s", body_vectors, ()),
-    ):
-        sums = [part.sum(axis=1, keepdims=True) for part in parts]
-        rounding = tolerances.SUM_ROUNDING * sum(compute_norms(part).sum(axis=1) for part in parts)
-        yield unit, np.concatenate([*(totals or parts), *sums], axis=1), np.asarray(rounding)
-
-
-def compare_attitudes(R: Array, count: int) -> tuple[Array, Array]:
-    """Return how far the attitudes of `count` runs, instant by instant, lie from the first's, and their Rodrigues'
-    vectors, (n,).
-
-    Columns of two attitudes an angle d apart differ by at most 2 sin(d/2), 1/√2 of the root of squares of all elements.
-    For rho = tan(half the turn) that makes (1 + rho^2) d/2, where 1 + rho^2 = 4 / (1 + tr R); near half a turn no
-    vector is compared.
-    """
-    first_run = R[0::count]
-    others = [np.sqrt(0.5 * np.square(first_run - R[k::count]).sum(axis=(2, 3))) for k in range(1, count)]
-    distances = reduce(np.maximum, others)
-    trace = 1.0 + np.trace(first_run, axis1=2, axis2=3)
-    is_defined = trace > 4.0 * tolerances.HALF_TURN**2
-    vectors = 2.0 * distances / np.where(is_defined, trace, 1.0) * is_defined
-    return distances.max(axis=1), vectors.max(axis=1)
-
-
-def estimate_load_rounding(recovered: Evaluation, force: Array, moment: Array, size: float) -> tuple[Array, Array]:
+def estimate_load_rounding(solutions: Evaluation, force: Array, moment: Array, size: float) -> tuple[Array, Array]:
     """Estimate the rounding of forces [N] and moments [N m] at each instant, (c n,); force, moment: their largest
     terms.
 
     It is that of sums of some dozen terms, plus the kernel's estimate of the rounding of each multiplier: near a
     singular pose the closures amplify it (kernel/orthogonal.py).
     """
-    rows = recovered.rows
+    rows = solutions.rows
     by_force = (rows["doubt"] * np.abs(rows["f"]).max(axis=2)).max(axis=1, initial=0.0)
     by_moment = (rows["doubt"] * np.abs(rows["m"]).max(axis=2)).max(axis=1, initial=0.0)
     F = tolerances.SUM_ROUNDING * force + by_force + by_moment / size
@@ -198,14 +168,14 @@ class BalanceTerms:
     rounding: of the loads, absolute
     """
 
-    def __init__(self, setup: Setup, recovered: Evaluation, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+    def __init__(self, setup: Setup, solutions: Evaluation, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
         mechanism, size = setup.scene.mechanism, setup.scene.layout.size
         ma, spin = self.by_component = inertia_rows(mechanism, states)
         self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-        row_forces = recovered.rows["multiplier"][..., None] * recovered.rows["f"]
+        row_forces = solutions.rows["multiplier"][..., None] * solutions.rows["f"]
         applied = [load.action for load in loads]
         pulls = [
-            recovered.loads["value"][:, own] for load, own in mechanism.iter_load_rows() if isinstance(load, RopeLoad)
+            solutions.loads["value"][:, own] for load, own in mechanism.iter_load_rows() if isinstance(load, RopeLoad)
         ]
         # a free spin is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
         layout, bodies = setup.scene.layout, mechanism.bodies
@@ -215,7 +185,7 @@ class BalanceTerms:
         arms = [b.center - layout.reference[layout.place[i]] for i, b in enumerate(bodies)]
         offset = np.array([[b.mass * float(np.abs(arm).max())] for b, arm in zip(bodies, arms, strict=True)])
         gyration = np.array([[float(np.trace(b.inertia))] for b in bodies])
-        joint_force, joint_moment = (instants_last(recovered.bodies[name]) for name in ("joint_force", "joint_moment"))
+        joint_force, joint_moment = (instants_last(solutions.bodies[name]) for name in ("joint_force", "joint_moment"))
         forces = [
             ma,
             angular_motion * offset,
@@ -227,7 +197,7 @@ class BalanceTerms:
         moments = [spin, angular_motion * gyration, joint_moment, *(instants_last(x.moment) for x in applied)]
         self.force = np.maximum(_find_largest_at_each_instant(forces), np.abs(self.weight).max(initial=0.0))
         self.moment = np.maximum(_find_largest_at_each_instant(moments), size * self.force)
-        self.rounding = estimate_load_rounding(recovered, self.force, self.moment, size)
+        self.rounding = estimate_load_rounding(solutions, self.force, self.moment, size)
 
     @cached_property
     def ma(self) -> Array:

@@ -32,7 +32,7 @@ from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.multibody.mechanism.loads import BushingLoad, PairLoad
 from heuncli.results.results import Array, ErrorEstimate
 from heuncli.scene.expressions.discontinuities import pair_adjacent_instants
-from heuncli.study.model.options import MemoryBudget, require_memory_for_steps
+from heuncli.study.model.memory import MemoryBudget, require_memory_for_steps
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.load_errors import ComparedInstants, LoadErrors
 from heuncli.study.solve.singular_start import require_motion

@@ -1,22 +1,15 @@
-"""Estimate the errors of loads and energy, by kind: twice the difference between runs, plus the rounding of sums.
+"""Collect the differences of loads between runs: of reactions, couplings, sensors, foundation, sections and forces.
 
-Errors are the largest over the whole run, including instants that are not requested; each is relative to the largest
-result of its kind at the requested instants. Forces of a kind are compared with its largest force, or its largest
-moment divided by its longest arm; its moments with the largest moment, or the largest force times the size of the
-scene. The arm is the size of the scene; for the foundation it is the reach of the scene from the point that its moment
-is taken about. Drives: torques and thrusts each against their own largest. Energy: against the largest kinetic, or the
-range of potential energy and work, because these have no zero of their own. Where larger
-terms cancel and only rounding is left of a kind, its error is given as 0.
+error_estimates.py says how errors follow from them, and motion_errors.py adds those of the motion and its energy.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property, reduce
+from functools import reduce
 
 import numpy as np
 
-from heuncli.base import tolerances
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import (
@@ -26,10 +19,8 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
-from heuncli.loads.kinetostatics.balance import energy_block
 from heuncli.loads.kinetostatics.bodies import BodyStates, KernelBodyStates, make_body_states
-from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
-from heuncli.loads.kinetostatics.coupling_numbers import list_numbers
+from heuncli.loads.kinetostatics.coupling_numbers import collect_by_quantity
 from heuncli.loads.kinetostatics.couplings import (
     CouplingLoads,
     find_coupling_loads,
@@ -40,21 +31,19 @@ from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loa
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
-from heuncli.multibody.mechanism.model import Joint, extent_points
-from heuncli.results.path_words import BY_CAUSE, TRAVELS
+from heuncli.multibody.mechanism.model import Joint
+from heuncli.results.path_words import BY_CAUSE
 from heuncli.results.results import Array, Mask
 from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.error_estimates import (
     ESTIMATED,
     BalanceTerms,
-    ErrorEstimates,
     Weights,
-    compare_attitudes,
     compute_lengths,
     compute_norms,
-    iter_momentum_quantities,
 )
+from heuncli.study.solve.motion_errors import MotionErrors
 
 ROW_CHANGE = 1e-6  # relative to the largest multiplier: a change of the chosen rows changes indeterminate loads by more
 CUTS_AT_ONCE = 200_000  # instants times cuts whose loads are compared together
@@ -81,28 +70,8 @@ def iter_coupling_results(
         body_loads = coupling.body_loads(own_loads).values()
         for name, values in zip(("place", "force", "moment"), zip(*body_loads, strict=True), strict=True):
             yield name, np.stack(values, axis=1)
-        for name, parts in find_coupling_numbers(coupling, joints, states).items():
+        for name, parts in collect_by_quantity(coupling, joints, states).items():
             yield name, np.stack(parts, axis=1)[..., None]
-
-
-def find_coupling_numbers(loads: CouplingLoads, joints: Sequence[Joint], states: BodyStates) -> dict[str, list[Array]]:
-    """Return the numbers shown for a coupling, by the names of their quantities."""
-    numbers_by_quantity: dict[str, list[Array]] = {}
-    for number in list_numbers(loads):
-        numbers_by_quantity.setdefault("moment" if number.is_moment else "force", []).append(number.values)
-    spec_coupling = loads.coupling.entry
-    if spec_coupling.type in ("gear", "screw", "belt"):
-        from heuncli.loads.kinetostatics.coupling_numbers import DRIVE_ELEMENT_NUMBERS  # few scenes have them
-
-        for name, values in DRIVE_ELEMENT_NUMBERS[spec_coupling.type](
-            spec_coupling, loads.carried_load, is_impulse=False
-        ).items():
-            numbers_by_quantity.setdefault("moment" if name == "torque" else "force", []).append(values)
-    if spec_coupling.type == "cam":
-        from heuncli.loads.kinetostatics.coupling_numbers import pressure_angle  # few scenes have them
-
-        numbers_by_quantity["angle"] = [pressure_angle(loads, joints, states)]
-    return numbers_by_quantity
 
 
 class ComparedInstants(NamedTuple):
@@ -112,8 +81,11 @@ class ComparedInstants(NamedTuple):
     joints: tuple[JointLoads, ...] = ()
 
 
-class LoadErrors(ErrorEstimates):
-    """Collects the differences of a motion's loads and energy between runs, for the kinds that are requested."""
+class LoadErrors(MotionErrors):
+    """The differences of a motion's loads and energy between runs, for the kinds that are requested.
+
+    add: adds instants; estimate, errors: return what follows from those added so far
+    """
 
     def __init__(
         self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED, *, keep_instants: bool = False
@@ -122,67 +94,60 @@ class LoadErrors(ErrorEstimates):
         super().__init__(setup, weights)
         self.keep_instants, self.by_cause = keep_instants, by_cause
         self.last: ComparedInstants | None = None  # results of the instants that were added last
-        self.is_requested = self.is_claimed = np.zeros(0, dtype=bool)
 
-    def add_values(
-        self, name: tuple[str, str], values: Array, rounding: Array, terms: Array, extra_difference: Array | None = None
-    ) -> None:
-        """Add instants of a quantity: see `Extent.add`."""
-        self.find_extent(*name).add(values, rounding, terms, (self.is_requested, self.is_claimed), extra_difference)
-
-    def add(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
+    def add(self, solutions: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
         """Add instants, each with the solution of the first run, then of the others.
 
         is_requested, is_claimed (n,): which of them are requested, and which are before the horizon
         """
-        count = len(recovered.times) // max(len(is_requested), 1)
+        count = len(solutions.times) // max(len(is_requested), 1)
         # with other closure rows, indeterminate loads differ by more than their error: such instants are left out,
         # unless all are so
         same = (
-            find_equal_rows(recovered, count)
+            find_equal_rows(solutions, count)
             if self.setup.model["redundant"]
             else np.ones(len(is_requested), dtype=bool)
         )
         if same.any() and not same.all():
-            recovered, is_requested, is_claimed = (
-                recovered.select(np.repeat(same, count)),
+            solutions, is_requested, is_claimed = (
+                solutions.select(np.repeat(same, count)),
                 is_requested[same],
                 is_claimed[same],
             )
         chunk_size = self.choose_chunk_size(count)
         if chunk_size >= len(is_requested):
-            self.add_chunk(recovered, is_requested, is_claimed)
+            self.add_chunk(solutions, is_requested, is_claimed)
             return
         for i in range(0, len(is_requested), chunk_size):
             part = slice(i, i + chunk_size)
-            self.add_chunk(recovered.select(slice(count * i, count * part.stop)), is_requested[part], is_claimed[part])
+            self.add_chunk(solutions.select(slice(count * i, count * part.stop)), is_requested[part], is_claimed[part])
 
     def choose_chunk_size(self, count: int) -> int:
         """Return how many instants of `count` runs are compared together: cuts may need more memory than all else."""
         cuts = sum(len(cuts.side) for cuts in self.setup.cuts)
         return BLOCK * max(1, CUTS_AT_ONCE // (BLOCK * count * cuts + 1))
 
-    def add_chunk(self, recovered: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
+    def add_chunk(self, solutions: Evaluation, is_requested: Mask, is_claimed: Mask) -> None:
         """Add instants that are solved with the same closure rows in all runs."""
         self.is_requested, self.is_claimed = is_requested, is_claimed
-        require_on_sheaves(self.setup.scene.layout, recovered, has_all_steps=True)
-        states = make_body_states(self.setup.scene.layout, recovered)
+        require_on_sheaves(self.setup.scene.layout, solutions, has_all_steps=True)
+        states = make_body_states(self.setup.scene.layout, solutions)
         self.last = ComparedInstants(states) if self.keep_instants else None
-        loads = collect_applied_loads(self.setup.scene.mechanism, states, recovered)
+        loads = collect_applied_loads(self.setup.scene.mechanism, states, solutions)
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
-            self.add_loads(recovered, states, loads)
+            self.add_loads(solutions, states, loads)
         if "energy" in self.compared:
-            self.add_energy(recovered, states)
+            self.add_energy(solutions, states)
         if "motion" in self.compared:
-            self.add_motion(recovered, states)
+            self.add_motion(solutions, states)
 
-    def add_loads(self, recovered: Evaluation, states: KernelBodyStates, loads: Sequence[AppliedLoad]) -> None:
+    def add_loads(self, solutions: Evaluation, states: KernelBodyStates, loads: Sequence[AppliedLoad]) -> None:
         """Add loads of all kinds."""
-        joints = find_joint_loads(self.setup.scene.layout, recovered, states)
+        joints = find_joint_loads(self.setup.scene.layout, solutions, states)
         self.last = ComparedInstants(states, tuple(joints)) if self.keep_instants else None
-        terms = BalanceTerms(self.setup, recovered, states, loads)
+        terms = BalanceTerms(self.setup, solutions, states, loads)
         applied = [load.action for load in loads]
-        couplings = find_coupling_loads(self.setup.scene.layout, recovered, states)
+        couplings = find_coupling_loads(self.setup.scene.layout, solutions, states)
         coupling_loads_on_bodies = list_coupling_actions(couplings)
         if couplings:
             from heuncli.loads.kinetostatics.couplings import add_separating_forces  # few scenes have gears
@@ -212,7 +177,7 @@ class LoadErrors(ErrorEstimates):
 
             pushing = [*applied, *list_rope_actions(couplings)]
             for kind, name, values, factor in iter_compared_shares(
-                self.setup, recovered, states, pushing, self.compared, terms
+                self.setup, solutions, states, pushing, self.compared, terms
             ):
                 F, M = (rounding * factor for rounding in terms.rounding)
                 rounding, magnitude = (M, terms.moment * factor) if name == "moment" else (F, terms.force * factor)
@@ -229,56 +194,6 @@ class LoadErrors(ErrorEstimates):
             if load.strain is not None:
                 self.add_values(("strains", "m"), load.strain[:, 0], zeros, zeros)
                 self.add_values(("strains", "rad"), load.strain[:, 1], zeros, zeros)
-
-    def add_motion(self, recovered: Evaluation, states: BodyStates) -> None:
-        """Add velocities and accelerations of the bodies, and of points as far from their centres as they reach.
-
-        Also the momenta, system vectors and attitudes, if the motion is requested.
-        """
-        count = len(states.omega) // len(self.is_requested)
-
-        def find_differences(values: Array) -> Array:
-            """Return the largest difference of the first run's vectors from those of the other runs, (n, b)."""
-            own = values[0::count]
-            return reduce(np.maximum, [compute_norms(own - values[k::count]) for k in range(1, count)])
-
-        omega_difference, alpha_difference = find_differences(states.omega), find_differences(states.alpha)
-        centripetal = 2.0 * compute_norms(states.omega[0::count]) * omega_difference
-        for unit, difference in (
-            ("rad/s", omega_difference),
-            ("rad/s²", alpha_difference),
-            ("m/s", find_differences(states.v_centre) + omega_difference * self.reaches),
-            ("m/s²", find_differences(states.a_centre) + (alpha_difference + centripetal) * self.reaches),
-        ):
-            self.find_extent("motion", unit).add_difference(difference.max(axis=1), self.is_claimed)
-        if any(JOINTS[joint.kind].follows_path for joint in self.setup.scene.mechanism.joints):
-            self.add_travels(recovered, states)
-        if "motion" in self.setup.selection.reports:
-            turned, vectors = compare_attitudes(states.R, count)
-            self.find_extent("attitudes", "1").add_difference(turned, self.is_claimed)
-            self.find_extent("rodrigues", "1").add_difference(
-                vectors[self.is_requested], self.is_claimed[self.is_requested]
-            )
-            zeros = np.zeros(len(states.R))
-            for unit, values, rounding in iter_momentum_quantities(
-                self.setup.scene.mechanism, states, self.setup.moment_point
-            ):
-                self.add_values(("motion", unit), values, rounding, zeros)
-
-    def add_travels(self, recovered: Evaluation, states: BodyStates) -> None:
-        """Add travels, some of them along paths: in the parameter of the path's table, which need not be its length."""
-        zeros = np.zeros(len(recovered.times))
-        for own in evaluate_joint_coordinates(self.setup.scene.layout, recovered, states).values():
-            if "travel" in own:
-                for name, unit in zip(TRAVELS, ("m", "m/s", "m/s²"), strict=True):
-                    self.add_values(("travels", unit), own[name], zeros, zeros)
-
-    @cached_property
-    def reaches(self) -> Array:
-        """The largest distance of each body's marks from its centre of mass, (b,) [m]."""
-        bodies = self.setup.scene.mechanism.bodies
-        far = [max(float(np.sum(np.square(p - body.center))) for p in extent_points(body)) for body in bodies]
-        return np.asarray(np.sqrt(far))
 
     def add_joints(
         self, joints: Sequence[JointLoads], coupling_results: Sequence[Quantity], terms: BalanceTerms
@@ -309,17 +224,15 @@ class LoadErrors(ErrorEstimates):
         self, states: BodyStates, joints: Sequence[JointLoads], acting: Sequence[Action], terms: BalanceTerms
     ) -> None:
         """Add the loads of the bearings of joints, and what sensors read."""
-        F, M = terms.rounding
-        if any(load.joint.bearings is not None for load in joints):
-            from heuncli.loads.kinetostatics.bearings import iter_bearing_terms  # few joints have them
-
-            for values, by_force, by_moment in iter_bearing_terms(joints):
-                largest_term = by_force * terms.force + by_moment * terms.moment
-                self.add_values(("bearings", "force"), values, by_force * F + by_moment * M, largest_term)
-        if not self.setup.sensors:
+        if not self.setup.sensors and all(load.joint.bearings is None for load in joints):
             return
-        from heuncli.loads.kinetostatics.sensors import find_sensor_reaction  # few scenes have them
+        # few scenes have them
+        from heuncli.loads.kinetostatics.moved_reactions import find_sensor_reaction, iter_bearing_terms
 
+        F, M = terms.rounding
+        for values, by_force, by_moment in iter_bearing_terms(joints):
+            largest_term = by_force * terms.force + by_moment * terms.moment
+            self.add_values(("bearings", "force"), values, by_force * F + by_moment * M, largest_term)
         mechanism = self.setup.scene.mechanism
         for sensor in self.setup.sensors:
             reaction = find_sensor_reaction(sensor, mechanism, self.setup.cuts, states, joints, acting)
@@ -397,27 +310,15 @@ class LoadErrors(ErrorEstimates):
                 turn_difference = turned * compute_lengths(instants_first[0::count])
                 self.add_values(("sections", quantity), instants_first, rounding, magnitude, turn_difference)
 
-    def add_energy(self, recovered: Evaluation, states: BodyStates) -> None:
-        """Add kinetic and potential energy, and work."""
-        block = energy_block(self.setup.scene.layout, recovered, states)
-        m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
-        speed = np.abs(states.v_centre).max(axis=(1, 2))
-        lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
-        rounding = tolerances.SUM_ROUNDING * (block["kinetic"] + m.sum() * speed**2)
-        zeros = np.zeros(len(recovered.times))
-        self.add_values(("energy", "kinetic"), block["kinetic"], rounding, zeros)
-        self.add_values(("energy", "potential"), block["potential"], tolerances.SUM_ROUNDING * lift, zeros)
-        self.add_values(("energy", "work"), block["work"], zeros, zeros)
 
-
-def find_equal_rows(recovered: Evaluation, count: int) -> Mask:
+def find_equal_rows(solutions: Evaluation, count: int) -> Mask:
     """Mark the instants that all of `count` runs solve with the same closure rows, (n,); other rows have no multiplier.
 
     A row with multiplier zero in one run and almost zero in another counts as chosen in both.
     """
-    size = np.abs(recovered.rows["multiplier"])
+    size = np.abs(solutions.rows["multiplier"])
     is_zero, first_run = size == 0.0, slice(0, None, count)
-    same = np.ones(len(recovered.times) // count, dtype=bool)
+    same = np.ones(len(solutions.times) // count, dtype=bool)
     for k in range(1, count):
         other = slice(k, None, count)
         larger = np.maximum(size[first_run], size[other])

@@ -36,7 +36,8 @@ from heuncli.output.tables.report_selection import find_default_reports
 from heuncli.scene.file_format.load import load_with_cases
 from heuncli.scene.file_format.models import Expect, Spec
 from heuncli.scene.file_format.reading import read_bytes
-from heuncli.study.model.options import MemoryBudget, Options
+from heuncli.study.model.memory import MemoryBudget
+from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EVERYTHING, Selection, select_paths
 from heuncli.study.queries.expectations import compare
 from heuncli.study.queries.study import Study

@@ -37,7 +37,7 @@ from heuncli.scene.file_format.models import Spec
 from heuncli.scene.file_format.names import ALL_CASES, as_mapping
 from heuncli.scene.file_format.reading import STANDARD_INPUT
 from heuncli.scene.file_format.source import read_source
-from heuncli.study.model.options import MemoryBudget
+from heuncli.study.model.memory import MemoryBudget
 from heuncli.study.model.selection import Selection, select_paths
 
 if TYPE_CHECKING:

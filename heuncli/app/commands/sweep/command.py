@@ -45,7 +45,7 @@ from heuncli.base.process import result_memory
 from heuncli.base.records import replace
 from heuncli.output.tables import measure
 from heuncli.scene.file_format.source import read_text
-from heuncli.study.model.options import MemoryBudget
+from heuncli.study.model.memory import MemoryBudget
 from heuncli.study.queries.measure_uncertainty import find_unit
 from heuncli.version import VERSION
 

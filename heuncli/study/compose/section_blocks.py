@@ -1,22 +1,69 @@
-"""Make the results of sensors: reactions of joints and loads of cuts about other points, in other axes.
+"""Make the blocks of sections and of sensors: the loads of cuts, and reactions about other points in other axes.
 
-What a sensor reads is linear in the reaction (loads/kinetostatics/sensors.py): so are the shares by cause, and those of
-the self-stresses, which say what is indeterminate.
+Both are linear in the joints' reactions: so are their shares by cause, and those of the self-stresses, which say what
+is indeterminate. Only scenes that have them load this module.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
-from heuncli.loads.kinetostatics.sensors import PlacedSensor, find_sensor_reaction, move_shares
-from heuncli.results.results import Array, Block
+from heuncli.loads.kinetostatics.moved_reactions import PlacedSensor, find_sensor_reaction, move_shares
+from heuncli.loads.kinetostatics.sections import find_attachments, make_section_block
+from heuncli.results.results import Array, Block, Mask
 from heuncli.study.compose.recovery import Recovery
 
 if TYPE_CHECKING:
+    from heuncli.loads.kinetostatics.cuts import Cuts
     from heuncli.loads.redundancy.self_stress import SelfStress
+
+
+def make_section_blocks(recovery: Recovery, by_cause: bool = False) -> Block:
+    """Make the blocks of all requested sections, `sections` of the results; by_cause: with their shares."""
+    scene, states = recovery.setup.scene, recovery.states
+    block: Block = {}
+    actions = [
+        *list_whole_joint_actions(recovery.joints),
+        *recovery.applied_actions,
+        *list_coupling_actions(recovery.couplings),
+    ]
+    for requested_cuts in recovery.setup.cuts:
+        attached = find_attachments(requested_cuts.body, states, actions)
+        cuts = requested_cuts.place_for_loads(attached)
+        is_open = find_open_section(recovery, cuts)
+        gravity, planar = scene.mechanism.gravity, scene.mechanism.planar
+        block[cuts.name] = make_section_block(cuts, states, gravity, attached, is_open, planar)
+        if is_open:
+            from heuncli.loads.redundancy.indeterminate_components import list_indeterminate_section_names
+
+            block[cuts.name]["open"] = list_indeterminate_section_names(is_open)
+        if cuts.beam is not None:
+            from heuncli.loads.kinetostatics.deflection import make_deflection_block  # few scenes ask for it
+
+            find_open = partial(find_open_section, recovery)
+            block[cuts.name] |= make_deflection_block(cuts, states, gravity, attached, find_open, planar)
+        if by_cause:
+            from heuncli.loads.kinetostatics.shares import make_section_shares_block
+
+            block[cuts.name]["shares"] = make_section_shares_block(cuts, scene.layout, states, recovery.shares, is_open)
+    return block
+
+
+def find_open_section(recovery: Recovery, cuts: Cuts) -> Mapping[str, Mask]:
+    """Return which loads of cuts are indeterminate, by name; empty where none is."""
+    if recovery.indeterminate is None:
+        return {}
+    from heuncli.loads.redundancy.indeterminate_components import find_indeterminate_section
+
+    return find_indeterminate_section(
+        cuts, recovery.states, recovery.joints, recovery.couplings, recovery.indeterminate
+    )
 
 
 def make_sensor_blocks(recovery: Recovery, by_cause: bool) -> Block:
