@@ -1,14 +1,15 @@
 """Contacts: where within a trial step an open one first closes, or a closed one would have to pull.
 
-The margin of a unilateral row depends on its mode:
+The margin of a unilateral row, by its mode:
 
-    APART    open                          sense * gap
-    CARRIES  closed                        sense * multiplier
-    LEANS    kept closed by others         |gap|: a drive may open it
+    APART      open                            sense * gap
+    CARRIES    closed                          sense * multiplier
+    LEANS      kept closed by other contacts   |gap|, for a drive may open it
 
-It is never positive; |gap| never exceeds its rounding. That of a friction is in sticking.py. It is followed along the
-dense output and bounded by its second differences; parts in doubt are halved, from left to right. The step is repeated
-up to there until both agree. What happens then is decided outside (motion/integration/contacts/restitution.py).
+It must not become positive, and |gap| must not exceed its rounding. That of a friction is in sticking.py. The margin is
+followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
+The step is repeated up to there until both agree. What happens then is decided outside
+(motion/integration/contacts/restitution.py).
 """
 
 from __future__ import annotations
@@ -33,9 +34,7 @@ NO_MARGIN, GAPS_ONLY, FORCES_TOO = range(3)
 
 
 def contact_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact]) -> cython.double:
-    """Return what must not become positive: the gap of an open contact, the multiplier of a closed one. The size of the
-    gap of one that others keep closed, which must not leave its rounding.
-    """
+    """Return the margin of a contact (see above)."""
     if contact.friction:
         return measure_friction_margin(scene, contact)
     row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
@@ -87,8 +86,8 @@ def update_margin_extremes(scene: cython.pointer[Scene], t: cython.double) -> cy
 
 
 def find_pushing_rope(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Set run.contact to the rope that ends the run because it would have to push at the start of a piece; return
-    whether there is one.
+    """Set run.contact to a rope that would have to push at the start of a piece, which ends the run. Returns whether
+    there is one.
     """
     i: cython.Py_ssize_t
     most: cython.double = 0.0
@@ -120,13 +119,13 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
 
     A gap that is open, or leaves with a rate, closes where it is zero again, to the rounding of its sum; one that
     touches at rest is known to the accuracy of the projection. If run.late is set (stepping.py), a gap that comes
-    within that closes there already. It shows the effect of rounding: a run that just grazes a limit, or misses it, is
-    compared with one that touches it.
+    within that closes there already: so a run that just grazes a limit, or misses it, is compared with one that touches
+    it.
     """
     i: cython.Py_ssize_t
     needed: cython.int = NO_MARGIN
     size: cython.double
-    threshold: cython.double
+    rounding: cython.double
     likely: cython.double
     early: cython.bint
     least: cython.double = 0.0
@@ -143,24 +142,24 @@ def set_contact_thresholds(scene: cython.pointer[Scene], run: cython.pointer[Run
         if contact.sense == 0:
             continue
         if row.mode == LEANS:
-            threshold = scene.limits.reopened * scene.size / row.weight
-            if contact.most + 0.5 * (contact.most - contact.least) > threshold or run.landing.contact_attempts:
-                contact.threshold = threshold
+            rounding = scene.limits.reopened * scene.size / row.weight
+            if contact.most + 0.5 * (contact.most - contact.least) > rounding or run.landing.contact_attempts:
+                contact.threshold = rounding
                 needed = GAPS_ONLY if needed == NO_MARGIN else needed
             continue
         size = size_of_row_gap(scene, row)
-        threshold = scene.limits.touching * size
-        early = row.mode == APART and run.late and may_close_early(contact, threshold)
+        rounding = scene.limits.touching * size
+        early = row.mode == APART and run.late and may_close_early(contact, rounding)
         likely = contact.most + 0.5 * (contact.most - contact.least)
-        if likely < (-threshold if early else 0.0) and not run.landing.contact_attempts:
+        if likely < (-rounding if early else 0.0) and not run.landing.contact_attempts:
             continue
         if row.mode == CARRIES:
             contact.threshold = scene.limits.rounding * fabs(least)
             needed = FORCES_TOO
         elif early:
-            contact.threshold = -threshold
+            contact.threshold = -rounding
         else:
-            contact.threshold = threshold
+            contact.threshold = rounding
             if contact.start < -contact.threshold or contact.start_rate * run.h < -contact.threshold:
                 contact.threshold = scene.limits.rounding * size
             # a contact that opens does not close again where it opened
@@ -180,9 +179,9 @@ def may_change_state(
     return contact.most + 0.5 * (contact.most - contact.least) > 0.0 or run.landing.contact_attempts > 0
 
 
-def may_close_early(contact: cython.pointer[Contact], threshold: cython.double) -> cython.bint:
-    """Return whether a gap may be closed before it is zero: it is open by more than rounding, or comes back to it."""
-    return contact.start < -threshold or (contact.start_rate > 0.0 and contact.start < -0.5 * threshold)
+def may_close_early(contact: cython.pointer[Contact], rounding: cython.double) -> cython.bint:
+    """Return whether a gap may close before it is zero: it is open by more than its rounding, or comes back to it."""
+    return contact.start < -rounding or (contact.start_rate > 0.0 and contact.start < -0.5 * rounding)
 
 
 def evaluate_within_step(
@@ -239,7 +238,7 @@ def locate_closing(
     """Return where the gap of the contact found is zero, just before x, where it has not passed its threshold; x for
     other contacts.
 
-    If run.late is set, return where it is at the threshold: so the effect of a gap's rounding is seen.
+    If run.late is set (stepping.py), return where it is at the threshold.
     """
     i: cython.Py_ssize_t
     rate: cython.double
@@ -290,7 +289,7 @@ def find_first_contact(
 
 
 def find_exceeded_margin(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.bint:
-    """Set run.contact to the last contact whose margin is above its threshold; return whether there is one."""
+    """Set run.contact to the last contact whose margin is above its threshold. Returns whether there is one."""
     i: cython.Py_ssize_t
     found: cython.bint = False
     for i in range(scene.contact_count):

@@ -1,9 +1,9 @@
 """Judge a step that was tried: accept it, try another length, or give up.
 
-A step of given length is accepted if its end could be computed. The error of any other is measured body by body and the
-largest counts, for a resting neighbour must not dilute it: coordinates against tol (angles) and tol * size (shifts),
-rates against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential Equations
-I (1993), II.4.
+A step of given length is accepted if its end could be computed. The error of any other is measured body by body and
+the largest counts, for a resting neighbour must not dilute it: coordinates against tol (angles) and tol * size
+(shifts), rates against tol * the largest rate the body has had. Hairer, Norsett, Wanner, Solving Ordinary Differential
+Equations I (1993), II.4.
 """
 
 from __future__ import annotations
@@ -109,17 +109,17 @@ def find_rate_floor(scene: cython.pointer[Scene], run: cython.pointer[Run], is_e
 
 
 def update_imposed_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
-    """Update the largest rate so far that drives and each load on its own impose, at the instant evaluated last, and
+    """Update the largest rate so far that drives, and each load on its own, impose at the instant evaluated last, and
     whether all moves so much slower that its rates may be rounding.
 
     Where they balance, all that they act on rests but for rounding: two springs that pull against each other, a
     pendulum that hangs still in a rotor.
     """
     i: cython.Py_ssize_t
-    rate: cython.double = 0.0
     rate_of_drive: cython.double
-    largest_square: cython.double = 0.0
     load_size: cython.double
+    rate: cython.double = 0.0
+    largest_square: cython.double = 0.0
     mass_size: cython.double
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
@@ -161,7 +161,7 @@ def find_body_mass_size(scene: cython.pointer[Scene], run: cython.pointer[Run], 
     """Return mass times size of a body [kg m]: of the ground (-1) UNBOUNDED, of one without mass the lightest's."""
     if k < 0:
         return UNBOUNDED
-    return scene.bodies[k].mass * scene.size if scene.bodies[k].mass > 0.0 else run.control.least_inertia
+    return scene.bodies[k].mass * scene.size if scene.bodies[k].mass > 0.0 else run.control.least_mass_size
 
 
 def sum_magnitudes(a: Vec3) -> cython.double:
@@ -187,7 +187,8 @@ def assess_step(
 ) -> cython.int:
     """Judge a step that was tried, and propose another length where it is to be tried AGAIN.
 
-    Returns ACCEPTED, AGAIN, NOT_A_NUMBER; for given lengths also UNSOLVED or CLOSURES_LOST.
+    Returns ACCEPTED, AGAIN, NOT_A_NUMBER; for given lengths also UNSOLVED or CLOSURES_LOST. evaluation_code: what
+    `evaluate` returned at the step's end, or at a stage that failed; negative where it failed
     """
     error: cython.double
     noise: cython.double = 0.0
@@ -294,10 +295,10 @@ def propose_length_off_singularity(
     if scene.pivot_of_step > 0.0:
         noise = scene.limits.pivot_rounding * run.h * run.control.rate / (scene.pivot_of_step * run.control.tolerance)
     broken: cython.bint = error != error or evaluation_code < 0
-    # all lengths are tried, or the step must end where it ends
+    # all lengths tried, or the step must end where it ends
     if run.control.retries >= scene.limits.singular_retries or run.ends_piece:
         return False
-    # it is good enough at once
+    # no sign of a singular pose: the error alone decides
     if not (noise > SINGULAR_NOISE or broken or (error > 1.0 and run.control.retries > 0)):
         return False
     worst: cython.double = error if error > noise else noise

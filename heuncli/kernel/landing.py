@@ -1,8 +1,8 @@
 """Steps that end on events: a trial step is checked, and repeated up to the first event within it.
 
-The event takes effect at the end of the step that lands there: branches turn (a condition, clamp or sign in an
-expression takes its other side), or a contact closes or opens (contacts.py). Its place is found on the dense output of
-the step that went over it, then at the end of the one that should have met it, until both agree.
+The event takes effect at the end of the step that lands there: branches turn (an operation of an expression takes
+another of its branches), or a contact closes or opens (contacts.py). Its place is found on the dense output of the step
+that went over it, then at the end of the one that should have met it, until both agree.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from heuncli.kernel.watches import check_coarsely, record_extremes, reset_extrem
 
 MAX_FLURRY_EVENTS = 16  # events that gather at an instant
 SPARSE_EVENTS = 2  # so many beside each other are no flurry yet
-# Branch changes allowed at one instant, and more for each held branch; beyond, they count as endless.
+# Branch changes allowed at one instant: 4, and 2 more for each held branch; more count as endless.
 EVENTS_AT_INSTANT, EVENTS_PER_BRANCH = 4, 2
 SHORT_PART = 0.1  # of a step, to which it is cut where bounds decide nothing of it
 END_SHARE = 0.01  # of the run's end: instants before it are as coarse as there
@@ -59,8 +59,9 @@ def record_stage(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cyth
 def find_events_of_step(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.int:
-    """Find what happens in a trial step. Returns NO_EVENT (`turns`: branches change at its end), REPEAT_TO (up to
-    `cut`), CONTACT_EVENT or EVENT_CHATTER.
+    """Find what happens in a trial step.
+
+    Returns NO_EVENT (`turns`: branches turn at its end), REPEAT_TO (up to `cut`), CONTACT_EVENT or EVENT_CHATTER.
     """
     code: cython.int = NO_EVENT
     pivot: cython.double = scene.pivot
@@ -80,20 +81,18 @@ def find_events_of_step(
 def find_branch_event(
     scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
 ) -> cython.int:
-    """Find changes of branches, and what no stage has seen, within a trial step."""
-    doubt: cython.int
+    """Find where branches turn, and what no stage has seen, within a trial step."""
     event_kind: cython.int
     course: cython.pointer[Course] = cython.address(run.course)
-    if run.landing.attempts:
+    if run.landing.attempts:  # around the end of a step that is to end on the event
         build_end_window(scene, method, run)
         if find_first_event(scene, course) == TURNS and course.event > 0.0:
             return land_on_event(scene, method, run)
     # as seen by the stages
-    doubt = check_coarsely(scene, run.t, clip_time(run, run.stop))
+    doubt: cython.int = check_coarsely(scene, run.t, clip_time(run, run.stop))
     if doubt == CLEAR:
         return NO_EVENT
-    # on a cubic through the ends
-    if doubt != BRANCH_IN_DOUBT:
+    if doubt != BRANCH_IN_DOUBT:  # on a cubic through the ends
         build_hermite(method, run)
         build_step_course(scene, run, HERMITE_ROWS)
         if find_first_event(scene, course) == NOTHING and not course.undecided:
@@ -125,7 +124,7 @@ def shorten_step(scene: cython.pointer[Scene], run: cython.pointer[Run], event_k
 
 
 def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
-    """Change the branches at the event: at the start, at the end of the trial step, or after another one that ends
+    """Turn the branches at the event: at the start of the trial step, at its end, or after another step that ends
     there.
     """
     course: cython.pointer[Course] = cython.address(run.course)
@@ -134,7 +133,7 @@ def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], 
     if run.late:
         event_time = event_time + least_distance
     distance: cython.double = fabs(event_time - run.stop)
-    # 1: at the start of the step: change the branches now, and try the step again
+    # at the start of the step: turn the branches now, and try the step again
     if event_time - run.t <= 2.0 * least_distance:
         run.landing.turns_at_instant += 1
         if (
@@ -150,16 +149,16 @@ def land_on_event(scene: cython.pointer[Scene], method: cython.pointer[Method], 
         run.landing.attempts = 0
         run.landing.cut = run.t  # no shorter step
         return REPEAT_TO
-    # at a kink, near it is near enough
+    # a kink: near it is near enough
     if scene.limits.near_kink * run.h > least_distance and relative_jump(scene, course) <= scene.limits.no_jump:
         least_distance = scene.limits.near_kink * run.h
-    # 2: the step ends on it
+    # the step ends on it
     if run.landing.attempts and (distance <= least_distance or run.landing.attempts >= MAX_LANDINGS):
         run.landing.turns = 1
         return NO_EVENT  # counted when the step is accepted: a contact may end it earlier
     if event_time >= run.end:
         return NO_EVENT  # the event is after the end of the piece
-    # 3: try again up to there
+    # try again up to there
     run.landing.attempts += 1
     run.landing.cut = event_time
     return REPEAT_TO

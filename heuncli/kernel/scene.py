@@ -252,8 +252,7 @@ class Closure(Record):
     support_count: int  # numbers of its reflector
     coupled_count: int  # independent rows that fill it
     reflector: float  # 2 / |v|^2 of its reflector 1 - 2 v v' / |v|^2
-    # 1 / sqrt of the larger of its response and a part of the response if its load were perpendicular to its arms
-    pose_scale: float
+    pose_scale: float  # 1 / sqrt(r), r its response, or a part of that to a load across its arms (set_pose_scale)
 
 
 class Contact(Record):
@@ -280,15 +279,16 @@ class Contact(Record):
     start_rate: float
     least: float  # what the stages of a step saw of it
     most: float
-    threshold: float  # above it the contact closes, or opens
-    highest: float  # over a part of a step: its largest margin so far
-    bent: float  # the largest second difference of the margins at its points
+    threshold: float  # of the margin: above it the contact closes, or opens
+    # over equidistant points in a part of a step
+    highest: float  # largest margin so far
+    bent: float  # its largest second difference
     previous: float  # the margin one point back
-    before_previous: float  # and two points back
-    fastest: float  # the same of the margin's rate
-    rate_bent: float
-    rate_previous: float
-    rate_before_previous: float
+    before_previous: float  # two points back
+    fastest: float  # largest rate of the margin so far
+    rate_bent: float  # its largest second difference
+    rate_previous: float  # the rate one point back
+    rate_before_previous: float  # two points back
 
 
 class PathPiece(Record):

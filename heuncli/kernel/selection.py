@@ -58,8 +58,8 @@ def select_independent_rows(
 
 
 def order_all(scene: cython.pointer[Scene], threshold: cython.double) -> cython.double:
-    """Order the closure rows of all islands by their pivots: those that may be chosen, and of which more than
-    `threshold` is left. Returns the smallest pivot.
+    """Order the closure rows of all islands by their pivots: rows that may be chosen, and with more than `threshold`
+    left. Returns the smallest pivot.
     """
     i: cython.Py_ssize_t
     least_pivot: cython.double = 1.0
@@ -187,8 +187,8 @@ def remaining_square(
     begin: cython.Py_ssize_t,
     shift: cython.int,
 ) -> cython.double:
-    """Return the square of what the `begin` rows chosen before leave of row k, summed over the parts where it is not
-    zero.
+    """Return the square of row k from direction `begin` on, over the parts where it is not zero: what as many rows
+    chosen before leave of it.
     """
     i: cython.Py_ssize_t
     end: cython.Py_ssize_t
@@ -284,12 +284,8 @@ def list_nonzeros(
 
 # An island's freedoms are divided into at most 31 equal parts; row_bits has a bit for each part in which a row has an
 # entry, so that rows without a common bit need not be multiplied.
-
-
 def part_shift(width: cython.Py_ssize_t) -> cython.int:
-    """Return the power of 2 of the size of parts, so that an island's freedoms have at most as many as an int has bits
-    without its sign.
-    """
+    """Return the power of 2 of the size of an island's parts: at most 31, the bits of an int without its sign."""
     shift: cython.int = 0
     while (width - 1) >> shift > 30:
         shift += 1
@@ -310,8 +306,10 @@ def find_reach(scene: cython.pointer[Scene], nonzero_count: cython.Py_ssize_t, s
 def set_pose_scale(
     scene: cython.pointer[Scene], row: cython.pointer[Closure], reset_scales: cython.bint
 ) -> cython.void:
-    """Set the row's scale in the motion from the responses of its two sides, each alone, so that no cancellation
-    between them makes it small; at least a fraction of the response if its load were perpendicular to its arms.
+    """Set the row's scale in the motion, 1 / sqrt(r); without reset_scales it can only become smaller.
+
+    r is the larger of the response of its two sides, each alone so that they do not cancel, and a part (row_across) of
+    the response if its load were perpendicular to its arms.
     """
     i: cython.Py_ssize_t
     bound: cython.double = 0.0
@@ -385,7 +383,7 @@ def set_row_threshold(scene: cython.pointer[Scene], t: cython.double, y: cython.
     """
     scene.least_row = scene.limits.independent
     select_independent_rows(scene, t, y, True)
-    feigned: cython.double = scene.rank_of_gap * project_state(scene, t, y)  # what the gap may add to a row
+    feigned: cython.double = scene.rank_of_gap * project_state(scene, t, y)  # what the gap may feign of a row
     if feigned > scene.least_row:
         scene.least_row = feigned
         select_independent_rows(scene, t, y, True)

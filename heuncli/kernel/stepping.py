@@ -13,8 +13,8 @@ NO_EVENT, REPEAT_TO, CONTACT_EVENT, EVENT_CHATTER = range(4)
 # A record of the track: whether the step's polynomial is recorded, its start, its length.
 HAS_COURSE, STEP_START, STEP_LENGTH = range(3)
 MAX_LANDINGS = 6  # attempts at one event: the error of its place is squared each time
-# A branch turns: a condition, clamp or sign in an expression takes its other side.
-# What happens in an interval of time, and what bounds leave undecided.
+# What happens in an interval of time, and what bounds leave undecided. A branch turns: an operation of an expression (a
+# condition, a clamp, a sign) takes another of its branches.
 NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
 AS_HELD, BRANCH_TURNED, UNCERTAIN = range(3)  # branches at an instant
 
@@ -114,7 +114,7 @@ class Course(Struct):
     """The course of the coordinates over an interval of time."""
 
     degree: int  # degree of their polynomials
-    late: int  # 1: as `late` of the run
+    late: int  # as Run.late: a branch turns where that is certain, not where its margin is zero
     slot: int  # a branch that turns
     undecided: int  # 1: bounds left open whether all values were seen
     begin: float  # the instant of x = 0
@@ -163,9 +163,9 @@ class Controller(Struct):
     proposed: float  # length of the next step
     error: float  # error of the tried step, 1 = just allowed
     rate: float  # the scene's largest so far [1/s]
-    imposed_rate: float  # the largest so far of drives, and of single loads on free bodies, also in balance [1/s]
+    imposed_rate: float  # the largest so far of drives, and of each load on its own, also in balance [1/s]
     is_balanced: int  # 1: all is so much slower that it may rest but for rounding
-    least_inertia: float  # the least mass but 0, times the size [kg m]
+    least_mass_size: float  # the least mass but 0, times the size [kg m]
     energy_scale: float  # sum m size^2
     retries: int  # other lengths tried for this step, to keep its stages off a singular pose
     best: float  # the least trouble of the lengths tried, and its length
@@ -246,8 +246,8 @@ class Run(Struct):
     following: int  # 1: the steps are given by the track, none is judged
     watches_contacts: int  # 1: contacts are watched
     stops_at_turns: int  # 1: the loop is left where a piece begins and where branches turn
-    # 1: every event is moved by its rounding (gaps close earlier, branches change later): how much the results of this
-    # run differ shows how exactly events are met
+    # 1: events are moved by their rounding: a gap that comes within it closes before it is zero, branches and what
+    # sticks change later; the difference from the other run shows how exactly events are met
     late: int
 
     begins_piece: int  # 1: a piece begins

@@ -131,11 +131,11 @@ def measure_inertia(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> c
     """Set sum m size^2, and the least m size of the bodies that have mass."""
     i: cython.Py_ssize_t
     g: cython.double
-    run.control.energy_scale = run.control.least_inertia = 0.0
+    run.control.energy_scale = run.control.least_mass_size = 0.0
     for i in range(scene.body_count):
         g = scene.bodies[i].mass * scene.size
-        if g > 0.0 and (run.control.least_inertia == 0.0 or g < run.control.least_inertia):
-            run.control.least_inertia = g
+        if g > 0.0 and (run.control.least_mass_size == 0.0 or g < run.control.least_mass_size):
+            run.control.least_mass_size = g
         run.control.energy_scale += g * scene.size
 
 
@@ -152,7 +152,7 @@ def find_load_rate(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cy
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         g = body.mass * scene.size
         if g == 0.0:
-            g = run.control.least_inertia
+            g = run.control.least_mass_size
         u = (sum_magnitudes(body.f_applied) + sum_magnitudes(body.M_applied) / scene.size) / g
         if u > largest:
             largest = u

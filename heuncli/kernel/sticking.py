@@ -93,7 +93,7 @@ def find_friction_threshold(
 ) -> cython.double:
     """Return the margin above which the state changes, from its rounding over a step whose extremes are known.
 
-    end_time: of the piece [s]; late: of the run (stepping.py): at twice the rounding
+    end_time: of the piece [s]; late: as Run.late, a friction that sticks slips at twice the rounding
 
     What begins at rest may begin with the rounding of its rate against its slip: in the shortest steps that is more
     than all that it gains.

@@ -13,7 +13,7 @@ An elastic rope, which also has its energy here:
 
     S = sum of the parts       conditions between two bodies, as closure rows have them (sheaves.py); those of an
                                elastic rope belong to no row, and its load applies `value` times their unit loads
-    x = S - l0                 l0: free length, a number or a law in time
+    x = S - l0                 l0: free length, a number, or a law in time
     V = 1/2 k x^2
     k = k0 L / l0              k0: at the length L, for a shorter rope of the same kind is stiffer
 
@@ -59,7 +59,7 @@ def find_bushing_rotation(scene: cython.pointer[Scene], load: cython.pointer[Loa
 
 
 def find_bushing_shift(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
-    """Return the shift d, bushing axes."""
+    """Return the shift d of b's point relative to a's, bushing axes."""
     return rotate_back(bushing_axes(scene, load), find_span_vector(scene, load))
 
 
@@ -156,7 +156,7 @@ def separation_velocity(scene: cython.pointer[Scene], load: cython.pointer[Load]
 
 
 def square_coefficient(phi: Vec3) -> cython.double:
-    """Return c of the module's formulas."""
+    """Return c of J^-1 = 1 - [phi]/2 + c [phi]^2."""
     square: cython.double = dot(phi, phi)
     if square < 4e-4:
         return 1.0 / 12.0 + square * (1.0 / 720.0 + square / 30240.0)
@@ -165,7 +165,7 @@ def square_coefficient(phi: Vec3) -> cython.double:
 
 
 def square_coefficient_slope(phi: Vec3) -> cython.double:
-    """Return e with dc = e phi . dphi."""
+    """Return e of dc = e phi . dphi, the change of c (square_coefficient)."""
     square: cython.double = dot(phi, phi)
     if square < 4e-2:
         return 1.0 / 360.0 + square * (1.0 / 7560.0 + square * (1.0 / 201600.0 + square / 5987520.0))
@@ -275,6 +275,16 @@ def bushing_turn_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load
 # Elastic ropes
 
 
+def only_pulls(load: cython.pointer[Load]) -> cython.bint:
+    """Return whether a rope only pulls, and is slack where it is shorter than l0."""
+    return load.in_body != 0
+
+
+def has_length_law(load: cython.pointer[Load]) -> cython.bint:
+    """Return whether l0 of a rope is a law in time."""
+    return load.y.count > 0
+
+
 def measure_rope(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> RopeMotion:
     """Find S and S' at the present pose, and the unit loads of the rope's parts."""
     i: cython.Py_ssize_t
@@ -287,16 +297,6 @@ def measure_rope(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Ro
         S += part.factor * part.gap
         rate += part.factor * part.rate
     return RopeMotion(S, rate)
-
-
-def has_length_law(load: cython.pointer[Load]) -> cython.bint:
-    """Return whether the free length of a rope is a law in time."""
-    return load.y.count > 0
-
-
-def only_pulls(load: cython.pointer[Load]) -> cython.bint:
-    """Return whether a rope is slack where it is shorter than its free length."""
-    return load.in_body != 0
 
 
 def free_length(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Jet:
@@ -325,7 +325,7 @@ def rope_energy(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cyt
 
 
 def rope_power(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """Return value S' + dV/dt [W]: the power that damping takes, and that a winch gives when it draws the rope in or
+    """Return the power value S' + dV/dt [W] that damping takes, and that a winch gives when it draws the rope in or
     pays it out.
 
     dV/dt = k x (S' - l0') - 1/2 k x^2 l0' / l0
@@ -363,7 +363,7 @@ def rope_tangent(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Ro
 def rope_power_tangent(
     scene: cython.pointer[Scene], load: cython.pointer[Load], value_change: cython.double, d: RopeMotion
 ) -> cython.double:
-    """Return the change of value S' + dV/dt for a change of `value`, and d of S and S', at one instant."""
+    """Return the change of value S' + dV/dt at one instant; d: changes of S and S'."""
     free: Jet = free_length(scene, load)
     power: cython.double = value_change * load.rate + load.value * d.rate
     x: cython.double = rope_stretch(load, load.span, free.value)

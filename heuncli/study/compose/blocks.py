@@ -95,21 +95,7 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     if "energy" in reports:
         blocks_by_name["energy"] = recovery.energy
     if "motion" in reports:
-        from heuncli.loads.kinetostatics.coordinates import (  # tables do not show them
-            body_quaternions,
-            rodrigues_vectors,
-        )
-
-        attitude_quaternions = body_quaternions(layout, solutions)
-        vectors = rodrigues_vectors(attitude_quaternions)
-        body_momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
-        blocks_by_name["bodies"] = {
-            b.name: make_body_block(states, attitude_quaternions, vectors, body_momenta, i)
-            for i, b in enumerate(mechanism.bodies)
-        }
-        blocks_by_name["momentum"] = body_momenta.sum_bodies()
-        blocks_by_name["coordinates"] = evaluate_joint_coordinates(layout, solutions, states)
-        blocks_by_name["system_vector"] = system_vector(mechanism, states)
+        blocks_by_name |= make_motion_blocks(recovery)
     if "points" in reports:
         blocks_by_name["points"] = point_motions(mechanism, states)
     if "sections" in reports:
@@ -123,6 +109,29 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             [own for own in recovery.loads if mechanism.spec_block(own.load) == "forces"], states
         )
     return blocks_by_name
+
+
+def make_motion_blocks(recovery: Recovery) -> dict[str, Any]:
+    """Make the blocks of the motion: bodies, their momenta, joint coordinates, Heun's system vector."""
+    from heuncli.loads.kinetostatics.coordinates import (  # tables do not show them
+        body_quaternions,
+        rodrigues_vectors,
+    )
+
+    mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
+    solutions, states = recovery.solutions, recovery.states
+    attitude_quaternions = body_quaternions(layout, solutions)
+    vectors = rodrigues_vectors(attitude_quaternions)
+    body_momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
+    return {
+        "bodies": {
+            b.name: make_body_block(states, attitude_quaternions, vectors, body_momenta, i)
+            for i, b in enumerate(mechanism.bodies)
+        },
+        "momentum": body_momenta.sum_bodies(),
+        "coordinates": evaluate_joint_coordinates(layout, solutions, states),
+        "system_vector": system_vector(mechanism, states),
+    }
 
 
 def make_reaction_blocks(recovery: Recovery, by_cause: bool) -> dict[str, Any]:
