@@ -3,11 +3,6 @@
 const MAX_DIGITS = 6;
 
 /**
- * @typedef {[number, boolean, number, boolean]} Style
- * decimals; whether with an exponent; what is not above it is 0; whether any digit is known
- */
-
-/**
  * Format a number given in the unit in which it is shown.
  * @param {number} value @param {Style} style @returns {string}
  */

@@ -1,9 +1,9 @@
 /** @file The summary table: the greatest loads of the run, when they occur, and their values at the shown frame. */
 
-import { formatInstant, formatAllDigits, formatNumber } from "./digits.js";
+import { listArrowChoices, readVector } from "./arrows.js";
+import { formatAllDigits, formatInstant, formatNumber } from "./digits.js";
 import { makeElement } from "./elements.js";
-import { listArrowChoices, readVector } from "./arrow_choices.js";
-import { norm } from "./vectors.js";
+import { norm } from "./poses.js";
 
 const MAX_ROWS = 12; // rows
 const MOMENTS = new Set(["T", "M", "M1", "M2"]);

@@ -1,17 +1,19 @@
-/** @file The tables of all numbers at the shown frame; each cell also holds its path and its value in SI. */
+/** @file The tables of all numbers at the shown frame, and the tabs that choose among them; each cell also holds its
+ * path and its value in SI. */
 
-import { formatShort, formatAllDigits, formatNumber } from "./digits.js";
-import { makeElement } from "./elements.js";
+import { formatAllDigits, formatNumber, formatShort } from "./digits.js";
+import { findElement, makeElement } from "./elements.js";
 import { getLoadsAlong } from "./loads.js";
-import { norm } from "./vectors.js";
+import { norm } from "./poses.js";
 
+const TABS = ["summary", "joints", "sections", "all"];
 const COLUMNS = ["", "x", "y", "z", "value", ""];
 
 /** A cell whose number follows the frame. */
 class Cell {
   /**
    * @param {string} path @param {(frame: number) => number} value SI
-   * @param {number} size how many of its unit an SI unit has @param {import("./digits.js").Style} style
+   * @param {number} size how many of its unit an SI unit has @param {Style} style
    * @param {string} missing what stands for nan
    */
   constructor(path, value, size, style, missing = "open") {
@@ -49,8 +51,8 @@ function addHeading(body, text, kind, note = "") {
 /** The table of all numbers. */
 export class NumberTable {
   /**
-   * @param {HTMLTableElement} table @param {import("./data.js").CaseData} data
-   * @param {import("./selection.js").Selection} selection
+   * @param {HTMLTableElement} table @param {CaseData} data
+   * @param {Selection} selection
    */
   constructor(table, data, selection) {
     this.table = table;
@@ -178,4 +180,25 @@ export class NumberTable {
     for (const cell of this.cells) cell.show(frame);
     this.table.dataset.frame = String(frame);
   }
+}
+
+/**
+ * Let the tabs choose which tables are shown.
+ * @param {NumberTable} table @param {() => void} redraw @param {string} [first] the tab that is shown at first
+ * @returns {() => string} the tab that is chosen
+ */
+export function listenToTabs(table, redraw, first = TABS[0]) {
+  let current = first;
+  const choose = (chosen) => {
+    current = chosen;
+    for (const name of TABS) findElement(`tab-${name}`).setAttribute("aria-pressed", String(name === chosen));
+    findElement("summary").hidden = chosen !== "summary";
+    findElement("numbers").hidden = findElement("caption").hidden = chosen === "summary";
+    if (chosen !== "summary") table.showKind(chosen);
+    redraw();
+  };
+  for (const name of TABS) findElement(`tab-${name}`).addEventListener("click", () => choose(name));
+  for (const name of ["joints", "sections"]) findElement(`tab-${name}`).hidden = !table.hasKind(name);
+  choose(findElement(`tab-${first}`).hidden ? TABS[0] : first);
+  return () => current;
 }
