@@ -32,7 +32,7 @@ UNSOLVED_ERROR = 1.8  # error assigned to unsolved stages, to the method's order
 
 
 def weighted_norm(run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int) -> cython.double:
-    """Return the weighted norm of some components."""
+    """Return sqrt(sum (w_i x_i)^2) over i from `begin` to `end`, w_i: `run.weights`."""
     i: cython.Py_ssize_t
     g: cython.double
     square: cython.double = 0.0

@@ -1,4 +1,4 @@
-"""Words of paths: the positions along a series of cuts in them, and what the schema of the results knows under them."""
+"""The words of paths into the results: split and joined, followed through the schema; the kinds of their errors."""
 
 from __future__ import annotations
 
@@ -39,47 +39,33 @@ def find_position_word(words: Sequence[str]) -> str | None:
 
 
 def is_cut_word(word: str) -> bool:
-    """Whether a word means a position or a cut, and not a component."""
+    """Return whether a word means a position or a cut, and not a component."""
     return word.startswith("@") or INDEX_WORD.match(word) is not None or parse_index(word) is not None
 
 
-ESTIMATE_OF_BLOCK = {
-    "foundation": "foundation", "joints": "reactions", "sensors": "sensors", "stops": "reactions",
-    "couplings": "reactions", "sections": "sections", "energy": "energy",
-}  # fmt: skip
+Node: TypeAlias = "dict[str, Node | Quantity]"  # the rows by the words of their paths
 
-
-ATTITUDES = {"rotation": "attitudes", "quaternion": "attitudes", "rodrigues": "rodrigues"}
-
-
-TRAVELS = ("travel", "speed", "acceleration")  # along a path by whatever its tables are over, elsewhere as places
-
-
-LOAD_ERROR_KINDS = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.fromkeys(("shift", "turn"), "strains")
-
-
+# words of the schema that stand for a name of the scene, or a number
 NAMES = (
     "BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "SENSOR", "CORNER", "FORCE", "CAUSE",
     "EVENT", "BEARING", "NUMBER",
 )  # fmt: skip
-
-
 BEARINGS = "bearings"  # of a joint
-BY_CAUSE = "by cause"  # of kinds of errors
-
-
 IMPULSE_UNITS = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
-
-
-# what a blow has besides its own quantities, as at one instant; of impulses no stresses, pressures, energies are told
+# blocks that an impulse has as an instant has them, and the quantities in them that no impulse has
 IMPULSE_BLOCKS = ("foundation", "joints", "sensors", "stops", "couplings", "sections", "certain_sums")
-
-
 NOT_IN_IMPULSES = ("joints.JOINT.pressure", "sections.SECTION.stress.", "sections.SECTION.energy",
     "sections.SECTION.deflection.", "sections.SECTION.buckling")  # fmt: skip
 
-
-Node: TypeAlias = "dict[str, Node | Quantity]"
+# kinds of errors: by block, and where a quantity of a block has its own
+ESTIMATE_OF_BLOCK = {
+    "foundation": "foundation", "joints": "reactions", "sensors": "sensors", "stops": "reactions",
+    "couplings": "reactions", "sections": "sections", "energy": "energy",
+}  # fmt: skip
+ATTITUDES = {"rotation": "attitudes", "quaternion": "attitudes", "rodrigues": "rodrigues"}
+TRAVELS = ("travel", "speed", "acceleration")  # along a path by whatever its tables are over, elsewhere as places
+LOAD_ERROR_KINDS = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.fromkeys(("shift", "turn"), "strains")
+BY_CAUSE = "by cause"  # ending of the kinds of errors of shares
 
 
 def _make_tree() -> Node:
@@ -130,7 +116,7 @@ def find_quantity(keys: Iterable[str]) -> Quantity | None:
     return _find_quantity(tuple(keys))
 
 
-@lru_cache(maxsize=10_000)  # the paths of a scene, which every look at some of its instants goes through
+@lru_cache(maxsize=10_000)  # the paths of a scene, each of which every part of its instants asks for
 def _find_quantity(keys: tuple[str, ...]) -> Quantity | None:
     """Return the row at some keys, or None."""
     node = find_node(keys)
@@ -138,7 +124,7 @@ def _find_quantity(keys: tuple[str, ...]) -> Quantity | None:
 
 
 def is_block_or_words(keys: Sequence[str]) -> bool:
-    """Whether these keys lead to a block or to words, not to numbers; also if the block is empty."""
+    """Return whether these keys lead to a block or to words, not to numbers; also if the block is empty."""
     return _is_no_number(tuple(keys))
 
 
@@ -150,7 +136,7 @@ def _is_no_number(keys: tuple[str, ...]) -> bool:
 
 
 def names_shares(words: list[str]) -> bool:
-    """Whether a path leads to shares by cause: not every `shares` in it does, for a joint or body may have that
+    """Return whether a path leads to shares by cause: not every `shares` in it does, for a joint or body may have that
     name.
     """
     if words[:1] == [IMPULSES]:

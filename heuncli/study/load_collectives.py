@@ -55,8 +55,8 @@ class EquivalentRange(NamedTuple):
     error: float
 
 
-def equivalent_range(ranges: Array, counts: Array, slope: float, cycles: float) -> float:
-    """R_eq of ranges (n,) with their counts; 0 where there are none."""
+def compute_range_norm(ranges: Array, counts: Array, slope: float, cycles: float) -> float:
+    """Return R_eq of ranges (n,) with their counts; 0 where there are none."""
     largest = float(ranges.max(initial=0.0))
     if largest == 0.0:
         return 0.0
@@ -71,12 +71,12 @@ def find_damage_shares(ranges: Array, counts: Array, slope: float) -> Array:
     return np.asarray(damages / (damages.sum() or 1.0))
 
 
-BINS, MOST_BINS = 10, 1000
-LEAST_SLOPE = 1.0  # below it the equivalent range is no norm; no material has such a slope
-MOST_SLOPE = 100.0  # R^m then is the largest range alone
-LEAST_CYCLES, MOST_CYCLES = 1e-100, 1e100  # outside, equivalent ranges overflow
-MOST_REPEATS = 10**12
-REFERENCE = 0.0  # the level of 5.1 from which on crossings count upwards
+DEFAULT_BINS, MAX_BINS = 10, 1000  # classes of ranges and of means
+MIN_SLOPE = 1.0  # below it the equivalent range is no norm; no material has such a slope
+MAX_SLOPE = 100.0  # R^m then is the largest range alone
+MIN_CYCLES, MAX_CYCLES = 1e-100, 1e100  # outside, equivalent ranges overflow
+MAX_REPEATS = 10**12
+REFERENCE = 0.0  # the level from which on crossings count upwards (ASTM E1049-85, 5.1)
 
 
 class LoadHistory(NamedTuple):
@@ -85,7 +85,7 @@ class LoadHistory(NamedTuple):
     unit: SI
     error: absolute error of each value
     is_magnitude: whether it is a magnitude, which is never negative and has lost its sign
-    of_vector: whether it is the magnitude of a vector
+    is_vector: whether it is the magnitude of a vector
     """
 
     path: str
@@ -94,10 +94,10 @@ class LoadHistory(NamedTuple):
     values: Array
     error: float
     is_magnitude: bool = False
-    of_vector: bool = False
+    is_vector: bool = False
 
 
-class UnfitCounting(NamedTuple):
+class InvalidOption(NamedTuple):
     """An invalid option of Counting: its field, what is required, and an example."""
 
     name: str
@@ -105,12 +105,12 @@ class UnfitCounting(NamedTuple):
     example: str
 
 
-SLOPES = UnfitCounting("slopes", f"slopes m of N R^m = constant, {LEAST_SLOPE:g} to {MOST_SLOPE:g}", "3,5")
-CYCLES = UnfitCounting(
-    "cycles", f"number of cycles for the equivalent ranges, {LEAST_CYCLES:g} to {MOST_CYCLES:g}", "1e6"
+SLOPES = InvalidOption("slopes", f"slopes m of N R^m = constant, {MIN_SLOPE:g} to {MAX_SLOPE:g}", "3,5")
+CYCLES = InvalidOption("cycles", f"number of cycles for the equivalent ranges, {MIN_CYCLES:g} to {MAX_CYCLES:g}", "1e6")
+CLASSES = InvalidOption(
+    "bins", f"a number of classes of ranges and means, 1 to {MAX_BINS}", f"{DEFAULT_BINS}, the default"
 )
-CLASSES = UnfitCounting("bins", f"a number of classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
-REPEATS = UnfitCounting(
+REPEATS = InvalidOption(
     "repeat", "a whole number of repetitions of the motion, or closed", "1000; or closed: endless repetition"
 )
 
@@ -125,19 +125,19 @@ class Counting(NamedTuple):
 
     slopes: Sequence[float] = ()
     cycles: float | None = None
-    bins: int = BINS
+    bins: int = DEFAULT_BINS
     repeat: int = 1
     is_endless: bool = False
 
-    def find_unfit(self) -> Sequence[UnfitCounting]:
+    def find_invalid_options(self) -> Sequence[InvalidOption]:
         """Return the options that cannot be used."""
         checks = (
-            (all(LEAST_SLOPE <= m <= MOST_SLOPE for m in self.slopes), SLOPES),
-            (self.cycles is None or LEAST_CYCLES <= self.cycles <= MOST_CYCLES, CYCLES),
-            (1 <= self.bins <= MOST_BINS and self.bins == int(self.bins), CLASSES),
-            (1 <= self.repeat <= MOST_REPEATS and self.repeat == int(self.repeat), REPEATS),
+            (all(MIN_SLOPE <= m <= MAX_SLOPE for m in self.slopes), SLOPES),
+            (self.cycles is None or MIN_CYCLES <= self.cycles <= MAX_CYCLES, CYCLES),
+            (1 <= self.bins <= MAX_BINS and self.bins == int(self.bins), CLASSES),
+            (1 <= self.repeat <= MAX_REPEATS and self.repeat == int(self.repeat), REPEATS),
         )
-        return [unfit for fits, unfit in checks if not fits]
+        return [option for is_valid, option in checks if not is_valid]
 
     @property
     def equivalent_cycles(self) -> float:
@@ -212,8 +212,8 @@ def compute_equivalent_range(
     all_cycles: Cycles, is_counted: Mask, threshold: float, slope: float, cycles: float
 ) -> EquivalentRange:
     """Compute the equivalent range of the cycles above the threshold, and its error, which includes the others."""
-    value = equivalent_range(all_cycles.ranges[is_counted], all_cycles.counts[is_counted], slope, cycles)
-    most = equivalent_range(all_cycles.ranges + threshold, all_cycles.counts, slope, cycles)
+    value = compute_range_norm(all_cycles.ranges[is_counted], all_cycles.counts[is_counted], slope, cycles)
+    most = compute_range_norm(all_cycles.ranges + threshold, all_cycles.counts, slope, cycles)
     return EquivalentRange(slope, cycles, value, most - value)
 
 

@@ -277,12 +277,12 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
             "foundation_block",
             "evaluate_joint_coordinates",
             "system_vector",
-            "point_motions",
+            "evaluate_point_motions",
             "make_force_blocks",
         ),
         results: ("find_determinate_sums",),
         motion_errors: ("energy_block",),
-        load_errors: ("total_load",),
+        load_errors: ("sum_ground_loads",),
     }.items():
         for name in names:
             monkeypatch.setattr(module, name, forbidden)
@@ -296,7 +296,7 @@ def test_one_section_alone_is_recovered(monkeypatch: pytest.MonkeyPatch) -> None
 @pytest.mark.heavy
 def test_a_motion_asks_for_no_verdicts(monkeypatch: pytest.MonkeyPatch) -> None:
     spec = load(str(SPECS / "four_bar.yaml"))
-    monkeypatch.setattr(Recovery, "decided", property(forbidden))
+    monkeypatch.setattr(Recovery, "resolution", property(forbidden))
     monkeypatch.setattr(load_errors, "find_joint_loads", forbidden)
     study = asked(spec, ["coordinates.rocker.angle"])
     assert measure_value(MeasureRequest("max", "coordinates.rocker.angle"), study).value > 0.0

@@ -15,8 +15,8 @@ from heuncli.base.errors import SolveError
 from heuncli.loads.equilibrium.coordinates import make_coordinates
 from heuncli.loads.equilibrium.directions import decompose
 from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose
+from heuncli.loads.equilibrium.rest_law import RestLaw
 from heuncli.loads.equilibrium.search import RestSearch
-from heuncli.loads.equilibrium.slopes import RestLaw
 from heuncli.loads.equilibrium.verification import require_at_rest
 from heuncli.motion.integration.run.request import MotionTask
 from heuncli.results.results import Array, Results

@@ -11,7 +11,7 @@ import pytest
 
 from heuncli.results.results import Array
 from heuncli.study import rainflow
-from heuncli.study.load_collectives import equivalent_range, find_damage_shares
+from heuncli.study.load_collectives import compute_range_norm, find_damage_shares
 from heuncli.study.rainflow import Cycles, count_endless, count_once, count_repeated, find_turning_points
 
 pytestmark = pytest.mark.heavy  # no kernel in it
@@ -199,8 +199,10 @@ def test_rounding_decides_no_class() -> None:
 def test_equivalent_range() -> None:
     """Of ranges 1 (8 times) and 2 (once): D = 8 + 2^m; for a slope of 3 that of 16 cycles of range 1."""
     ranges, counts = np.array([1.0, 2.0]), np.array([8.0, 1.0])
-    assert equivalent_range(ranges, counts, 3.0, 16.0) == pytest.approx(1.0, rel=1e-15)
-    assert equivalent_range(ranges, counts, 3.0, 2.0) == pytest.approx(2.0, rel=1e-15)
+    assert compute_range_norm(ranges, counts, 3.0, 16.0) == pytest.approx(1.0, rel=1e-15)
+    assert compute_range_norm(ranges, counts, 3.0, 2.0) == pytest.approx(2.0, rel=1e-15)
     assert find_damage_shares(ranges, counts, 3.0).tolist() == pytest.approx([0.5, 0.5])
-    assert equivalent_range(1e200 * ranges, counts, 9.0, 1.0) == pytest.approx(1e200 * (8 + 2**9) ** (1 / 9), rel=1e-14)
-    assert equivalent_range(np.zeros(0), np.zeros(0), 3.0, 1.0) == 0.0
+    assert compute_range_norm(1e200 * ranges, counts, 9.0, 1.0) == pytest.approx(
+        1e200 * (8 + 2**9) ** (1 / 9), rel=1e-14
+    )
+    assert compute_range_norm(np.zeros(0), np.zeros(0), 3.0, 1.0) == 0.0

@@ -53,7 +53,7 @@ def tuned(
 
     tuning = Tuning(Trials(task, answers, lambda done, of, what: None), VariantResult())
     tuning.run()
-    found = tuning.to_results()
+    found = tuning.make_results()
     assert len(found.history) == len(solved) <= most
     assert [trial.number for trial in found.history] == [*range(1, len(solved) + 1)]
     return found

@@ -19,7 +19,7 @@ import numpy as np
 
 from heuncli.analyses.lagrange.freed_scene import make_instant
 from heuncli.analyses.lagrange.results import StateSpace
-from heuncli.analyses.lagrange.study import LagrangeOptions, to_results
+from heuncli.analyses.lagrange.study import LagrangeOptions, compute_results
 from heuncli.base.errors import SolveError, SpecError
 from heuncli.base.joint_kinds import RATES
 from heuncli.results.results import Array, Results
@@ -224,7 +224,7 @@ def judged(seed: int) -> tuple[Finding, dict[str, Any]]:
     scene = drawn(seed)
     try:
         spec = load("scene.yaml", to_yaml({**scene, "analysis": {"type": "state"}}))
-        names = list(to_results(spec, make_instant(spec, None, None), LagrangeOptions()).names)
+        names = list(compute_results(spec, make_instant(spec, None, None), LagrangeOptions()).names)
         tree, driven = with_motion(scene, names, seed)
         base = moved(Case(tree, driven, [], []), {})
     except (SolveError, SpecError) as error:
@@ -246,7 +246,7 @@ def by_differences(case: Case, inputs: list[str], names: list[str], rng: np.rand
         state_space=True, inputs=tuple(inputs), coordinates=tuple(names), outputs=tuple(case.outputs)
     )
     try:
-        space = to_results(spec, make_instant(spec, None, None), question).state_space
+        space = compute_results(spec, make_instant(spec, None, None), question).state_space
     except (SolveError, SpecError) as error:
         return Finding("refused", 0.0, str(error))
     assert space is not None

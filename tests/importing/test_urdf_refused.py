@@ -162,6 +162,13 @@ ASKED = {  # what goes with no file, with some options
     "limits without room": (
         [*TWO, joint("j", "a", "b", '<limit lower="1" upper="1"/>')], {"free": True, "limits": True}, "import-limits",
     ),
+    "limits that no position of a leader meets": (
+        [
+            *TWO, link("c"), joint("j", "a", "b", '<limit lower="0" upper="1"/>'),
+            joint("k", "b", "c", f'<limit lower="-3" upper="-2"/>{MIMIC.format("j")}'),
+        ],
+        {"free": True, "limits": True}, "import-limits",
+    ),
     "the world let go": ([link("world"), link("b"), joint("j", "world", "b")], {"base_free": True}, "import-tree"),
     "a root without mass let go": (
         [link("a", ""), link("b"), joint("j", "a", "b")], {"base_free": True}, "import-massless",

@@ -95,6 +95,16 @@ def test_free_joints_start_where_their_parameters_say_within_their_stops():
     assert (spec.stops["limits_j"].low, spec.stops["limits_j"].high) == (0.2, 1.5)
 
 
+def test_free_joints_start_within_the_stops_of_those_that_follow_them():
+    """Position 0.1 - 2 * that of the leader lies between 0.5 and 0.9: the leader between -0.4 and -0.2."""
+    mimic = '<mimic joint="j" multiplier="{}" offset="0.1"/><limit lower="0.5" upper="0.9"/>'
+    lines = [link("a"), link("b"), link("c"), joint("j", "a", "b", "revolute", '<limit lower="-1" upper="1"/>')]
+    spec = spec_of(imported(robot(*lines, joint("k", "b", "c", "revolute", mimic.format(-2))), free=True, limits=True))
+    near([spec.joints["j"].angle, spec.joints["k"].angle], [-0.2, 0.5], 1.0, 1e-15)
+    still = spec_of(imported(robot(*lines, joint("k", "b", "c", "revolute", mimic.format(0))), free=True, limits=True))
+    assert list(still.stops) == ["limits_j"] and list(still.drives) == ["hold_k"]
+
+
 def test_a_name_that_has_to_change_stays_as_a_label():
     text = imported(robot(link("base"), link("arm-1"), joint("yaw: 1", "base", "arm-1", "continuous")))
     assert spec_of(text).labels == {"bodies.arm_1": "arm-1", "joints.yaw_1": "yaw: 1"}

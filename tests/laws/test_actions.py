@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.base.joint_kinds import JOINTS
 from heuncli.loads.kinetostatics.actions import list_joint_actions
-from heuncli.loads.kinetostatics.foundation import inertia_loads
+from heuncli.loads.kinetostatics.foundation import find_inertia_loads
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.solve.history import resample
@@ -82,7 +82,7 @@ def test_what_comes_from_outside_ends_in_the_ground(of: tuple[object, int]) -> N
     """Supports, drives and loads between ground and body carry what acts from outside, less the inertia."""
     c, r = recovery(*of)
     mechanism = r.setup.scene.mechanism
-    ma, spin = inertia_loads(mechanism, r.states)
+    ma, spin = find_inertia_loads(mechanism, r.states)
     net = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity - ma
     force, moment = net.sum(axis=1), (np.cross(r.states.centre, net) - spin).sum(axis=1)
     for action in [*r.applied_actions, *list_joint_actions(r.joints)]:

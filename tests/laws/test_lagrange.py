@@ -12,7 +12,7 @@ from heuncli.analyses.lagrange.equations import VelocityTerms, make_partials
 from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
 from heuncli.analyses.lagrange.results import LagrangeResults
 from heuncli.analyses.lagrange.study import LagrangeOptions
-from heuncli.analyses.lagrange.study import to_results as told_at
+from heuncli.analyses.lagrange.study import compute_results as told_at
 from heuncli.motion.integration.evaluator import CAUSES
 from heuncli.motion.linearisation.displacements import displace
 from heuncli.motion.linearisation.linearise import linearise

@@ -10,7 +10,7 @@ import pytest
 from heuncli.analyses.lagrange.coordinate_rates import compute_accelerations
 from heuncli.analyses.lagrange.coordinates import choose_coordinates
 from heuncli.analyses.lagrange.freed_scene import Instant, make_instant
-from heuncli.analyses.lagrange.study import LagrangeOptions, solve_lagrange, to_results
+from heuncli.analyses.lagrange.study import LagrangeOptions, compute_results, solve_lagrange
 from heuncli.base.errors import SolveError
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.motion.linearisation.displacements import displace
@@ -48,7 +48,7 @@ def test_by_differences(kind: str, seed: int) -> None:
     scene, _ = tree_scene(seed, **PINS) if kind == "tree" else loop_scene(seed, **PINS)
     spec = load("scene.yaml", to_yaml({**scene, "analysis": {"type": "state"}}))
     at = make_instant(spec, None, None)
-    found = to_results(spec, at, LagrangeOptions(state_space=True))
+    found = compute_results(spec, at, LagrangeOptions(state_space=True))
     assert found.state_space is not None
     f = len(found.names)
     steps = H * np.eye(f)
@@ -97,11 +97,15 @@ HELD = {  # an arm that is driven, and a pendulum that hangs on it: the one move
 def test_what_a_drive_exerts_holds_it(driven: str) -> None:
     still, moved = (load("scene.yaml", HELD[driven].replace("{acceleration}", word)) for word in ("0", "1"))
     at = make_instant(still, None, None)
-    given, held = (to_results(still, at, LagrangeOptions(state_space=True, inputs=words)) for words in (("oil",), ()))
+    given, held = (
+        compute_results(still, at, LagrangeOptions(state_space=True, inputs=words)) for words in (("oil",), ())
+    )
     assert given.state_space is not None and held.state_space is not None
     free = [i for i, is_driven in enumerate(given.is_driven) if not is_driven]
     assert np.allclose(held.state_space.offset[len(free) :], given.accelerations[free], rtol=1e-11, atol=1e-11)
-    jump = to_results(moved, make_instant(moved, None, None), LagrangeOptions()).accelerations - given.accelerations
+    jump = (
+        compute_results(moved, make_instant(moved, None, None), LagrangeOptions()).accelerations - given.accelerations
+    )
     assert np.allclose(given.state_space.B[len(jump) :, 0], jump, rtol=1e-11, atol=1e-11)
 
 
@@ -125,7 +129,7 @@ def test_the_velocity_of_a_point_changes_with_the_pose() -> None:
     """z = L exp(i p) + c exp(i (p + q)) of the tip: dz'/dp = i z', dz'/dq = -(p' + q') c exp(i (p + q))."""
     spec = load("scene.yaml", PENDULUM)
     outputs = ("b.tip.x", "b.tip.y", "b.tip.vx", "b.tip.vy")
-    space = to_results(
+    space = compute_results(
         spec, make_instant(spec, None, None), LagrangeOptions(state_space=True, outputs=outputs)
     ).state_space
     assert space is not None

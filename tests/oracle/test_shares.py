@@ -119,11 +119,11 @@ def test_a_split_by_least_norm(seed: int) -> None:
     """Of redundant joints, with moments by the length that the split is told with."""
     scene = scene_of("loop", seed)
     made = study({**scene, "analysis": {"type": "state"}}, requested_reports=WANTED, least_norm=True)
-    decided = made.recovery.decided
-    if decided is None or decided.stress is None:
+    resolution = made.recovery.resolution
+    if resolution is None or resolution.stress is None:
         return
     found = made.results
-    causes = solve_by_cause(weighed(scene), state_at(found.bodies, 0), 0.0, ABOUT, length=decided.stress.length)
+    causes = solve_by_cause(weighed(scene), state_at(found.bodies, 0), 0.0, ABOUT, length=resolution.stress.length)
     F, L = largest(causes), length(causes)
     for cause, o in causes.items():
         for name, block in found.joints.items():

@@ -49,7 +49,6 @@ KEPT = {
     "app/python/signals.py": {"Signal.computed", "Signal.beyond", "Signal.at"},
     "app/python/solved_scene.py": {"Solved.paths(under)", "Solved.at", "Solved.load_cases(at)", "Solved.plot(over)"},
     "base/named_tuples.py": {"named"},
-    "loads/kinetostatics/bodies.py": {"KernelBodyStates._beside"},
     "kernel/scene.py": {"Freedom.driven"},
     "output/snapshots/golden_file.py": {"EventSnapshot.to"},
     "analyses/lagrange/coordinates.py": {"choose_coordinates(driven)", "group_coordinates(driven)"},
@@ -62,7 +61,7 @@ KEPT = {
     "scene/importers/sdf/reader.py": {"described"},
     "scene/importers/urdf/reader.py": {"described"},
     "study/queries/curves.py": {"CurveComparison.at"},
-    "study/compose/recovery.py": {"Recovery.decided"},
+    "study/compose/recovery.py": {"Recovery.resolution"},
 }
 
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from heuncli.loads.kinetostatics import sections
 from heuncli.loads.redundancy import self_stress
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.output.tables.page import TABLE_DEFAULT, make_page
 from heuncli.scene.file_format.load import load
+from heuncli.study.compose import section_blocks
 from heuncli.study.model.options import Options
 from heuncli.study.quantities.labels import make_labels
 from heuncli.study.workflow import solve
@@ -43,7 +43,7 @@ def counted() -> Iterator[Counts]:
         counting(Evaluator, "_recover", "answered", lambda _, arrays, *more: len(arrays["times"]), patch)
         counting(self_stress, "jacobian", "looked", lambda _, layout, times, *more: len(times), patch)
         counting(
-            sections,
+            section_blocks,
             "make_section_block",
             "cuts",
             lambda cuts, states, *more: len(states.x) * cuts.points.shape[-2],

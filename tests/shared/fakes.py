@@ -176,7 +176,7 @@ class FakeStudy:
             for name, block in self.resample(times).joints.items()
         ]
         solutions = SimpleNamespace(times=np.asarray(times))
-        return SimpleNamespace(solutions=solutions, decided=None, setup=setup, requested_joints=joints)
+        return SimpleNamespace(solutions=solutions, resolution=None, setup=setup, requested_joints=joints)
 
     def compose_reports(self, recovery: Any, reports: Set[str], open_marker: Any = None) -> Results:
         """Some reports of such answers."""
@@ -189,7 +189,7 @@ class FakeStudy:
             for blow in self.results.impulses
         ]
 
-    def with_whole_cuts(self, bent: bool) -> Any:
+    def with_whole_cuts(self, is_nonlinear: bool) -> Any:
         """What stands for the scene with its series of cuts as stretches."""
         return SimpleNamespace(cuts=[stretch_like(*item) for item in self.results.sections.items() if "s" in item[1]])
 

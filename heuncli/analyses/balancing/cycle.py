@@ -21,7 +21,7 @@ from heuncli.base import tolerances
 from heuncli.base.errors import LimitError, Problem, SolveError
 from heuncli.base.records import fields, record, replace
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
-from heuncli.loads.kinetostatics.foundation import inertia_loads
+from heuncli.loads.kinetostatics.foundation import find_inertia_loads
 from heuncli.loads.kinetostatics.reactions import project_to_plane
 from heuncli.motion.integration.integrated_scene import find_determined_motion
 from heuncli.motion.integration.run.runner import Runner, make_runner
@@ -250,7 +250,7 @@ def compute_mass_effects(cycle: Cycle, reference_point: Array) -> MassEffects:
     mechanism, states = cycle.mechanism, cycle.states
     masses = np.array([body.mass for body in mechanism.bodies])
     inertia = np.array([body.inertia for body in mechanism.bodies])
-    ma, spin = inertia_loads(mechanism, states)
+    ma, spin = find_inertia_loads(mechanism, states)
     arms = states.centre - reference_point
     momentum = masses[:, None] * states.v_centre
     angular_momentum = np.einsum("tnij,njk,tnlk,tnl->tni", states.R, inertia, states.R, states.omega)

@@ -56,13 +56,13 @@ def find_flywheel(scene: LoadedScene, joint: str, mean: float, delta: float) -> 
     return Flywheel(
         joint=joint,
         delta=delta,
-        present=present,
+        present=present,  # unevenness without a flywheel
         mean_rate=mean,
         energy=energy,
-        own=mean_inertia,
+        own=mean_inertia,  # mean inertia of the machine itself
         added=added,
         textbook=energy / (delta * mean**2) - curve.steady,
-        even=constant_torque,
+        even=constant_torque,  # added so that the cycle closes
         start=float(curve.compute_rates(E0, added)[0]),
         fastest=fastest,
         slowest=slowest,
@@ -97,8 +97,8 @@ def require_resolved_unevenness(delta: float) -> None:
 def estimate_errors(
     work_errors: WorkErrors, mean: float, delta: float, energy: float, inertia: float, present: float
 ) -> dict[str, float]:
-    """Estimate the errors of a flywheel's results from ΔE = ∫k - ½ ε ω² and J + ε = ΔE/(δ ω²), to which all are
-    proportional. That of J is at least the rounding of δ, a difference of two rates.
+    """Estimate the errors of a flywheel's results by propagating that of ΔE = ∫k - ½ ε ω² through
+    J + ε = ΔE/(δ ω²). That of J is at least the rounding of δ, a difference of two rates.
     """
     energy_error = 2.0 * (work_errors.work + 0.5 * work_errors.inertia * mean**2)
     relative_error = energy_error / energy if energy > 0.0 else 0.0
@@ -128,6 +128,7 @@ def compute_wheel_numbers(scene: LoadedScene) -> CycleNumbers:
     bodies, first = len(mechanism.bodies), scene.recover_samples()
     effects = compute_mass_effects(Cycle(mechanism, scene.followed_run.cycle, first.states, size), np.zeros(3))
     inertia_rounding = tolerances.SUM_ROUNDING * effects.terms["torque"]
+    # Columns of powers; the last 2 x bodies are inertia and half its slope.
     parts = [compute_columns(first).shape[1] - 2 * bodies, bodies, bodies]
     return scene.resolve_numbers(
         compute_columns, parts, [estimate_power_rounding(first), inertia_rounding, inertia_rounding]

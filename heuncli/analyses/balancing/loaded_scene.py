@@ -29,8 +29,8 @@ from heuncli.base.errors import SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record
 from heuncli.base.tolerances import ORDERS_SETTLED, SUM_ROUNDING
-from heuncli.loads.kinetostatics.balance import rope_power
-from heuncli.loads.kinetostatics.foundation import inertia_loads
+from heuncli.loads.kinetostatics.balance import find_rope_power
+from heuncli.loads.kinetostatics.foundation import find_inertia_loads
 from heuncli.loads.redundancy.count import count_redundancy
 from heuncli.motion.integration.methods.method import DRIVE_DETERMINED
 from heuncli.motion.integration.run.runner import make_runner
@@ -221,7 +221,7 @@ def sum_load_powers(recovery: Recovery) -> Array:
     masses = np.array([body.mass for body in mechanism.bodies])
     weight = np.einsum("n,tni,i->t", masses, recovery.states.v_centre, mechanism.gravity)
     ropes = [
-        rope_power(recovery.states, coupling)
+        find_rope_power(recovery.states, coupling)
         for coupling in recovery.couplings
         if coupling.coupling.stretched_row is not None
     ]
@@ -265,7 +265,7 @@ def compute_cycle_loads(
 def compute_squares(recovery: Recovery, plan: CyclePlan, reference_point: Array) -> dict[str, Array]:
     """Return the squares of force, moment, drive and joint forces by name, (n,) each; nan means indeterminate."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    ma, spin = inertia_loads(mechanism, states)
+    ma, spin = find_inertia_loads(mechanism, states)
     moment = -(cross_rows(states.centre - reference_point, ma) + spin).sum(axis=1)
     if mechanism.planar:
         moment = moment * np.array([0.0, 0.0, 1.0])

@@ -104,9 +104,9 @@ class CycleRotation:
         return (self.rate or 1.0) ** 2
 
 
-def compute_rounding(effects: MassEffects, scale: float) -> dict[str, float]:
-    """Return the rounding level of force, moment and torque at a rate whose square is `scale`."""
-    return {name: tolerances.ORDERS_SETTLED * scale * terms for name, terms in effects.terms.items()}
+def compute_rounding(effects: MassEffects, squared_rate: float) -> dict[str, float]:
+    """Return the rounding level of force, moment and torque at a rate with this square."""
+    return {name: tolerances.ORDERS_SETTLED * squared_rate * terms for name, terms in effects.terms.items()}
 
 
 def make_all_rows(
@@ -150,16 +150,17 @@ def make_order_rows(
     listed = find_listed_orders(spectrum, nodes, selection)
     verdicts = spectrum.classify(listed)
     zero_levels = np.maximum(tolerances.CANCELS * spectrum.body_sums, spectrum.rounding)
+    # All of an order that does not remain is dropped:
     zero_levels[listed[[verdict != "remains" for verdict in verdicts]]] = math.inf
     cleaned = drop_rounding(spectrum.total, zero_levels[:, None])
-    sizes, phases, reach = np.abs(cleaned), compute_phases(cleaned), magnitudes(cleaned)
+    sizes, phases, norms = np.abs(cleaned), compute_phases(cleaned), magnitudes(cleaned)
     part_levels = np.maximum(tolerances.CANCELS * spectrum.terms, spectrum.rounding)[:, None]
     cleaned_parts = {name: drop_rounding(part, part_levels) for name, part in spectrum.parts.items()}
     part_rows = {name: (np.abs(part), compute_phases(part)) for name, part in cleaned_parts.items()}
     rows = []
     for i, verdict in zip(listed.tolist(), verdicts, strict=True):
         row = OrderRow(
-            float(spectrum.orders[i] / rotation.turns), sizes[i], phases[i], float(reach[i]),
+            float(spectrum.orders[i] / rotation.turns), sizes[i], phases[i], float(norms[i]),
             float(spectrum.body_sums[i]), verdict, spectrum.error,
             parts={name: (size[i], phase[i]) for name, (size, phase) in part_rows.items()} or None,
         )  # fmt: skip
@@ -175,9 +176,9 @@ class OrderSpectrum:
     total (m, c): amplitudes of the sum over the bodies
     parts: amplitudes of each part of the quantity, summed over the bodies, (m, c)
     body_sums (m,): sum of the magnitudes of the bodies
-    terms (m,): the same with the magnitudes of their parts
+    terms (m,): sum of the magnitudes of the bodies, and of those of their parts
     error: error of any amplitude
-    floor: level of rounding or error, below which values count as 0
+    floor: the larger of the threshold and the error, below which values count as 0
     """
 
     orders: Indices
@@ -195,7 +196,7 @@ class OrderSpectrum:
 
     @property
     def rounding(self) -> float:
-        """The level up to which amplitudes are rounding or error."""
+        """The floor, or a share of the largest body sum if that is larger."""
         return max(tolerances.ORDERS_SETTLED * self.largest, self.floor)
 
     def classify(self, listed: Indices) -> list[Verdict]:

@@ -215,7 +215,7 @@ NO_NOISE: Mapping[str, float] = MappingProxyType({})
 MOST_ROWS = 12
 
 
-def to_results(
+def make_results(
     spec: Spec,
     coordinate: str,
     rotation: CycleRotation,

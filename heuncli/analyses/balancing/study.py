@@ -19,7 +19,7 @@ from heuncli.analyses.balancing.cycle_plan import CyclePlan, describe_cam_assump
 from heuncli.analyses.balancing.orders import CycleRotation, magnitudes
 from heuncli.analyses.balancing.piece_resolver import CycleResolver, make_empty_nodes, make_scales
 from heuncli.analyses.balancing.results import DEFAULT_OPTIONS, BalanceOptions, BalanceResults, Period
-from heuncli.analyses.balancing.sampling import compute_vector_magnitudes, is_requested, sample_cycle, to_results
+from heuncli.analyses.balancing.sampling import compute_vector_magnitudes, is_requested, make_results, sample_cycle
 from heuncli.base import tolerances
 from heuncli.base.errors import Problem, SolveError
 from heuncli.base.records import record, replace
@@ -54,7 +54,7 @@ def compute_balance(spec: Spec, options: BalanceOptions) -> BalanceResults:
     effects = compute_mass_effects(cycle, reference_point)
     rotation = CycleRotation(plan.turns, find_cycle_axis(cycle, plan.joint), plan.rate)
     results = replace(
-        to_results(spec, plan.coordinate, rotation, effects, reference_point, options), is_resolved=is_resolved
+        make_results(spec, plan.coordinate, rotation, effects, reference_point, options), is_resolved=is_resolved
     )
     results = replace(results, notes=(*results.notes, *describe_cam_assumptions(scene.mechanism)))
     results = add_load_torque(results, spec, scene, plan, options)
@@ -180,7 +180,7 @@ def balance_over_period(spec: Spec, seconds: float, options: BalanceOptions, ref
     found = {name: find_search_error(study, ("foundation", "mass_effect", name)) for name in KINDS}
     stated_errors = {name: np.nan_to_num(error) for name, error in found.items()}
     noise = {name: scale * differences[name].orders + float(stated_errors[name]) for name in KINDS}
-    results = to_results(
+    results = make_results(
         spec, "time", CycleRotation(1, None, periods.rate), last, reference_point, options, noise | {"torque": math.inf}
     )
     return replace(

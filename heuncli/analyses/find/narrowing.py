@@ -23,7 +23,7 @@ from heuncli.base import tolerances
 
 MAX_REMAINING_GAP = 0.25  # share of the gap that interpolation may leave; if it leaves more, a halving follows
 WIDE_BRACKET = 1000.0  # width of a bracket across which a jump still has the same size, in narrowest brackets
-SUFFICIENT_REDUCTION = 0.5  # share of a bracket: if the two sides of a pole leave less, the middle need not follow
+SUFFICIENT_REDUCTION = 0.5  # share of a bracket that two places at a pole leave: if less, the middle is not next
 # Two places at a share s of the bracket on both sides of a predicted pole or edge enclose it in 2 s; with some slack:
 ENCLOSED_SHARES = 2.5
 MIN_BRACKET = 10.0  # width of a bracket that can prove a jump by comparison, in narrowest brackets
@@ -67,11 +67,11 @@ def narrow_pair(course: MeasureCourse, i: int) -> None:
             left, right = narrow_pole(course, left, right, pole, pole_share)
             if left.gap is None or right.gap is None or not left.side or not right.side:
                 return
-            is_narrower = right.x - left.x < ENCLOSED_SHARES * pole_share * width
-            pole_share = max(pole_share * pole_share, MIN_SHARE) if is_narrower else FIRST_SHARE
+            is_enclosed = right.x - left.x < ENCLOSED_SHARES * pole_share * width
+            pole_share = max(pole_share * pole_share, MIN_SHARE) if is_enclosed else FIRST_SHARE
             is_reduced = right.x - left.x < SUFFICIENT_REDUCTION * width
             rule = PlaceRule.PAST_ROOT if is_reduced else PlaceRule.MIDDLE
-            if is_narrower or is_reduced:
+            if is_reduced:
                 continue
         best = min(left.distance, right.distance)
         sample = sample_and_learn(course, choose_root_place(course, left, right, rule))
@@ -115,7 +115,8 @@ def step_past_root(course: MeasureCourse, left: Sample, right: Sample) -> float:
 def is_steep(course: MeasureCourse, left: Sample, right: Sample) -> bool:
     """Return whether the slope outside suffices to pass from one side to the other within the narrowest bracket.
 
-    Near a jump the slope outside is small, near a pole it grows. Only the change that exceeds both errors counts.
+    Near a jump the slope outside is small, near a pole it grows. Only a change beyond twice the sum of the errors
+    counts.
     """
     i = next(i for i, sample, _ in course.iter_pairs() if sample is left)
     outer_pairs = [(left, each) for each in course.find_neighbours(i, LEFT)[:1]] + [
@@ -198,7 +199,7 @@ def _straighten_pole(course: MeasureCourse, samples: list[Sample]) -> list[Sampl
 
 
 def find_stretch(course: MeasureCourse, member: Sample) -> list[Sample]:
-    """Return the samples of the stretch that contains a sample."""
+    """Return the stretch that contains a sample: successive samples without an interruption."""
     stretch: list[Sample] = []
     for i, sample in enumerate(course.samples):
         if stretch and course.is_interrupted(i - 1):
@@ -242,7 +243,6 @@ def close_edge(course: MeasureCourse, solved_sample: Sample, failed_sample: Samp
     """Narrow one edge down. Raises SampleLimitError."""
     share, is_trusted = FIRST_SHARE, True
     while not is_closed(course, solved_sample, failed_sample):
-        middle = solved_sample.x + 0.5 * (failed_sample.x - solved_sample.x)
         width = failed_sample.x - solved_sample.x
         predicted = (
             predict_edge(course, solved_sample, width)
@@ -250,6 +250,7 @@ def close_edge(course: MeasureCourse, solved_sample: Sample, failed_sample: Samp
             else None
         )
         if predicted is None:
+            middle = solved_sample.x + 0.5 * (failed_sample.x - solved_sample.x)
             solved_sample, failed_sample = evaluate_between(course, solved_sample, failed_sample, middle)
             is_trusted = True
             continue
@@ -279,7 +280,7 @@ def predict_edge(course: MeasureCourse, solved_sample: Sample, width: float) -> 
     if len(nearest) < 3 or any(sample.gap is None for sample in nearest):
         return None
     m = [course.get_measure(sample) for sample in nearest]
-    if abs(m[0]) > abs(m[1]) > abs(m[2]) > 0.0:
+    if abs(m[0]) > abs(m[1]) > abs(m[2]) > 0.0:  # it grows towards the edge: the inverse is smoother
         m = [1.0 / value for value in m]
     if not (m[0] < m[1] < m[2] or m[0] > m[1] > m[2]):
         return None

@@ -30,8 +30,10 @@ def find_hidden_pole(course: MeasureCourse, i: int) -> float | None:
     if course.is_interrupted(i) or samples[i + 1].x - samples[i].x <= 2.0 * course.finest:
         return None
     left, right = samples[i], samples[i + 1]
-    a, b = course.measure_at(i), course.measure_at(i + 1)
-    if a * b <= 0.0 or max(abs(a), abs(b)) > tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value)):
+    a, b = course.get_measure_at(i), course.get_measure_at(i + 1)
+    if a * b <= 0.0 or max(abs(a), abs(b)) > tolerances.FAR_FROM_VALUE * max(
+        course.median_magnitude, abs(course.value)
+    ):
         return None
     left_fall, right_fall = compute_inverse_fall(course, i, i - 1), compute_inverse_fall(course, i + 1, i + 2)
     if left_fall == right_fall == 0.0 or left_fall is None or right_fall is None:
@@ -58,7 +60,7 @@ def compute_inverse_fall(course: MeasureCourse, k: int, outer: int) -> float | N
     samples = course.samples
     if not 0 <= outer < len(samples) or course.is_interrupted(min(k, outer)):
         return 0.0
-    value, outer_value = course.measure_at(k), course.measure_at(outer)
+    value, outer_value = course.get_measure_at(k), course.get_measure_at(outer)
     rise = abs(value) - (abs(outer_value) if value * outer_value > 0.0 else -abs(outer_value))
     if rise <= NOISE * max(samples[k].error, samples[outer].error):
         return None
@@ -72,7 +74,7 @@ def is_rising_exponentially(course: MeasureCourse, end: int, inner: int, outer: 
     end, inner, outer: indices of the sample at the end and of the next two
     """
     x = [course.samples[k].x for k in (end, inner, outer)]
-    m = [course.measure_at(k) for k in (end, inner, outer)]
+    m = [course.get_measure_at(k) for k in (end, inner, outer)]
     if m[1] * m[2] <= 0.0:  # it comes from 0: nothing indicates a pole
         return True
     power = abs(x[0] - x[1]) / abs(x[1] - x[2])
@@ -87,14 +89,14 @@ def is_far_from_value(course: MeasureCourse, left: Sample, right: Sample) -> boo
     if not left.side or left.side != right.side:
         return False
     smallest = min(abs(course.get_measure(sample)) for sample in (left, right))
-    return smallest > tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value))
+    return smallest > tolerances.FAR_FROM_VALUE * max(course.median_magnitude, abs(course.value))
 
 
 def has_pole(course: MeasureCourse) -> bool:
     """Return whether the measure jumps somewhere between values beyond all usual ones, from one sign to the other."""
     ends = {x for pair in course.jumps for x in pair}
     sizes = {sample.x: course.get_measure(sample) for sample in course.samples if sample.x in ends}
-    least = tolerances.FAR_FROM_VALUE * max(course.usual, abs(course.value))
+    least = tolerances.FAR_FROM_VALUE * max(course.median_magnitude, abs(course.value))
     return any(
         sizes[low] * sizes[high] < 0.0 and min(abs(sizes[low]), abs(sizes[high])) > least for low, high in course.jumps
     )
@@ -112,7 +114,7 @@ def find_possible_peak(course: MeasureCourse, i: int) -> float | None:
         return None
     if math.isinf(peak.size) and course.get_measure(left) * course.get_measure(right) < 0.0:
         return clip_inside(left, right, step_to_pole(course, left, right, peak.place))
-    largest = (max if course.value > 0.0 else min)(course.measure_at(i), course.measure_at(i + 1))
+    largest = (max if course.value > 0.0 else min)(course.get_measure_at(i), course.get_measure_at(i + 1))
     if largest * course.value <= 0.0 or abs(largest) >= abs(course.value):
         return None
     peak_height = abs(largest) + PEAK_GROWTH * (peak.size - abs(largest))

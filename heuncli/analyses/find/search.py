@@ -69,13 +69,14 @@ def follow_new_minimum(course: MeasureCourse) -> bool:
 
 
 def find_widest_uncertain(course: MeasureCourse) -> int | None:
-    """Return the widest pair of neighbours with uncertain behaviour between them; None if there is none."""
+    """Return the index of the left one of the widest pair with uncertain behaviour between them; None without one."""
     ends = find_range_ends(course)
     widths = {
         i: right.x - left.x for i, left, right in course.iter_pairs() if (left.x, right.x) not in course.searched_pairs
     }
     for i in sorted(widths, key=lambda i: -widths[i]):  # of equally wide ones the first
         neighbours = course.samples[max(i - 2, 0) : i + 4]
+        # What the decision depends on: the samples near by, the distrust, the number of range ends.
         surroundings = (*(sample.x for sample in neighbours), course.distrust, len(ends))
         if surroundings in course.certain:
             continue
@@ -117,6 +118,7 @@ def check_scan(course: MeasureCourse) -> None:
     interval are then tried in turn. Raises SampleLimitError.
     """
     places = [sample.x for sample in course.samples]
+    # Intervals of the scan without a sample inside:
     intervals = [pair for pair in pairwise(course.scanned) if bisect(places, pair[0]) == bisect_left(places, pair[1])]
     intervals += [
         pair for pair in pairwise(places) if pair[1] - pair[0] >= WIDE_GAP * course.spacing and pair not in intervals
@@ -130,7 +132,8 @@ def check_scan(course: MeasureCourse) -> None:
             or not may_hide_wave(course, i)
         ):
             continue
-        x = low + (high - low) * (0.5 + CHECK_OFFSET * (2.0 * (len(places) * GOLDEN % 1.0) - 1.0))
+        offset = CHECK_OFFSET * (2.0 * (len(places) * GOLDEN % 1.0) - 1.0)  # from the middle, another each time
+        x = low + (high - low) * (0.5 + offset)
         prediction = predict_course(course, i, np.array([x]))
         evaluated = sample_and_learn(course, x)
         places.append(x)
@@ -169,13 +172,13 @@ def breaks_law(course: MeasureCourse, i: int) -> bool:
 
     Then the law changes in the interval, at a kink or a jump, and no prediction holds there.
     """
-    for first, beyond in ((i - 3, i + 1), (i + 1, i)):  # the four on the left, and on the right
+    for first, tested in ((i - 3, i + 1), (i + 1, i)):  # first index of the four, index of the one to follow them
         if first < 0 or first + 4 > len(course.samples) or any(map(course.is_interrupted, range(first, first + 3))):
             continue
         law = course.samples[first : first + 4]
         if follows_parabola(law[1:], law[0]) and follows_parabola(law[:-1], law[-1]):
-            nearest = law[1:] if beyond > first else law[:-1]
-            if not follows_parabola(nearest, course.samples[beyond]):
+            nearest = law[1:] if tested > first else law[:-1]
+            if not follows_parabola(nearest, course.samples[tested]):
                 return True
     return False
 

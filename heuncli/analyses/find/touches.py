@@ -1,8 +1,7 @@
 """Find touches of the value, which the samples of a measure may hide.
 
-A measure whose stated error vanishes together with its distance touches its value where that distance cannot be
-resolved better than the place itself: if |g| doubles within the smallest distance of places. Towards the place it is
-followed as a power:
+Where g and its error both go to 0, |g| may stay above its error, so that no sample meets the value. A sample counts as
+a touch if |g| doubles on both sides within a few smallest distances of places. Towards it |g| is followed as a power:
     |g| = a |x - c|^p        c from the neighbours on both sides, p such that the sample between them fits
 """
 
@@ -21,10 +20,10 @@ POWERS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # values of p that are tried
 MAX_MISFIT = 3.0  # largest ratio between the middle sample and its prediction by the power
 MIN_GAIN = 0.5  # largest ratio of |g| after a useful step to |g| before, and of a minimum to its neighbours
 MAX_STEPS = 60  # steps towards one touch
-DOUBLING = 2.0  # ratio by which |g| rises on both sides of a touch
+TOUCH_RISE = 2.0  # ratio by which |g| rises on both sides of a touch
 CLEAR_OF_VALUE = 2.0 * NOISE  # ratio of |g| to its error at a sample next to one that meets the value
 MAX_POWER_CHANGE = 0.1  # relative change of the power outside of two samples that is permitted at the first distrust
-INSIDE = 0.25  # smallest distance of a place from the end of its interval, in finest distances
+MIN_END_DISTANCE = 0.25  # smallest distance of a place from the end of its interval, in finest distances
 
 
 def find_touches(course: MeasureCourse) -> None:
@@ -39,7 +38,7 @@ def is_deep(left: Sample, middle: Sample, right: Sample) -> bool:
 
 
 def iter_minima(course: MeasureCourse) -> Iterator[tuple[Sample, Sample, Sample]]:
-    """Yield three adjacent samples on one side of which the middle one is nearest to the value."""
+    """Yield each three adjacent samples, all on the same side of the value, whose middle one is nearest to it."""
     for i in range(1, len(course.samples) - 1):
         if course.is_interrupted(i - 1) or course.is_interrupted(i):
             continue
@@ -66,10 +65,11 @@ def follow_minimum(course: MeasureCourse, x: float) -> None:
             return
         if predicted is None:
             return
-        margin = INSIDE * course.finest
+        margin = MIN_END_DISTANCE * course.finest
         sample = course.sample_at(min(max(predicted, left.x + margin), right.x - margin))
         if sample.gap is None or sample.side != middle.side:
             return
+        # A known place gives the same sample again.
         if sample.distance > MIN_GAIN * middle.distance and sample is not middle:  # then halve the wider interval
             is_left_wider = abs(left.x - middle.x) > abs(right.x - middle.x)
             sample = course.sample_at(0.5 * (middle.x + (left.x if is_left_wider else right.x)))
@@ -106,7 +106,7 @@ def find_touch_range(course: MeasureCourse, middle: Sample) -> tuple[float, floa
         for sample in course.iter_outward(i, direction):
             if abs(sample.x - middle.x) > tolerances.TOUCH_DOUBLES * course.finest or sample.side != middle.side:
                 return None
-            if sample.distance >= DOUBLING * middle.distance:
+            if sample.distance >= TOUCH_RISE * middle.distance:
                 ends.append(sample.x)
                 break
     return (ends[0], ends[1]) if len(ends) == 2 else None
@@ -143,22 +143,23 @@ def step_towards_value(course: MeasureCourse, i: int) -> float | None:
     None if the sample next to that one meets the value, too, or if |g| does not grow as a power of the distance.
     """
     left, right = course.samples[i], course.samples[i + 1]
-    outer, met, direction = (left, right, LEFT) if right.side == AT_VALUE else (right, left, RIGHT)
+    outer, met_sample, direction = (left, right, LEFT) if right.side == AT_VALUE else (right, left, RIGHT)
     beyond = next(iter(course.find_neighbours(i, direction)), None)
-    others = course.samples[i + 2 : i + 3] if met is right else course.samples[max(i - 1, 0) : i]
+    # The sample next to the one that meets the value, on its other side:
+    behind_met = course.samples[i + 2 : i + 3] if met_sample is right else course.samples[max(i - 1, 0) : i]
     if (
-        met.side != AT_VALUE
-        or any(other.side == AT_VALUE for other in others)
+        met_sample.side != AT_VALUE
+        or any(sample.side == AT_VALUE for sample in behind_met)
         or beyond is None
-        or (power := find_power(met, outer, beyond)) is None
+        or (power := find_power(met_sample, outer, beyond)) is None
     ):
         return None
-    small = CLEAR_OF_VALUE * max(outer.error, met.error)
+    small = CLEAR_OF_VALUE * max(outer.error, met_sample.error)
     share = (small / outer.distance) ** (1.0 / power)
-    distance = max(share * abs(outer.x - met.x), course.finest)
-    if not distance < 0.5 * abs(outer.x - met.x):
+    distance = max(share * abs(outer.x - met_sample.x), course.finest)
+    if not distance < 0.5 * abs(outer.x - met_sample.x):
         return None
-    return met.x + math.copysign(distance, outer.x - met.x)
+    return met_sample.x + math.copysign(distance, outer.x - met_sample.x)
 
 
 def leads_to_touch(course: MeasureCourse, i: int) -> bool:
@@ -167,10 +168,11 @@ def leads_to_touch(course: MeasureCourse, i: int) -> bool:
     It must be the power of the distance by which |g| falls outside of the two, too.
     """
     samples, allowed = course.samples, MAX_POWER_CHANGE * FIRST_DISTRUST / course.distrust
+    # Order along x: the sample that meets the value, near, far, beyond; or mirrored.
     for near, direction in ((i, LEFT), (i + 1, RIGHT)):
         far = i + 1 if near == i else i
         beyond = next(iter(course.find_neighbours(i, -direction)), None)
-        met = find_met(course, near, direction)
+        met = find_met_sample(course, near, direction)
         if met is None or beyond is None or samples[near].distance < NOISE * samples[near].error:
             continue
         inside = find_power(met, samples[near], samples[far])
@@ -180,7 +182,7 @@ def leads_to_touch(course: MeasureCourse, i: int) -> bool:
     return False
 
 
-def find_met(course: MeasureCourse, k: int, direction: int) -> Sample | None:
+def find_met_sample(course: MeasureCourse, k: int, direction: int) -> Sample | None:
     """Find the first sample that meets the value, or is a touch, in a direction from the k-th.
 
     |g| must fall towards it, on one side of the value; None otherwise.

@@ -25,7 +25,7 @@ from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.actions import Action
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
-from heuncli.loads.kinetostatics.foundation import inertia_loads
+from heuncli.loads.kinetostatics.foundation import find_inertia_loads
 from heuncli.loads.kinetostatics.shares import GRAVITY, MOTION
 from heuncli.motion.integration.evaluator import CAUSES, Evaluation
 from heuncli.motion.linearisation.linearise import LinearisedEquations
@@ -132,7 +132,7 @@ class VelocityTerms:
         times = np.full(len(rates), self.t)
         recovered = self.freed_scene.runner.evaluate(times, states, causes=True, holding=self.holding)
         velocity_motion = get_velocity_motion(layout, recovered)
-        force, moment = inertia_loads(layout.mechanism, velocity_motion)
+        force, moment = find_inertia_loads(layout.mechanism, velocity_motion)
         forces = np.einsum("tni,nif->tf", force, self.partials.shift) + np.einsum(
             "tni,nif->tf", moment, self.partials.turn
         )
@@ -184,7 +184,7 @@ def estimate_term_sizes(layout: Layout, partials: Partials, actions: Sequence[Ac
     """Return the size of the terms in the equations, (f,): the sum of |F| |x_P,i| + |M| |w_i| over all loads."""
     mechanism = layout.mechanism
     weight = np.array([body.mass for body in mechanism.bodies])[:, None] * mechanism.gravity
-    force, moment = (compute_norms(part[0], 1) for part in inertia_loads(mechanism, states))
+    force, moment = (compute_norms(part[0], 1) for part in find_inertia_loads(mechanism, states))
     size = (compute_norms(weight, 1) + force) @ compute_norms(partials.shift, 1) + moment @ compute_norms(
         partials.turn, 1
     )

@@ -20,7 +20,7 @@ from heuncli.loads.kinetostatics.actions import Action, collect_applied_loads
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates
 from heuncli.loads.kinetostatics.couplings import find_coupling_loads, list_rope_actions
-from heuncli.loads.kinetostatics.foundation import inertia_loads
+from heuncli.loads.kinetostatics.foundation import find_inertia_loads
 from heuncli.loads.kinetostatics.shares import GRAVITY
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.motion.integration.integrated_scene import find_determined_motion
@@ -225,7 +225,7 @@ def compute_inertia(scene: FreedScene, unit_recovered: Evaluation, states: BodyS
         states.omega * angular_momentum, axis=(1, 2)
     )
     velocity_motion = get_velocity_motion(layout, unit_recovered)
-    force, moment = inertia_loads(layout.mechanism, velocity_motion)
+    force, moment = find_inertia_loads(layout.mechanism, velocity_motion)
     power = np.sum(force * states.v_centre + moment * states.omega, axis=(1, 2))
     (coordinate,) = scene.driven_coordinates
     # without loads the coordinate may accelerate: that part is no change of e

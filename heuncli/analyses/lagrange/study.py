@@ -52,7 +52,7 @@ class LagrangeOptions:
 
     at: float | None = None
     coordinates: tuple[str, ...] = ()
-    seen: tuple[str, ...] = ()
+    seen: tuple[str, ...] = ()  # places whose apparent inertias are computed
     christoffel: bool = False
     state_space: bool = False
     inputs: tuple[str, ...] = ()
@@ -64,10 +64,10 @@ def solve_lagrange(spec: Spec, options: LagrangeOptions) -> LagrangeResults:
     """Return Lagrange's equations of a spec's scene, in numbers. Raises SolveError."""
     with attach_locations(spec):
         instant = make_instant(spec, options.at, options.time_limit)
-        return to_results(spec, instant, options)
+        return compute_results(spec, instant, options)
 
 
-def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> LagrangeResults:
+def compute_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> LagrangeResults:
     """Return the results at an instant."""
     layout = instant.freed_scene.layout
     choice = choose_coordinates(
@@ -82,11 +82,11 @@ def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> Lagran
     C = terms.compute_terms(rates[None, :])[0]
     freed_states = make_body_states(layout, instant.freed_recovered)
     applied_actions = list_applied_actions(layout, instant, states)
-    k = compute_forces_by_cause(layout, partials, applied_actions)
-    scale = estimate_term_sizes(layout, partials, [*applied_actions, *list_constraint_actions(instant)], states)
-    scale = scale + np.abs(epsilon) @ np.abs(accelerations) + np.abs(C)
+    forces = compute_forces_by_cause(layout, partials, applied_actions)
+    term_sizes = estimate_term_sizes(layout, partials, [*applied_actions, *list_constraint_actions(instant)], states)
+    term_sizes = term_sizes + np.abs(epsilon) @ np.abs(accelerations) + np.abs(C)
     drives = make_drive_rows(instant, choice)
-    remainder = epsilon @ accelerations + C - sum(k.values(), np.zeros(len(rates)))
+    remainder = epsilon @ accelerations + C - sum(forces.values(), np.zeros(len(rates)))
     Q = drives.project_on_drives(remainder)
     linear = compute_state_space(instant, choice, Q, options.inputs, options.outputs) if options.state_space else None
     gamma = terms.compute_christoffel_symbols() if options.christoffel and not any(choice.is_quasi_velocity) else None
@@ -103,7 +103,7 @@ def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> Lagran
         epsilon=epsilon,
         eta=eta,
         momenta=epsilon @ rates,
-        forces=k,
+        forces=forces,
         drives=Q,
         coriolis=C,
         coriolis_matrix=terms.coriolis_matrix(rates),
@@ -112,8 +112,8 @@ def to_results(spec: Spec, instant: Instant, options: LagrangeOptions) -> Lagran
         energy=float(0.5 * rates @ epsilon @ rates),
         energies=split_energy(epsilon, rates, np.array(choice.is_driven), are_drives_chosen),
         reciprocal_energy=float(0.5 * (epsilon @ rates) @ eta @ (epsilon @ rates)),
-        scale=scale,
-        residual=compute_residual(choice, *subtract_drive_efforts(instant, drives, remainder), scale),
+        scale=term_sizes,
+        residual=compute_residual(choice, *subtract_drive_efforts(instant, drives, remainder), term_sizes),
         apparent_inertias=compute_apparent_inertias(equations, options.seen),
         sections=list_section_forces(instant, partials),
         partials=make_partials_block(equations),

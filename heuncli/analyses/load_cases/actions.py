@@ -15,7 +15,7 @@ from heuncli.analyses.load_cases.model import AccelerationField, PointAction
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import Action
-from heuncli.loads.kinetostatics.sections import AttachedLoad, find_attachments, to_body_axes
+from heuncli.loads.kinetostatics.piece_loads import AttachedLoad, find_attachments, to_body_axes
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.results.results import Array

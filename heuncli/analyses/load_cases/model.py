@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.sections import compute_acceleration_matrix
+from heuncli.loads.kinetostatics.piece_loads import compute_acceleration_matrix
 from heuncli.results.results import Array
 from heuncli.scene.shapes.inertia import pseudo_inertia
 from heuncli.scene.shapes.rotations import cross_vectors

@@ -58,7 +58,7 @@ def compute_spec_modes(spec: Spec, excluded: Sequence[str] = ()) -> SceneModes:
 
 def solve_spec_modes(spec: Spec) -> SceneModes:
     """Return the modes of a spec. Errors name bodies, joints and sections, but not their location in the file."""
-    return to_results(spec, solve_modes(spec))
+    return make_results(spec, solve_modes(spec))
 
 
 class SpecModes(NamedTuple):
@@ -123,7 +123,7 @@ def widen_error(mode: Mode, neighbour_eigenvalues: list[Array]) -> Mode:
     return replace(mode, kind=kind, eigenvalue=complex(0.0, value.imag), error=error)
 
 
-def to_results(spec: Spec, spec_modes: SpecModes) -> SceneModes:
+def make_results(spec: Spec, spec_modes: SpecModes) -> SceneModes:
     """Return the modes in terms of the joint coordinates."""
     linearised_state = spec_modes.linearised_state
     rows = make_coordinate_rows(linearised_state.layout, linearised_state.linear)
@@ -222,7 +222,7 @@ def find_body_modes(spec: Spec, excluded: Sequence[str] = ()) -> BodyModes:
         local_centres = np.array([body.center for body in bodies]).reshape(-1, 3)
         return BodyModes(
             scene=linearised_state.scene,
-            modes=replace(to_results(spec, spec_modes), omitted_paths=tuple(excluded)),
+            modes=replace(make_results(spec, spec_modes), omitted_paths=tuple(excluded)),
             names=tuple(body.name for body in bodies),
             places=centres - np.einsum("bij,bj->bi", attitudes, local_centres),
             attitudes=attitudes,

@@ -41,7 +41,7 @@ def find_integrated_growth(motion: MotionSearch) -> tuple[GrowthResults | None, 
     Q = disturbed_runs.find_directions()
     if not Q.shape[1]:
         return None, "0 degrees of freedom"
-    return to_results(disturbed_runs.compute_growth(Q), Q.shape[1])
+    return make_results(disturbed_runs.compute_growth(Q), Q.shape[1])
 
 
 def choose_method(run: Trajectory) -> Method:
@@ -74,7 +74,7 @@ def find_out_of_plane_growth(motion: MotionSearch) -> tuple[GrowthResults | None
     Q = find_out_of_plane_directions(disturbed_runs)
     if Q is None or not Q.shape[1]:
         return None, "the joints permit no out-of-plane motion"
-    return to_results(disturbed_runs.compute_growth(Q), Q.shape[1])
+    return make_results(disturbed_runs.compute_growth(Q), Q.shape[1])
 
 
 def find_out_of_plane_directions(disturbed_runs: DisturbedRuns) -> Array | None:
@@ -106,7 +106,7 @@ def find_out_of_plane_directions(disturbed_runs: DisturbedRuns) -> Array | None:
     return np.block([[T, np.zeros_like(T)], [np.zeros_like(T), T]])
 
 
-def to_results(growth: DisturbanceGrowth, directions: int) -> tuple[GrowthResults | None, str]:
+def make_results(growth: DisturbanceGrowth, directions: int) -> tuple[GrowthResults | None, str]:
     """Return a growth with its rate and the horizon of double precision, or the reason why it is missing."""
     times, log = growth.times, growth.logarithm
     last = float(times[-1])

@@ -59,13 +59,11 @@ def descend(trials: Trials) -> float | None:
         gains.append(trials.compute_merit(start, merit_weight) - trials.compute_merit(end, merit_weight))
         distance = float(np.abs(np.subtract(end.place, start.place)).max())
         step = min(MAX_STEP, max(DISTANCE_FACTOR * distance, MIN_STEP_RATIO * step, MIN_STEP))
+        # The first feasible trial changes the merit: then run again.
+        is_weight_current = (merit_weight is not None) == trials.has_feasible
         if merit_weight is not None and trials.compute_violation(end) > MAX_VIOLATION:
             weight *= WEIGHT_FACTOR
-        elif (
-            len(gains) >= stalled_runs
-            and max(gains[-stalled_runs:]) < trials.floor
-            and (merit_weight is None) is not trials.has_feasible
-        ):
+        elif len(gains) >= stalled_runs and max(gains[-stalled_runs:]) < trials.floor and is_weight_current:
             return max(gains[-stalled_runs:]) if trials.remaining else None
     return None
 

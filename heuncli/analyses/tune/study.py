@@ -253,7 +253,7 @@ class Tuning:
             return trials.compute_violation(best) - trials.compute_violation(current) > trials.floor
         return trials.compute_scaled_goal(best) - trials.compute_scaled_goal(current) > trials.floor
 
-    def to_results(self) -> TuneResults:
+    def make_results(self) -> TuneResults:
         """Return the results so far."""
         trials = self.trials
         best = trials.find_best()

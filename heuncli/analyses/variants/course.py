@@ -33,15 +33,15 @@ class MeasureCourse:
     """The samples of g over an interval; it samples more places on request.
 
     low, high: the ends of the interval
-    value: the measure minus g
+    value: what the measure is to reach; g is the measure minus it
     samples: ascending in x
     scanned: the places of the scan; spacing: the largest distance between two of them
     jumps: pairs of neighbours between which g jumps; the course is interrupted there, as at variants that fail
     steep: pairs of neighbours between which g crosses the value, closer together than finest
     searched_pairs: pairs of neighbours between which a place was sampled already
     followed: places of minima of |g| that were followed
-    certain: groups of places that need no more samples, each with the distrust for which that was decided
-    usual: median magnitude of the measure over the scan
+    certain: places, distrust and number of range ends, for which no more samples are needed between the middle two
+    median_magnitude: median magnitude of the measure over the scan
     finest: smallest distance of places that are distinguished
     distrust: factor on the uncertainty of predictions; grows when one was wrong by more than its uncertainty
     """
@@ -58,11 +58,11 @@ class MeasureCourse:
         """evaluate: returns the sample at a place
         count: places of the scan, evenly spaced
         max_samples: limit of all samples
-        value: the measure minus g
+        value: what the measure is to reach; g is the measure minus it
         """
         self.value = value
         self.searched_pairs: set[tuple[float, float]] = set()
-        self.usual = math.inf
+        self.median_magnitude = math.inf
         self.followed: set[float] = set()
         self.certain: set[tuple[float, ...]] = set()
         self._evaluate, self._max_samples = evaluate, max_samples
@@ -79,7 +79,7 @@ class MeasureCourse:
         """Sample the places of the scan: the ends first, so that an incomplete scan has them."""
         for x in (self.scanned[0], self.scanned[-1], *self.scanned[1:-1]):
             self.sample_at(x)
-        self.usual = float(np.median([abs(self.get_measure(sample)) for sample in self.samples]))
+        self.median_magnitude = float(np.median([abs(self.get_measure(sample)) for sample in self.samples]))
 
     def sample_at(self, x: float) -> Sample:
         """Return the sample at a place, evaluated once. Raises SampleLimitError."""
@@ -112,14 +112,15 @@ class MeasureCourse:
         """Return the measure at a sample: g plus the value."""
         return sample.gap_or_zero + self.value
 
-    def measure_at(self, i: int) -> float:
+    def get_measure_at(self, i: int) -> float:
         """Return the measure at the i-th sample."""
         return self.samples[i].gap_or_zero + self.value
 
     def withhold_isolated(self) -> None:
         """Withhold samples whose run passes a singular pose, if the samples next to them do not.
 
-        If a wider group of them is found, it is a part of the course, and they are restored.
+        Withheld: the gap is set aside, as if the variant had failed. If a wider group of them is found, it is a part of
+        the course, and they are restored.
         """
         for is_singular, members in groupby(range(len(self.samples)), key=lambda i: self.samples[i].singular):
             places = list(members)

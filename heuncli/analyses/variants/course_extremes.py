@@ -97,7 +97,7 @@ def find_peak(course: MeasureCourse, i: int) -> CoursePeak | None:
     if course.is_interrupted(i):
         return None
     left, right = course.samples[i], course.samples[i + 1]
-    if course.measure_at(i) * course.measure_at(i + 1) < 0.0:
+    if course.get_measure_at(i) * course.get_measure_at(i + 1) < 0.0:
         place = find_pole(course, i)
         return None if place is None else CoursePeak(place, math.inf)
     peaks = [peak for k in (i, i + 1) if (peak := find_peak_at_sample(course, k)) is not None]
@@ -110,7 +110,7 @@ def find_peak_at_sample(course: MeasureCourse, k: int) -> CoursePeak | None:
     if not 0 < k < len(course.samples) - 1 or course.is_interrupted(k - 1) or course.is_interrupted(k):
         return None
     x = [course.samples[j].x for j in (k - 1, k, k + 1)]
-    m = [course.measure_at(j) for j in (k - 1, k, k + 1)]
+    m = [course.get_measure_at(j) for j in (k - 1, k, k + 1)]
     noise = NOISE * max(course.samples[j].error for j in (k - 1, k, k + 1))
     if m[0] * m[1] <= 0.0 or m[1] * m[2] <= 0.0 or abs(m[1]) - max(abs(m[0]), abs(m[2])) <= noise:
         return None
@@ -129,7 +129,7 @@ def find_pole(course: MeasureCourse, i: int) -> float | None:
     """
     left, right = course.samples[i], course.samples[i + 1]
     width = right.x - left.x
-    a, b = course.measure_at(i), course.measure_at(i + 1)
+    a, b = course.get_measure_at(i), course.get_measure_at(i + 1)
     if not a * b < 0.0:
         return None
     a, b = 1.0 / a, 1.0 / b
@@ -137,7 +137,7 @@ def find_pole(course: MeasureCourse, i: int) -> float | None:
     for k, far in ((i, i - 1), (i + 1, i + 2)):
         if not 0 <= far < len(course.samples) or course.is_interrupted(min(k, far)):
             continue
-        magnitude, outer_magnitude = course.measure_at(k), course.measure_at(far)
+        magnitude, outer_magnitude = course.get_measure_at(k), course.get_measure_at(far)
         if magnitude * outer_magnitude > 0.0 and abs(outer_magnitude) < abs(magnitude):
             fall = 1.0 / abs(outer_magnitude) - 1.0 / abs(magnitude)
             distance = abs(course.samples[k].x - course.samples[far].x) / abs(magnitude) / fall

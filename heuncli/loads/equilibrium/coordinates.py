@@ -22,6 +22,8 @@ from heuncli.results.results import Array, Indices, Mask
 from heuncli.scene.file_format.couplings import Belt, Gear, Ratio, Screw
 from heuncli.scene.shapes.rotations import cross_vectors
 
+GOLDEN_SHARE = 0.6180339887498949  # its multiples, less whole numbers, are spread evenly and without a pattern
+
 # Coordinates
 
 
@@ -117,14 +119,14 @@ def make_coordinates(layout: Layout) -> Coordinates:
     undriven = np.flatnonzero(freedoms["driven"] == 0)
     places = {int(a) + k: (int(r) + k) for a, r in bodies[["velocity_at", "rate_at"]][balls].tolist() for k in range(3)}
     places |= dict(freedoms[["velocity_at", "u_at"]][undriven].tolist())
-    answers = np.array(sorted(places), dtype=int)
-    rates = np.array([places[a] for a in answers.tolist()], dtype=int)
-    numbers = np.searchsorted(answers, freedoms["velocity_at"][undriven])
-    shifts = np.zeros(len(answers), dtype=bool)
+    result_indices = np.array(sorted(places), dtype=int)
+    rates = np.array([places[a] for a in result_indices.tolist()], dtype=int)
+    numbers = np.searchsorted(result_indices, freedoms["velocity_at"][undriven])
+    shifts = np.zeros(len(result_indices), dtype=bool)
     shifts[numbers] = freedoms["kind"][undriven] == kernel.SHIFT
     return Coordinates(
-        layout=layout, shifts=shifts, weights=layout.weights[rates], result_indices=answers, rates=rates, balls=balls,
-        turns=np.searchsorted(answers, bodies["velocity_at"][balls]), freedoms=undriven,
+        layout=layout, shifts=shifts, weights=layout.weights[rates], result_indices=result_indices, rates=rates,
+        balls=balls, turns=np.searchsorted(result_indices, bodies["velocity_at"][balls]), freedoms=undriven,
         numbers=numbers,
     )  # fmt: skip
 
@@ -162,13 +164,13 @@ def set_parent_rotation(layout: Layout, states: Array, bodies: Table, freedoms: 
     """Give bodies on ball joints the angular velocity of their parents, in place; bodies, freedoms: results at those
     states.
     """
-    omega = driven_angular_velocities(layout, bodies, freedoms)
+    omega = find_driven_angular_velocities(layout, bodies, freedoms)
     for place, body in enumerate(layout.bodies):
         if body["ball"]:
             states[:, body["rate_at"] : body["rate_at"] + 3] = omega[:, place]
 
 
-def driven_angular_velocities(layout: Layout, bodies: Table, freedoms: Table) -> Array:
+def find_driven_angular_velocities(layout: Layout, bodies: Table, freedoms: Table) -> Array:
     """Return the angular velocities of the bodies where drives alone turn them, (k, n_b, 3), tree order."""
     omegas = np.zeros(bodies["omega"].shape)
     for place, body in enumerate(layout.bodies):
@@ -192,10 +194,10 @@ def find_driven_rotations(layout: Layout, place: int) -> list[tuple[int, Array]]
     ]
 
 
-def rounding_displacement(coordinates: Coordinates, state: Array, number: int) -> Array:
+def make_rounding_displacement(coordinates: Coordinates, state: Array, number: int) -> Array:
     """Return a displacement by the rounding of the coordinates, (n,); each number gives another direction."""
     n = coordinates.count
-    fraction = np.modf(0.6180339887498949 * (np.arange(1, n + 1) + number * (n + 1)))[0]
+    fraction = np.modf(GOLDEN_SHARE * (np.arange(1, n + 1) + number * (n + 1)))[0]
     direction = np.where(fraction < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * fraction)[0] / 2.0)
     scale = np.ones(n)
     q = state[coordinates.layout.tables["freedoms"]["q_at"][coordinates.freedoms]]

@@ -61,12 +61,12 @@ def make_bearing_pose(evaluator: Evaluator, coordinates: Coordinates, t: float, 
     return make_pose(evaluator, coordinates, t, state, holding)
 
 
-def contact_opening(contact: Contact, pose: Pose) -> float:
+def find_contact_opening(contact: Contact, pose: Pose) -> float:
     """Return how far a contact is open [m or rad]."""
     return -contact.sense * float(pose.evaluation.rows["gap"][0, contact.row])
 
 
-def contact_force(contact: Contact, pose: Pose) -> float:
+def find_contact_force(contact: Contact, pose: Pose) -> float:
     """Return the load of a closed contact [N or N m]; negative if it would have to pull."""
     return -contact.sense * float(pose.evaluation.rows["multiplier"][0, contact.row])
 
@@ -84,7 +84,7 @@ MAX_NAMES = 3
 HOLD_HINT = "constrain it by a joint, a spring or a stop, or leave it out"
 
 
-def no_rest_problem(message: str, hint: str) -> Problem:
+def make_no_rest_problem(message: str, hint: str) -> Problem:
     """Make a problem of this kind."""
     return Problem(CODE, f"no rest position: {message}", hint=hint)
 
@@ -116,7 +116,7 @@ def make_runaway_problem(coordinates: Coordinates, displacement: Array, distance
         if has_thread_friction
         else HOLD_HINT
     )
-    return no_rest_problem(f"{', '.join(clauses[:MAX_NAMES])}{more}: nothing stops it", hint)
+    return make_no_rest_problem(f"{', '.join(clauses[:MAX_NAMES])}{more}: nothing stops it", hint)
 
 
 def find_free_shifts(coordinates: Coordinates, number: int) -> Array:
@@ -130,7 +130,7 @@ def find_free_shifts(coordinates: Coordinates, number: int) -> Array:
     return np.array(body_shifts if len(body_shifts) == 3 else [number] * 3)
 
 
-def endless_search_problem(coordinates: Coordinates, pose: Pose, steps: int) -> Problem:
+def make_endless_search_problem(coordinates: Coordinates, pose: Pose, steps: int) -> Problem:
     """Make the problem of a search that does not end: where it was, and the largest remaining force."""
     layout = coordinates.layout
     states = make_body_states(layout, pose.evaluation)
@@ -144,10 +144,10 @@ def endless_search_problem(coordinates: Coordinates, pose: Pose, steps: int) -> 
         f"({x:.6g}, {y:.6g}, {z:.6g}) m, with an unbalanced force of {remaining_forces[k]:.3g} N"
     )
     hint = "do loads jump (sign, step)? smooth them, start nearer to the rest position, or run a motion with dampers"
-    return no_rest_problem(message, hint)
+    return make_no_rest_problem(message, hint)
 
 
-def jumping_load_problem(coordinates: Coordinates, pose: Pose, shape: Array) -> Problem:
+def make_jumping_load_problem(coordinates: Coordinates, pose: Pose, shape: Array) -> Problem:
     """Make the problem of loads that push towards a jump where they change sign; shape (n,): the motion that they
     drive.
     """
@@ -155,24 +155,24 @@ def jumping_load_problem(coordinates: Coordinates, pose: Pose, shape: Array) -> 
     remaining = float(np.abs(pose.accelerations * coordinates.weights).max())
     message = f"{name} is driven from both sides to a jump of a load; it is in equilibrium on neither side"
     hint = f"smooth the jump: tanh(x/0.001) instead of sign(x); unbalanced acceleration {remaining:.3g} 1/s²"
-    return no_rest_problem(message, hint)
+    return make_no_rest_problem(message, hint)
 
 
-def singular_pose_problem(coordinates: Coordinates, pose: Pose) -> Problem:
+def make_singular_pose_problem(coordinates: Coordinates, pose: Pose) -> Problem:
     """Make the problem of a path that ends in a singular position, from which several motions are possible."""
     layout, rows = coordinates.layout, pose.evaluation.rows
     left_out = [r for r in range(len(layout.rows)) if rows["closed"][0, r] > rows["chosen"][0, r]]
     names = dict.fromkeys(layout.mechanism.owner_path(layout.rows[r]) for r in left_out)
     through = f" through {' and '.join(names)}" if names else ""
     message = f"the search ends at a singular position: the closed loop{through} is stretched, folded or flat"
-    return no_rest_problem(message, "more than one motion is possible from there: add a stop before that position")
+    return make_no_rest_problem(message, "more than one motion is possible from there: add a stop before that position")
 
 
-def no_value_problem(coordinates: Coordinates, change: Array) -> Problem:
+def make_no_value_problem(coordinates: Coordinates, change: Array) -> Problem:
     """Make the problem of loads without a value, or a slope, where the search is; change (k, f): near the pose."""
     what = "value" if not np.isfinite(change).all() else "derivative"
     layout = coordinates.layout
     loads = [load.path for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
     which = f" ({', '.join(loads[:MAX_NAMES])})" if loads else ""
     message = f"the search reached a position where a load{which} has no {what}: a root, a logarithm, coincident points"
-    return no_rest_problem(message, "start nearer to the rest position, or give the load a value on both sides")
+    return make_no_rest_problem(message, "start nearer to the rest position, or give the load a value on both sides")

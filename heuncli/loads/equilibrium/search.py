@@ -3,9 +3,9 @@
     dq/ds = a(q, rates 0)
 
 is that motion: damped in proportion to its mass, a scene moves arbitrarily slowly along the accelerations it would have
-at rest. A step follows the linear law about its pose exactly (slopes.py), stiff directions to their end and soft ones
-as far as s goes, with a third-order correction (slopes.py); it is accepted if the correction is a small part
-of it, else a shorter one is tried. Where all directions are near their end, s grows without bound, and the step is
+at rest. A step follows the linear law about its pose exactly (rest_law.py), stiff directions to their end and soft ones
+as far as s goes, with a third-order correction; it is accepted if the correction is a small part of it, else a shorter
+one is tried. Where all directions are near their end, s grows without bound, and the step is
 Newton's. An unstable direction that nothing pushes stays as it is, as in that motion. Contacts close where their gap
 closes, and open where they would pull. A finer search shows how far a search can be trusted (verification.py).
 """
@@ -20,23 +20,23 @@ from heuncli.base.records import record, replace
 from heuncli.loads.equilibrium.coordinates import Coordinates, find_coupled_pairs, make_coordinates
 from heuncli.loads.equilibrium.pose import (
     Pose,
-    contact_force,
-    contact_opening,
     count_dependent_rows,
-    endless_search_problem,
-    jumping_load_problem,
+    find_contact_force,
+    find_contact_opening,
     make_bearing_pose,
+    make_endless_search_problem,
+    make_jumping_load_problem,
     make_pose,
     make_runaway_problem,
-    singular_pose_problem,
+    make_singular_pose_problem,
 )
-from heuncli.loads.equilibrium.slopes import (
-    PERTURBED_POSES,
+from heuncli.loads.equilibrium.rest_law import (
+    EVALUATIONS_OF_LAW,
     RestLaw,
     RosenbrockStep,
     make_rest_law,
+    make_uncorrected_step,
     separate_indifferent,
-    uncorrected_step,
 )
 from heuncli.loads.kinetostatics.bodies import make_body_states
 from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates as joint_coordinates
@@ -48,6 +48,8 @@ from heuncli.results.results import Array
 MAX_STEPS = 2_000
 MAX_GROWTH, MIN_GROWTH = 10.0, 0.2  # limits of the growth of s from step to step
 RETRY_FACTOR = 0.5
+SAFETY = 0.9  # times the step whose correction would just be allowed
+MIN_ERROR = 1e-9  # relative: of a step, smaller ones count as that
 MAX_TRIES = 60  # of one step
 MAX_STANDING_STEPS = 20  # in a row that move by rounding only, at a singular position
 MAX_CLOSURE_STEPS = 8  # of a displaced pose; each must reduce the miss to a tenth, or the step is too long
@@ -59,13 +61,12 @@ CONTACT_SAMPLES = (0.25, 0.5, 0.75, 1.0)  # fractions of a step at which contact
 class RestPose:
     """A rest pose, with the linear law about it, and the cost of the search.
 
-    slopes: the linear law
     doubt: how far the path may have deviated [rad, or relative to the size]
     slowest: the slowest point of the path before the deviation began to grow
     """
 
     pose: Pose
-    slopes: RestLaw
+    law: RestLaw
     coordinates: Coordinates
     steps: int
     evaluations: int
@@ -107,7 +108,7 @@ class RestSearch:
         current = self.start_pose()
         while True:
             law = make_rest_law(self.evaluator, self.coordinates, current)
-            self.evaluations += 3 + PERTURBED_POSES
+            self.evaluations += EVALUATIONS_OF_LAW
             if not law.significant_c.any():
                 self.require_held(current, law)
                 pose, law = self.polish(current, law)
@@ -130,7 +131,7 @@ class RestSearch:
         is_driven = np.where((remaining > allowed) & (law.nonlinearity > 0.5 * remaining), remaining, 0.0)
         if is_driven.any():
             shape = (law.T @ law.V[:, int(np.argmax(is_driven))]).real
-            raise SolveError(self.find_singularity(pose) or jumping_load_problem(self.coordinates, pose, shape))
+            raise SolveError(self.find_singularity(pose) or make_jumping_load_problem(self.coordinates, pose, shape))
 
     def require_bounded(self, pose: Pose, law: RestLaw) -> None:
         """Raise SolveError where something runs away, stands still at a singular position, or the steps are used up."""
@@ -143,15 +144,17 @@ class RestSearch:
         if self.standing_steps >= MAX_STANDING_STEPS and (problem := self.find_singularity(pose)):
             raise SolveError(problem)
         if self.steps >= MAX_STEPS * np.sqrt(tolerances.REST_BENT / self.tolerance):
-            raise SolveError(self.find_singularity(pose) or endless_search_problem(self.coordinates, pose, self.steps))
+            raise SolveError(
+                self.find_singularity(pose) or make_endless_search_problem(self.coordinates, pose, self.steps)
+            )
 
     def advance(self, pose: Pose, law: RestLaw) -> Pose:
-        """Take one step."""
+        """Take one step, as long as its correction allows. Raises SolveError [no-rest-pose] if none does."""
         if self.step_size == 0.0:
             first = self.coordinates.max_magnitude(law.T @ (law.V @ law.significant_c).real)
             self.step_size = tolerances.REST_FIRST / first if first > 0.0 else 1.0
         for _ in range(MAX_TRIES):
-            step = uncorrected_step(law, self.step_size)
+            step = make_uncorrected_step(law, self.step_size)
             displacement = step.displacement_at(self.step_size)
             if not np.isfinite(displacement).all():
                 self.step_size *= RETRY_FACTOR
@@ -166,10 +169,10 @@ class RestSearch:
                 shorter = (
                     np.sqrt(self.tolerance * size / correction_size) if np.isfinite(correction_size) else RETRY_FACTOR
                 )
-                self.step_size *= float(np.clip(0.9 * shorter, MIN_GROWTH, 0.9))
+                self.step_size *= float(np.clip(SAFETY * shorter, MIN_GROWTH, SAFETY))
                 continue
             return self.accept(pose, step, new_pose, correction_size / size if size > 0.0 else 0.0)
-        raise SolveError(self.find_singularity(pose) or endless_search_problem(self.coordinates, pose, self.steps))
+        raise SolveError(self.find_singularity(pose) or make_endless_search_problem(self.coordinates, pose, self.steps))
 
     def correct(self, pose: Pose, step: RosenbrockStep, displacement: Array) -> tuple[RosenbrockStep, Pose | None]:
         """Return the step with its third-order correction, and the pose at its end, or None where it cannot be
@@ -211,7 +214,7 @@ class RestSearch:
         """Return the problem if the search has run into a singular position; None if it started in one."""
         if count_dependent_rows(pose) <= count_dependent_rows(self.start_pose()):
             return None
-        return singular_pose_problem(self.coordinates, pose)
+        return make_singular_pose_problem(self.coordinates, pose)
 
     def move(self, pose: Pose, displacement: Array) -> Pose | None:
         """Return the displaced pose, with the same contacts; None where it cannot be closed."""
@@ -227,7 +230,7 @@ class RestSearch:
         event = self.find_contact_change(pose, step) if self.evaluator.layout.contacts else None
         if event is None:
             self.step_size *= float(
-                np.clip(0.9 * np.sqrt(self.tolerance / max(relative_error, 1e-9)), MIN_GROWTH, MAX_GROWTH)
+                np.clip(SAFETY * np.sqrt(self.tolerance / max(relative_error, MIN_ERROR)), MIN_GROWTH, MAX_GROWTH)
             )
         else:
             new_pose = event
@@ -291,12 +294,14 @@ class RestSearch:
     def has_contact_change(self, from_pose: Pose, to_pose: Pose) -> bool:
         """Return whether between two poses a contact was passed, or would have to pull."""
         for contact, holding in zip(self.evaluator.layout.contacts, from_pose.holding, strict=False):  # without latches
-            if holding > 0.0 and contact_force(contact, to_pose) < min(0.0, contact_force(contact, from_pose)):
+            if holding > 0.0 and find_contact_force(contact, to_pose) < min(
+                0.0, find_contact_force(contact, from_pose)
+            ):
                 return True
             if (
                 not holding > 0.0
-                and contact_opening(contact, to_pose)
-                < min(0.0, contact_opening(contact, from_pose)) - self.gap_tolerance
+                and find_contact_opening(contact, to_pose)
+                < min(0.0, find_contact_opening(contact, from_pose)) - self.gap_tolerance
             ):
                 return True
         return False
@@ -316,10 +321,9 @@ class RestSearch:
             state[place] = previous.state[place]
         evaluation = replace(pose.evaluation, states=state[None, :])
         joint_values = joint_coordinates(layout, evaluation, make_body_states(layout, evaluation))
-        for joint, place in layout.counters.items():
-            state[place] = joint_values[(own := layout.mechanism.joints[joint]).name][
-                "angle" if own.path is None else "travel"
-            ][0]
+        for k, place in layout.counters.items():
+            joint = layout.mechanism.joints[k]
+            state[place] = joint_values[joint.name]["angle" if joint.path is None else "travel"][0]
         return replace(pose, state=state, evaluation=replace(evaluation, states=state[None, :]))
 
     def polish(self, pose: Pose, law: RestLaw) -> tuple[Pose, RestLaw]:
@@ -334,14 +338,16 @@ class RestSearch:
                 break
             pose = self.count_turns(pose, new_pose)
             law = self.decide(pose, make_rest_law(self.evaluator, self.coordinates, pose))
-            self.evaluations += 3 + PERTURBED_POSES
+            self.evaluations += EVALUATIONS_OF_LAW
             if self.coordinates.max_magnitude(displacement) <= tolerances.PLACE_ROUNDING:
                 break  # a force without a linear term would continue endlessly
         return pose, law
 
     def decide(self, pose: Pose, law: RestLaw) -> RestLaw:
-        """Return the slopes at a pose, separated by what is held there by more than rounding."""
-        return separate_indifferent(law, find_indifference(self.scene, self.t, pose.holding, law.law, is_at_rest=False))
+        """Return the law at a pose, separated by what is held there by more than rounding."""
+        return separate_indifferent(
+            law, find_indifference(self.scene, self.t, pose.holding, law.equations, is_at_rest=False)
+        )
 
     def max_acceleration(self, pose: Pose) -> float:
         """Return the largest remaining acceleration [rad/s^2, or relative to the size 1/s^2]."""

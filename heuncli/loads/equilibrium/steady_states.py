@@ -20,8 +20,8 @@ from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.records import record
 from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, find_driven_rotations, set_to_rest
-from heuncli.loads.equilibrium.pose import Pose, no_rest_problem
-from heuncli.loads.equilibrium.slopes import RestLaw
+from heuncli.loads.equilibrium.pose import Pose, make_no_rest_problem
+from heuncli.loads.equilibrium.rest_law import RestLaw
 from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.linearisation.indifference import Indifference, reduce_indifference
 from heuncli.motion.linearisation.linearise import LinearisedEquations
@@ -44,14 +44,14 @@ PHASES = (0.37, 1.13, 2.71)  # motion of the drives until the next check: rad, o
 def require_constant(mechanism: Mechanism) -> None:
     """Raise SolveError [no-rest-pose] where loads, or the rates of drives, depend on time."""
     problems = [
-        no_rest_problem(f"{load.path} depends on t", "give its value at rest, or run a motion with dampers")
+        make_no_rest_problem(f"{load.path} depends on t", "give its value at rest, or run a motion with dampers")
         for load in mechanism.loads
         if any(value.time_dependent for value in load.values)
     ]
     for law in mechanism.laws:
         if not has_constant_rate(law.value):
             hint = "use a constant, or a constant rate: no equilibrium exists relative to an accelerating drive"
-            problems.append(no_rest_problem(f"{law.path} does not have a constant rate", hint))
+            problems.append(make_no_rest_problem(f"{law.path} does not have a constant rate", hint))
     if problems:
         raise SolveError(*problems)
 
@@ -85,7 +85,7 @@ def require_common_motion(evaluator: Evaluator, coordinates: Coordinates, pose: 
         name, _ = coordinates.find_owner(int(np.argmax(change)))
         drives = " and ".join(rates)
         hint = "equilibrium needs drives at rest, or drives that move all connected bodies as one; run a motion"
-        raise SolveError(no_rest_problem(f"{drives} {'keeps' if len(rates) == 1 else 'keep'} {name} moving", hint))
+        raise SolveError(make_no_rest_problem(f"{drives} {'keeps' if len(rates) == 1 else 'keep'} {name} moving", hint))
 
 
 def require_steady(evaluator: Evaluator, coordinates: Coordinates, pose: Pose, law: RestLaw) -> None:
@@ -107,13 +107,13 @@ def require_steady(evaluator: Evaluator, coordinates: Coordinates, pose: Pose, l
         if (remaining > 0.0).any():
             worst = int(np.argmax(np.abs(law.T @ law.V[:, int(np.argmax(remaining))])))
             message = f"{coordinates.find_owner(worst)[0]} does not stay at rest in the frame that {drives} moves"
-            raise SolveError(no_rest_problem(f"{message}: loads do not move with that frame", HINT))
+            raise SolveError(make_no_rest_problem(f"{message}: loads do not move with that frame", HINT))
         place = find_changed_body(pose.evaluation, later, evaluator.size)
         if place >= 0:
             layout = evaluator.layout
             name = layout.mechanism.bodies[layout.spanning.links[place].body].name
             message = f"the load of bodies.{name} changes as {drives} moves: loads do not move with that frame"
-            raise SolveError(no_rest_problem(message, HINT))
+            raise SolveError(make_no_rest_problem(message, HINT))
 
 
 def find_changed_body(earlier: Evaluation, later: Evaluation, size: float) -> int:
@@ -199,13 +199,13 @@ class Stability:
 def find_stability(
     scene: PreparedScene,
     coordinates: Coordinates,
-    law: LinearisedEquations,
+    equations: LinearisedEquations,
     evaluation: Evaluation,
     indifference: Indifference,
     is_bending: Mask,
 ) -> Stability:
     """Find the stability of a rest pose; is_bending (g,): which motions without stiffness bending holds, or pushes."""
-    system = reduce_equations(scene, law, evaluation)
+    system = reduce_equations(scene, equations, evaluation)
     indifferent = reduce_indifference(system, indifference)
     modes = [mode for mode in find_modes(system, indifferent) if mode.kind != "free"]
     fastest_growing = max(modes, key=lambda mode: mode.growth, default=None)
@@ -213,7 +213,7 @@ def find_stability(
     values, shapes = find_stiffnesses(system, indifferent)
     softest = int(np.argmin(values)) if len(values) else -1
     unstable = fastest_growing is not None and fastest_growing.growth > 0.0
-    free_motions, is_massive = indifference.free_motions, moves_mass(coordinates, indifference.free_motions, law)
+    free_motions, is_massive = indifference.free_motions, moves_mass(coordinates, indifference.free_motions, equations)
     return Stability(
         growth=fastest_growing.growth if fastest_growing is not None and unstable else 0.0,
         grows=name_largest(coordinates, fastest_growing.shape) if fastest_growing is not None and unstable else "",
@@ -229,10 +229,10 @@ def find_stability(
     )
 
 
-def moves_mass(coordinates: Coordinates, shapes: Array, law: LinearisedEquations) -> Mask:
+def moves_mass(coordinates: Coordinates, shapes: Array, equations: LinearisedEquations) -> Mask:
     """Return which displacements (n, g) move mass; massless spins do not."""
-    inertia = np.einsum("ng,nm,mg->g", shapes, law.mass, shapes)
-    largest = float(np.linalg.norm(law.tangent.T @ law.mass @ law.tangent))
+    inertia = np.einsum("ng,nm,mg->g", shapes, equations.mass, shapes)
+    largest = float(np.linalg.norm(equations.tangent.T @ equations.mass @ equations.tangent))
     size = np.sum((coordinates.weights[:, None] * shapes) ** 2, axis=0)
     return np.asarray(inertia > tolerances.NO_INERTIA * largest * size)
 

@@ -24,10 +24,10 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.errors import SolveError
 from heuncli.base.records import record, replace
-from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, rounding_displacement
-from heuncli.loads.equilibrium.pose import Pose, no_rest_problem, no_value_problem
+from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, make_rounding_displacement
+from heuncli.loads.equilibrium.pose import Pose, make_no_rest_problem, make_no_value_problem
+from heuncli.loads.equilibrium.rest_law import estimate_acceleration_rounding, estimate_spring_rounding
 from heuncli.loads.equilibrium.search import RestPose, RestSearch
-from heuncli.loads.equilibrium.slopes import acceleration_rounding, spring_rounding
 from heuncli.motion.integration.evaluator import Evaluator
 from heuncli.motion.integration.run.runner import Runner
 from heuncli.motion.linearisation.displacements import make_rounded_scene
@@ -47,7 +47,7 @@ MIN_INDIFFERENT_SEARCHES = 2  # additional ones, where a direction is indifferen
 class VerifiedPose:
     """The equilibrium of the finest search.
 
-    displacement (n,): to the end of the search before
+    displacement (n,): its estimated error, in the direction of the end of the search before
     alternative: another equilibrium to which the same start may lead, or None
     steps, evaluations: totals over all searches
     """
@@ -82,7 +82,7 @@ def find_verified_pose(scene: PreparedScene, evaluator: Evaluator, t: float) -> 
             break
     alternative = None if agrees else all_found[-2]
     if alternative is None and not is_certain(new):
-        alternative = find_neighbour_pose(scene, evaluator, t, new)
+        alternative = find_alternative_pose(scene, evaluator, t, new)
     return make_verified_pose(
         all_found, estimate_error(new, displacements) if agrees else np.zeros(len(displacements[-1])), alternative
     )
@@ -108,7 +108,7 @@ def perturb_states(evaluator: Evaluator, rest_pose: RestPose, displacement: Arra
     pose, coordinates = rest_pose.pose, rest_pose.coordinates
     states = coordinates.displace(np.repeat(pose.state[None, :], 2, axis=0), np.array([displacement, -displacement]))
     perturbed = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
-    newton_steps = np.array([rest_pose.slopes.newton_step(a) for a in coordinates.accelerations(perturbed)])
+    newton_steps = np.array([rest_pose.law.newton_step(a) for a in coordinates.accelerations(perturbed)])
     return tuple(
         evaluate_at_rest(evaluator, pose.t, coordinates.displace(perturbed.states, newton_steps), pose.holding).states
     )
@@ -116,11 +116,11 @@ def perturb_states(evaluator: Evaluator, rest_pose: RestPose, displacement: Arra
 
 def is_certain(rest_pose: RestPose) -> bool:
     """Return whether the path stayed farther from ridges than its error; an unstable pose is on a ridge itself."""
-    values, eigenvalue_errors = rest_pose.slopes.eigenvalues, rest_pose.slopes.eigenvalue_errors
+    values, eigenvalue_errors = rest_pose.law.eigenvalues, rest_pose.law.eigenvalue_errors
     return bool(rest_pose.doubt <= tolerances.REST_DOUBT or (values.real > eigenvalue_errors).any())
 
 
-def find_neighbour_pose(scene: PreparedScene, evaluator: Evaluator, t: float, rest_pose: RestPose) -> RestPose | None:
+def find_alternative_pose(scene: PreparedScene, evaluator: Evaluator, t: float, rest_pose: RestPose) -> RestPose | None:
     """Search again from both sides of the point where the path was slowest.
 
     Returns the first rest pose that differs from the one found, or None if all searches return to it.
@@ -152,25 +152,25 @@ def split_displacement(rest_pose: RestPose, displacement: Array) -> tuple[Array,
 
     Massless spins are in neither.
     """
-    slopes = rest_pose.slopes
-    z, is_massless = slopes.inverse @ (slopes.T_inverse @ displacement), np.isinf(slopes.eigenvalue_errors)
+    law = rest_pose.law
+    z, is_massless = law.inverse @ (law.T_inverse @ displacement), np.isinf(law.eigenvalue_errors)
     indifferent_part, massless_part = (
-        (slopes.T @ (slopes.V @ np.where(is_selected, z, 0.0))).real
-        for is_selected in (~slopes.is_decided & ~is_massless, is_massless)
+        (law.T @ (law.V @ np.where(is_selected, z, 0.0))).real
+        for is_selected in (~law.is_decided & ~is_massless, is_massless)
     )
     return displacement - indifferent_part - massless_part, indifferent_part
 
 
 def has_indifferent_direction(rest_pose: RestPose) -> bool:
     """Return whether a direction is indifferent, massless spins aside."""
-    return bool((~rest_pose.slopes.is_decided & ~np.isinf(rest_pose.slopes.eigenvalue_errors)).any())
+    return bool((~rest_pose.law.is_decided & ~np.isinf(rest_pose.law.eigenvalue_errors)).any())
 
 
 def is_same_pose(rest_pose: RestPose, stiff_part: Array, indifferent_part: Array) -> bool:
     """Return whether two searches ended in one pose, or close to each other along indifferent directions."""
-    slopes, size = rest_pose.slopes, rest_pose.coordinates.max_magnitude
-    compliance = np.abs(slopes.directions.solve_compliance(slopes.noise, slopes.eigenvalue_errors))
-    soft_size = size(np.abs(slopes.T) @ (np.abs(slopes.V) @ compliance))
+    law, size = rest_pose.law, rest_pose.coordinates.max_magnitude
+    compliance = np.abs(law.directions.solve_compliance(law.noise, law.eigenvalue_errors))
+    soft_size = size(np.abs(law.T) @ (np.abs(law.V) @ compliance))
     indifferent_size = size(indifferent_part)
     # poses that differ along indifferent directions differ in the others by their curvature at most
     return (
@@ -179,30 +179,30 @@ def is_same_pose(rest_pose: RestPose, stiff_part: Array, indifferent_part: Array
     )
 
 
-# Digits
+# Error of the pose
 
 PERTURBED_POSES = 2  # poses moved by rounding
 REACHES = 10.0 ** np.arange(-8.0, -2.0)  # rad, or relative to the size: tried displacements
 CUBIC_FACTOR = 3.0  # times Newton's step: distance to the rest pose under a purely cubic force
 MAX_ROTATION_RATIO = 10.0  # largest rotation of a motion's direction over its displacement
-NEWTON_STEPS = 6  # Newton's steps with the slopes at the pose itself; their error grows with the distance from it
+NEWTON_STEPS = 6  # Newton's steps with the law at the pose itself; their error grows with the distance from it
 
 
-def find_neighbour_poses(
+def find_indistinguishable_states(
     evaluator: Evaluator, rest_pose: RestPose, indifference: Indifference
 ) -> tuple[list[Array], Mask]:
     """Return the states (n_state,) of such poses, and which motions (g,) without stiffness are held, or pushed, by
     bending.
     """
-    pose, slopes, coordinates = rest_pose.pose, rest_pose.slopes, rest_pose.coordinates
-    displacements = np.array([rounding_displacement(coordinates, pose.state, k) for k in range(PERTURBED_POSES)])
+    pose, law, coordinates = rest_pose.pose, rest_pose.law, rest_pose.coordinates
+    displacements = np.array([make_rounding_displacement(coordinates, pose.state, k) for k in range(PERTURBED_POSES)])
     states = coordinates.displace(np.repeat(pose.state[None, :], PERTURBED_POSES, axis=0), displacements)
     perturbed = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
-    newton_steps = np.array([slopes.newton_step(a) for a in coordinates.accelerations(perturbed)])
+    newton_steps = np.array([law.newton_step(a) for a in coordinates.accelerations(perturbed)])
     corrected = evaluate_at_rest(evaluator, pose.t, coordinates.displace(perturbed.states, newton_steps), pose.holding)
-    sum_states = coordinates.displace(pose.state[None, :], rounding_in_sums(rest_pose)[None, :])
+    sum_states = coordinates.displace(pose.state[None, :], find_sum_displacement(rest_pose)[None, :])
     far_states, bends = find_bending_poses(evaluator, rest_pose, indifference)
-    open_states = coordinates.displace(pose.state[None, :], closure_displacement(evaluator, rest_pose)[None, :])
+    open_states = coordinates.displace(pose.state[None, :], find_closure_displacement(evaluator, rest_pose)[None, :])
     return [
         *corrected.states,
         *evaluate_at_rest(evaluator, pose.t, sum_states, pose.holding).states,
@@ -211,23 +211,23 @@ def find_neighbour_poses(
     ], bends
 
 
-def closure_displacement(evaluator: Evaluator, rest_pose: RestPose) -> Array:
+def find_closure_displacement(evaluator: Evaluator, rest_pose: RestPose) -> Array:
     """Return a displacement (n,) across the closures, each open by its closing tolerance, so that it is largest
     somewhere.
     """
-    across = rest_pose.slopes.law.opening_directions
+    across = rest_pose.law.equations.opening_directions
     if not across.size:
         return np.zeros(len(across))
     size = rest_pose.coordinates.weights * np.abs(across).sum(axis=1)
     return np.asarray(tolerances.CLOSED * evaluator.size * (across @ np.sign(across[int(np.argmax(size))])))
 
 
-def rounding_in_sums(rest_pose: RestPose) -> Array:
+def find_sum_displacement(rest_pose: RestPose) -> Array:
     """Return how far all directions together yield to the rounding in the sums of their accelerations, (n,)."""
-    slopes = rest_pose.slopes
-    push = CUBIC_FACTOR * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * slopes.sum_rounding
-    compliance = np.abs(slopes.directions.solve_compliance(push, slopes.eigenvalue_errors))
-    displacement = np.asarray((slopes.T @ (slopes.V @ compliance)).real)
+    law = rest_pose.law
+    push = CUBIC_FACTOR * tolerances.PLACE_ROUNDING / tolerances.SUM_ROUNDING * law.sum_rounding
+    compliance = np.abs(law.directions.solve_compliance(push, law.eigenvalue_errors))
+    displacement = np.asarray((law.T @ (law.V @ compliance)).real)
     return displacement / max(1.0, rest_pose.coordinates.max_magnitude(displacement))  # at most a radian, or the size
 
 
@@ -254,7 +254,7 @@ def find_bending_poses(
                 project_on_motions(rest_pose, shapes, b)
                 for b in (
                     accelerations_there,
-                    *(rest_accelerations(other, rest_pose, displaced_states) for other in others),
+                    *(evaluate_rest_accelerations(other, rest_pose, displaced_states) for other in others),
                 )
             ]
             uncertainty = tolerances.REAL_STIFFNESS_FACTOR * np.abs(np.array(pushes[1:]) - pushes[0]).max(axis=0)
@@ -262,7 +262,7 @@ def find_bending_poses(
             rotation_effect = (
                 MAX_ROTATION_RATIO
                 * REACHES[:, None]
-                * (np.abs(accelerations_there) @ np.abs(rest_pose.slopes.law.mass) @ np.abs(shapes))
+                * (np.abs(accelerations_there) @ np.abs(rest_pose.law.equations.mass) @ np.abs(shapes))
             )
             significant = np.flatnonzero((np.abs(pushes[0]) > uncertainty + rotation_effect).any(axis=1))
             if len(significant):
@@ -273,10 +273,10 @@ def find_bending_poses(
 
 def project_on_motions(rest_pose: RestPose, shapes: Array, accelerations: Array) -> Array:
     """Return the components of accelerations (k, n) along motions (n, g), (k, g)."""
-    return np.asarray(accelerations @ rest_pose.slopes.law.mass @ shapes)
+    return np.asarray(accelerations @ rest_pose.law.equations.mass @ shapes)
 
 
-def rest_accelerations(evaluator: Evaluator, rest_pose: RestPose, states: Array) -> Array:
+def evaluate_rest_accelerations(evaluator: Evaluator, rest_pose: RestPose, states: Array) -> Array:
     """Return the accelerations of states at rest, (k, n)."""
     return rest_pose.coordinates.accelerations(
         evaluate_at_rest(evaluator, rest_pose.pose.t, states, rest_pose.pose.holding)
@@ -285,12 +285,12 @@ def rest_accelerations(evaluator: Evaluator, rest_pose: RestPose, states: Array)
 
 def relax_displaced(evaluator: Evaluator, rest_pose: RestPose, displacements: Array) -> tuple[Array, Array]:
     """Displace the pose by (k, n) and let all that is held relax; return the states and their accelerations, (k, n)."""
-    pose, slopes, coordinates = rest_pose.pose, rest_pose.slopes, rest_pose.coordinates
+    pose, law, coordinates = rest_pose.pose, rest_pose.law, rest_pose.coordinates
     states = coordinates.displace(np.repeat(pose.state[None, :], len(displacements), axis=0), displacements)
     for _ in range(NEWTON_STEPS):
         evaluation = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
         states = coordinates.displace(
-            evaluation.states, np.array([slopes.newton_step(a) for a in coordinates.accelerations(evaluation)])
+            evaluation.states, np.array([law.newton_step(a) for a in coordinates.accelerations(evaluation)])
         )
     evaluation = evaluate_at_rest(evaluator, pose.t, states, pose.holding)
     return evaluation.states, coordinates.accelerations(evaluation)
@@ -313,15 +313,15 @@ def require_at_rest(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) 
     if evaluator.layout.has_laws:
         is_checked[:] = False
         is_checked[coordinates.numbers] = True
-    terms = acceleration_rounding(evaluator, coordinates, pose) + np.abs(
-        spring_rounding(evaluator, coordinates, pose)
+    terms = estimate_acceleration_rounding(evaluator, coordinates, pose) + np.abs(
+        estimate_spring_rounding(evaluator, coordinates, pose)
     ).sum(axis=1)
     if pose.holding.any():
         # contact forces cancel in the accelerations, too; their size shows with the contacts open
-        terms = terms + acceleration_rounding(
+        terms = terms + estimate_acceleration_rounding(
             evaluator, coordinates, replace(pose, holding=np.zeros_like(pose.holding))
         )
-    displacements = np.array([rounding_displacement(coordinates, pose.state, k) for k in range(CHECKED_POSES)])
+    displacements = np.array([make_rounding_displacement(coordinates, pose.state, k) for k in range(CHECKED_POSES)])
     perturbed_states = coordinates.displace(np.repeat(pose.state[None, :], CHECKED_POSES, axis=0), displacements)
     perturbed = evaluate_at_rest(evaluator, pose.t, perturbed_states, pose.holding)
     change = coordinates.max_magnitude(
@@ -330,11 +330,13 @@ def require_at_rest(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) 
     allowed = tolerances.STARTS_MOVING / tolerances.SUM_ROUNDING * terms
     allowed = allowed + tolerances.PUSHED_BY_ROUNDING * change / coordinates.weights
     if not (np.isfinite(pose.accelerations).all() and np.isfinite(allowed).all()):
-        raise SolveError(no_value_problem(coordinates, np.stack([pose.accelerations, allowed])))
+        raise SolveError(make_no_value_problem(coordinates, np.stack([pose.accelerations, allowed])))
     excess = np.abs(pose.accelerations) - allowed
     if (is_checked & (excess > 0.0)).any():
         k = int(np.argmax(np.where(is_checked, excess * coordinates.weights, -np.inf)))
-        raise SolveError(no_rest_problem(f"the search ended where {describe_acceleration(coordinates, pose, k)}", HINT))
+        raise SolveError(
+            make_no_rest_problem(f"the search ended where {describe_acceleration(coordinates, pose, k)}", HINT)
+        )
 
 
 def describe_acceleration(coordinates: Coordinates, pose: Pose, number: int) -> str:

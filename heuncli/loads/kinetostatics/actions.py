@@ -145,7 +145,7 @@ def collect_applied_loads(mechanism: Mechanism, states: BodyStates, evaluation: 
             continue
         force, moment = rows["force"].sum(axis=1), rows["moment"].sum(axis=1)
         to_position = rows["at"][:, 0] if joint is None else states.point_position(joint.b, joint.q)
-        to_end, from_end = _load_ends(mechanism, load, joint, to_position, rows["from_at"][:, 0])
+        to_end, from_end = _find_load_ends(mechanism, load, joint, to_position, rows["from_at"][:, 0])
         action = Action("load", load.name, to_end, from_end, force, moment)
         own = sticking.get(load.name, load_rows.start) - load_rows.start
         value, span, rate = (rows[name][:, own] for name in ("value", "span", "rate"))
@@ -155,7 +155,7 @@ def collect_applied_loads(mechanism: Mechanism, states: BodyStates, evaluation: 
     return loads
 
 
-LoadRows = np.ndarray[tuple[int, ...], np.dtype[np.void]]  # of the kernel's answers
+LoadRows = np.ndarray[tuple[int, ...], np.dtype[np.void]]  # rows of the kernel's table of loads
 
 
 def combine_distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
@@ -174,7 +174,7 @@ def combine_distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedL
     return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), zeros, zeros, power)
 
 
-def _load_ends(
+def _find_load_ends(
     mechanism: Mechanism, load: Load, joint: Joint | None, to_position: Array, from_position: Array
 ) -> tuple[ActionEnd, ActionEnd | None]:
     """Return where a load acts; to_position, from_position: world positions of its points."""
@@ -188,14 +188,13 @@ def _load_ends(
     if isinstance(load, ThreadLoad):
         return ActionEnd(load.b, to_position, load.q), ActionEnd(load.a, to_position, None, is_offset=True)
     assert joint is not None
-    return _joint_ends(joint, to_position)
+    return _find_joint_ends(joint, to_position)
 
 
-def _joint_ends(joint: Joint, position: Array) -> tuple[ActionEnd, ActionEnd]:
+def _find_joint_ends(joint: Joint, position: Array) -> tuple[ActionEnd, ActionEnd]:
     """Return the ends of what acts in a joint, at its `to` point."""
     point = None if JOINTS[joint.kind].has_moving_contact else joint.p
-    is_offset = True
-    return ActionEnd(joint.b, position, joint.q), ActionEnd(joint.a, position, point, is_offset)
+    return ActionEnd(joint.b, position, joint.q), ActionEnd(joint.a, position, point, is_offset=True)
 
 
 def list_joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
@@ -207,12 +206,16 @@ def list_joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
         actions.append(make_joint_action(load, load.force, load.moment))
         drive = load.joint.drive
         if drive is not None and not JOINTS[load.joint.kind].keeps_distance:
-            ends = _joint_ends(load.joint, load.point)
+            ends = _find_joint_ends(load.joint, load.point)
             actions.append(Action("drive", drive.name, *ends, load.drive_force, load.drive_moment))
         for stop_load in load.stops:
             actions.append(
                 Action(
-                    "stop", stop_load.stop.name, *_joint_ends(load.joint, load.point), stop_load.force, stop_load.moment
+                    "stop",
+                    stop_load.stop.name,
+                    *_find_joint_ends(load.joint, load.point),
+                    stop_load.force,
+                    stop_load.moment,
                 )
             )
     return actions
@@ -225,4 +228,4 @@ def list_whole_joint_actions(joints: Sequence[JointLoads]) -> list[Action]:
 
 def make_joint_action(load: JointLoads, force: Array, moment: Array) -> Action:
     """Make the action of a force and a moment about the `to` point in a joint, ON `to`."""
-    return Action("joint", load.joint.name, *_joint_ends(load.joint, load.point), force, moment)
+    return Action("joint", load.joint.name, *_find_joint_ends(load.joint, load.point), force, moment)

@@ -28,7 +28,7 @@ from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.actions import Action, AppliedLoad
 from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
-from heuncli.loads.kinetostatics.foundation import inertia_loads, inertia_rows
+from heuncli.loads.kinetostatics.foundation import find_inertia_loads, find_inertia_rows
 from heuncli.loads.kinetostatics.reactions import JointLoads
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.loads import GROUND
@@ -74,7 +74,7 @@ def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
     return {"total": B.sum(axis=1)} | by_body
 
 
-def power_imbalance(
+def find_power_imbalance(
     layout: Layout,
     states: BodyStates,
     loads: Sequence[AppliedLoad],
@@ -88,7 +88,7 @@ def power_imbalance(
     accelerations.
     """
     mechanism = layout.mechanism
-    ma, spin = inertia_loads(mechanism, states)
+    ma, spin = find_inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     gain = np.einsum("tni,tni->t", states.v_centre, ma - weight) + np.einsum("tni,tni->t", states.omega, spin)
     power = np.zeros(len(gain))
@@ -96,14 +96,14 @@ def power_imbalance(
         power = power + load.power
     for joint in joints:
         if joint.drive is not None and joint.joint.drive is not None:
-            power = power + joint.drive * drive_rate(states, joint)
+            power = power + joint.drive * find_drive_rate(states, joint)
     for coupling in couplings:
         if coupling.coupling.law is not None or coupling.coupling.stretched_row is not None:
-            power = power + rope_power(states, coupling)
+            power = power + find_rope_power(states, coupling)
     return float(np.abs(power - gain).max(initial=0.0)) * span
 
 
-def work_scale(mechanism: Mechanism, largest: Sequence[tuple[float, float]], size: float, span: float) -> float:
+def find_work_scale(mechanism: Mechanism, largest: Sequence[tuple[float, float]], size: float, span: float) -> float:
     """Return work of the loads over the scene's size, plus kinetic energy of crossing it in the run's time [J].
 
     largest: of each load its largest force [N] and moment [N m]
@@ -114,7 +114,7 @@ def work_scale(mechanism: Mechanism, largest: Sequence[tuple[float, float]], siz
     return scale
 
 
-def drive_rate(states: BodyStates, load: JointLoads) -> Array:
+def find_drive_rate(states: BodyStates, load: JointLoads) -> Array:
     """Return the rate of a driven coordinate from the motion of the bodies, (n_t,)."""
     joint = load.joint
     assert joint.drive is not None
@@ -136,7 +136,7 @@ def drive_rate(states: BodyStates, load: JointLoads) -> Array:
     )
 
 
-def rope_power(states: BodyStates, rope: CouplingLoads) -> Array:
+def find_rope_power(states: BodyStates, rope: CouplingLoads) -> Array:
     """Return the power that a rope that is drawn in gives to all bodies, (n_t,) [W]."""
     power = np.zeros(len(states.v_centre))
     for body, (place, force, moment) in rope.body_loads().items():
@@ -164,12 +164,12 @@ def balance_residual(
 ) -> float:
     """Return the largest residual of any body, relative to its largest load; moments are divided by `size` [m].
 
-    inertia: the largest inertia load of each body (`inertia_scale`)
+    inertia: the largest inertia load of each body (`find_inertia_scale`)
 
     The rounding of the instant's largest load, summed over the bodies, stays below UNBALANCED, however small a body's
     own load.
     """
-    ma, spin = inertia_rows(mechanism, states)
+    ma, spin = find_inertia_rows(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     force, moment = weight[..., None] - ma, -spin
     largest = inertia.T.copy()
@@ -202,7 +202,7 @@ def stack_vectors(vectors: Sequence[Array]) -> Array:
 # Magnitudes
 
 
-def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
+def find_inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
     """Return the largest inertia load or weight of each body, including its pieces', (n_t, n) [N]."""
     m = np.array([body.mass for body in mechanism.bodies])
     w, u = states.turning
@@ -224,7 +224,7 @@ def find_magnitudes(
 ) -> Magnitudes:
     """Find the magnitudes at these instants; actions: of applied loads and of joints with their drives.
 
-    inertia: the largest inertia load of each body (`inertia_scale`)
+    inertia: the largest inertia load of each body (`find_inertia_scale`)
     energy: kinetic, potential, work; empty if not needed
     """
     g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))

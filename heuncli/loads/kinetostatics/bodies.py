@@ -38,8 +38,8 @@ class BodyStates:
     x, v, a: of the origin
     omega, alpha: angular velocity and acceleration
     centre, v_centre, a_centre: of the centre of mass
-    ways (n_t, n_w, 3): derivative r' of each joint's path by its coordinate, at the joint's point; stored because the
-    pose alone does not say which branch of a path that crosses itself it is on
+    path_directions (n_t, n_w, 3): derivative r' of each joint's path by its coordinate, at the joint's point; stored
+    because the pose alone does not say which branch of a path that crosses itself it is on
     """
 
     R: Array
@@ -51,7 +51,7 @@ class BodyStates:
     centre: Array
     v_centre: Array
     a_centre: Array
-    ways: Array
+    path_directions: Array
 
     def component_rows(self, name: str) -> Array:
         """Return a field by component, (n, 3, n_t); R (n, 3, 3, n_t)."""
@@ -61,9 +61,11 @@ class BodyStates:
 
     @cached_property
     def _rows(self) -> dict[str, Array]:
+        """The fields by component that were already computed."""
         return {}
 
     def _compute_rows(self, name: str) -> Array:
+        """Compute a field by component."""
         return instants_last(getattr(self, name))
 
     @cached_property
@@ -126,7 +128,7 @@ class KernelBodyStates(BodyStates):
     _table: Table
     _order: list[int] | None
     _gravity: Array
-    _beside: Mapping[str, Array]
+    _offsets: Mapping[str, Array]
 
     def __init__(
         self, table: Table, order: list[int], gravity: Array, offsets: Mapping[str, Array], path_directions: Array
@@ -137,14 +139,16 @@ class KernelBodyStates(BodyStates):
         path_directions (n_t, n_w, 3): in the axes of the bodies in which the paths are fixed
         """
         reordering = None if order == [*range(table.shape[1])] else order
-        self.__dict__.update(_table=table, _order=reordering, _gravity=gravity, _beside=offsets, ways=path_directions)
+        self.__dict__.update(
+            _table=table, _order=reordering, _gravity=gravity, _offsets=offsets, path_directions=path_directions
+        )
 
     def select(self, instants: slice) -> KernelBodyStates:
         """Select some of the instants; what was computed by component is kept."""
         selection, present = object.__new__(KernelBodyStates), self.__dict__
         selection.__dict__.update(
-            _table=self._table[instants], _order=self._order, _gravity=self._gravity, _beside=self._beside,
-            ways=self.ways[instants],
+            _table=self._table[instants], _order=self._order, _gravity=self._gravity, _offsets=self._offsets,
+            path_directions=self.path_directions[instants],
             _rows={name: np.ascontiguousarray(found[..., instants]) for name, found in self._rows.items()},
         )  # fmt: skip
         if "turning" in present:
@@ -170,12 +174,13 @@ class KernelBodyStates(BodyStates):
         return values
 
     def _compute_rows(self, name: str) -> Array:
+        """Compute a field by component: from the kernel's value at the joint point, and the arm from there."""
         if name in self.__dict__:
             return super()._compute_rows(name)
         if name in KERNEL_FIELDS:
             return self._joint_point_rows(name)
         point, quantity = DERIVED_FIELDS[name]
-        arm = rotate_components(self.component_rows("R"), self._beside[point][:, :, None])
+        arm = rotate_components(self.component_rows("R"), self._offsets[point][:, :, None])
         if quantity == "r":
             return self._joint_point_rows("r") + arm
         turn = cross_components(self.component_rows("omega"), arm)
@@ -247,7 +252,9 @@ def set_path_directions(layout: Layout, evaluation: Evaluation, states: KernelBo
 
 def set_path_direction(states: BodyStates, joint: Joint, slope: Array) -> None:
     """Set the direction of a path, (n_t, 3), which is given in the axes of its body."""
-    states.ways[:, joint.path_index] = slope if joint.a == GROUND else (states.R[:, joint.a] @ slope[..., None])[..., 0]
+    states.path_directions[:, joint.path_index] = (
+        slope if joint.a == GROUND else (states.R[:, joint.a] @ slope[..., None])[..., 0]
+    )
 
 
 def find_path_place(layout: Layout, evaluation: Evaluation, states: BodyStates, k: int) -> tuple[Array, Array, Array]:

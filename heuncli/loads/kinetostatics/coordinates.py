@@ -33,45 +33,49 @@ def evaluate_joint_coordinates(layout: Layout, evaluation: Evaluation, states: B
     for k, joint in enumerate(layout.mechanism.joints):
         kind = JOINTS[joint.kind]
         if "angle" in kind.coordinates:
-            block[joint.name] = _rotation(layout, evaluation, states, k, joint)
+            block[joint.name] = _evaluate_rotation(layout, evaluation, states, k, joint)
         if kind.follows_path:
-            block[joint.name] = _path_motion(layout, evaluation, states, k)
+            block[joint.name] = _evaluate_path_motion(layout, evaluation, states, k)
         elif "travel" in kind.coordinates:
-            travel = _translation(states, joint)
+            travel = _evaluate_translation(states, joint)
             if joint.name in block:
                 block[joint.name]["angular_acceleration"] = block[joint.name].pop("acceleration")
             block[joint.name] = block.get(joint.name, {}) | travel
     return block
 
 
-def _rotation(layout: Layout, evaluation: Evaluation, states: BodyStates, k: int, joint: Joint) -> Block:
+def _evaluate_rotation(layout: Layout, evaluation: Evaluation, states: BodyStates, k: int, joint: Joint) -> Block:
+    """Return angle, rate and acceleration of a joint about its axis."""
     n = states.world_direction(joint.a, joint.axis)
     zero = np.zeros_like(n)
     wa, ua = (states.omega[:, joint.a], states.alpha[:, joint.a]) if joint.a >= 0 else (zero, zero)
     wb, ub = (states.omega[:, joint.b], states.alpha[:, joint.b]) if joint.b >= 0 else (zero, zero)
-    rate = np.sum(n * (wb - wa), axis=1)
-    # d/dt [n.(w_b - w_a)] = n.(u_b - u_a) + (w_a x n).(w_b - w_a); the second term is 0, for w_b - w_a is along n
-    acceleration = np.sum(n * (ub - ua), axis=1)
     freedom_index = next((i for i, f in enumerate(layout.freedoms) if f.joint == k), None)
-    if freedom_index is not None:
-        return {"angle": evaluation.freedoms["q"][:, freedom_index], "rate": rate, "acceleration": acceleration}
-    # a cut joint: the angle of the pose, in the revolution nearest to the angle that was integrated
-    Ra = states.R[:, joint.a] if joint.a >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))
-    Rb = states.R[:, joint.b] if joint.b >= 0 else np.broadcast_to(np.eye(3), (len(n), 3, 3))
-    Q = np.einsum("tji,tjk,lk->til", Ra, Rb, layout.starts[k].R_ref)
-    a = joint.axis
-    skew = np.stack([Q[:, 2, 1] - Q[:, 1, 2], Q[:, 0, 2] - Q[:, 2, 0], Q[:, 1, 0] - Q[:, 0, 1]], axis=1)
-    sine = 0.5 * (skew @ a)
-    angle = np.arctan2(sine, 0.5 * (np.trace(Q, axis1=1, axis2=2) - 1.0))
-    integrated_angle = evaluation.states[:, layout.counters[k]]
     return {
-        "angle": angle + 2.0 * np.pi * np.round((integrated_angle - angle) / (2.0 * np.pi)),
-        "rate": rate,
-        "acceleration": acceleration,
+        "angle": (
+            _find_cut_angle(layout, evaluation, states, k, joint)
+            if freedom_index is None
+            else evaluation.freedoms["q"][:, freedom_index]
+        ),
+        "rate": np.sum(n * (wb - wa), axis=1),
+        # d/dt [n.(w_b - w_a)] = n.(u_b - u_a) + (w_a x n).(w_b - w_a); the second term is 0, for w_b - w_a is along n
+        "acceleration": np.sum(n * (ub - ua), axis=1),
     }
 
 
-def _path_motion(layout: Layout, evaluation: Evaluation, states: BodyStates, k: int) -> Block:
+def _find_cut_angle(layout: Layout, evaluation: Evaluation, states: BodyStates, k: int, joint: Joint) -> Array:
+    """Return the angle of a cut joint: that of the pose, in the revolution nearest to the angle that was integrated."""
+    identity = np.broadcast_to(np.eye(3), (len(states.R), 3, 3))
+    Ra, Rb = (states.R[:, body] if body >= 0 else identity for body in (joint.a, joint.b))
+    Q = np.einsum("tji,tjk,lk->til", Ra, Rb, layout.starts[k].R_ref)
+    skew = np.stack([Q[:, 2, 1] - Q[:, 1, 2], Q[:, 0, 2] - Q[:, 2, 0], Q[:, 1, 0] - Q[:, 0, 1]], axis=1)
+    sine = 0.5 * (skew @ joint.axis)
+    angle = np.arctan2(sine, 0.5 * (np.trace(Q, axis1=1, axis2=2) - 1.0))
+    integrated_angle = evaluation.states[:, layout.counters[k]]
+    return np.asarray(angle + 2.0 * np.pi * np.round((integrated_angle - angle) / (2.0 * np.pi)))
+
+
+def _evaluate_path_motion(layout: Layout, evaluation: Evaluation, states: BodyStates, k: int) -> Block:
     """Return the path's parameter and its rates: a freedom of the tree, or computed from the pose."""
     if k in layout.counters:
         return dict(
@@ -86,7 +90,8 @@ def _path_motion(layout: Layout, evaluation: Evaluation, states: BodyStates, k: 
     }
 
 
-def _translation(states: BodyStates, joint: Joint) -> Block:
+def _evaluate_translation(states: BodyStates, joint: Joint) -> Block:
+    """Return travel, speed and acceleration of a joint along its axis, relative to its `from` body."""
     n = states.world_direction(joint.a, joint.axis)
     Q = states.point_position(joint.b, joint.q)
     v = states.point_velocity(joint.b, Q) - states.point_velocity(joint.a, Q)
@@ -94,14 +99,10 @@ def _translation(states: BodyStates, joint: Joint) -> Block:
     a = states.point_acceleration(joint.b, Q) - states.point_acceleration(joint.a, Q) - 2.0 * cross_rows(w, v)
     D = Q - states.point_position(joint.a, joint.p)
 
-    def axial(x: Array) -> Array:
-        component: Array = np.sum(n * x, axis=1)
-        return component
-
-    return {"travel": axial(D), "speed": axial(v), "acceleration": axial(a)}
+    return {name: np.sum(n * vector, axis=1) for name, vector in (("travel", D), ("speed", v), ("acceleration", a))}
 
 
-def point_motions(mechanism: Mechanism, states: BodyStates) -> Block:
+def evaluate_point_motions(mechanism: Mechanism, states: BodyStates) -> Block:
     """Return position, velocity and acceleration of every named point of a body."""
     block: Block = {}
     for i, body in enumerate(mechanism.bodies):
@@ -118,7 +119,7 @@ def point_motions(mechanism: Mechanism, states: BodyStates) -> Block:
 # Attitudes
 
 
-def body_quaternions(layout: Layout, evaluation: Evaluation) -> Array:
+def find_body_quaternions(layout: Layout, evaluation: Evaluation) -> Array:
     """Return the quaternions of all bodies in the order of the spec, (n_t, n, 4)."""
     angles = np.concatenate([find_start_angles(layout)[None], evaluation.freedoms["q"]])
     states = np.concatenate([layout.y0[None], evaluation.states])
@@ -130,7 +131,7 @@ def body_quaternions(layout: Layout, evaluation: Evaluation) -> Array:
     return np.asarray((later * signs[:, None])[:, [layout.place[i] for i in range(len(layout.bodies))]])
 
 
-def rodrigues_vectors(q: Array) -> Array:
+def find_rodrigues_vectors(q: Array) -> Array:
     """Return Rodrigues vectors tan(half the turn) n = (x, y, z) / w of quaternions (..., 4); nan close to half a
     turn.
     """

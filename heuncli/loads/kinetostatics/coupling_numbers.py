@@ -142,7 +142,7 @@ def list_screw_numbers(loads: CouplingLoads) -> list[CouplingNumber]:
     if loads.friction is None:
         return list_carried_load(loads)
 
-    force, torque = total_screw_load(loads)
+    force, torque = find_total_screw_load(loads)
     return [
         CouplingNumber("force", force, (0,), is_linear=True),
         CouplingNumber("torque", torque, (0,), is_moment=True, is_linear=True),
@@ -161,11 +161,11 @@ def pressure_angle(loads: CouplingLoads, joints: Sequence[Joint], states: BodySt
     """Return the angle between the load of a cam and the motion of the follower there, (n_t,) [rad]."""
     (load,) = loads.parts
     size = np.sqrt(np.sum(load.f * load.f, axis=1))
-    speed = follower_speed(load.part, joints[load.part.coordinates[1].joint], load.place, states)
+    speed = find_follower_speed(load.part, joints[load.part.coordinates[1].joint], load.place, states)
     return np.asarray(np.arccos(np.clip(1.0 / (size * speed), 0.0, 1.0)))
 
 
-def follower_speed(part: CouplingPart, joint: Joint, place: Array, states: BodyStates) -> Array:
+def find_follower_speed(part: CouplingPart, joint: Joint, place: Array, states: BodyStates) -> Array:
     """Return |w|, (n_t,) [m or 1]: 1 if it slides, else the distance from the axis about which the follower swings."""
     assert part.cam is not None
     if not part.cam.swings:
@@ -223,7 +223,7 @@ def collect_by_quantity(loads: CouplingLoads, joints: Sequence[Joint], states: B
 # Thread friction
 
 
-def total_screw_load(loads: CouplingLoads) -> tuple[Array, Array]:
+def find_total_screw_load(loads: CouplingLoads) -> tuple[Array, Array]:
     """Return thrust along the axis and the torque about it that it takes, (..., n_t), including friction."""
     screw, part, friction = loads.coupling.entry, loads.parts[0], loads.friction
     assert isinstance(screw, Screw)
@@ -244,7 +244,7 @@ def efficiency(loads: CouplingLoads, zero_thrust: float) -> Array:
     """
     screw = loads.coupling.entry
     assert isinstance(screw, Screw)
-    force, torque = total_screw_load(loads)
+    force, torque = find_total_screw_load(loads)
     is_loaded = np.abs(force) > zero_thrust
     force = force * (screw.lead / math.tau)
     direction = np.where(torque < force, -1.0, 1.0)  # direction of rotation, because friction takes power

@@ -27,16 +27,16 @@ from heuncli.base.errors import Finding, Problem, SpecError
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.auto_properties import CutProperties
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.cuts import Beam, Cuts, list_attachments, list_distributed_loads
+from heuncli.loads.kinetostatics.cut_planes import list_attachments, list_distributed_loads
+from heuncli.loads.kinetostatics.cuts import Beam, Cuts
 from heuncli.loads.kinetostatics.member_stress import find_given_factors
-from heuncli.loads.kinetostatics.sections import (
+from heuncli.loads.kinetostatics.piece_loads import (
     AttachedLoad,
-    compute_axis_component,
     find_acceleration_matrix,
     find_piece_loads,
-    make_cut_places,
     shift_moment,
 )
+from heuncli.loads.kinetostatics.sections import compute_axis_component, make_cut_places
 from heuncli.loads.kinetostatics.stress import MODULI
 from heuncli.loads.kinetostatics.stretch import (
     DEGREE,

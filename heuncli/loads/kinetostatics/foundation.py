@@ -38,13 +38,13 @@ BLOCK_OF = {
 }  # of a spec, by kind of action
 
 
-def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
+def find_inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
     """Return m x_s.. and I sigma. + sigma x I sigma of every body, (n_t, n, 3), world axes."""
-    force, moment = map(instants_first, inertia_rows(mechanism, states))
+    force, moment = map(instants_first, find_inertia_rows(mechanism, states))
     return force, moment
 
 
-def inertia_rows(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
+def find_inertia_rows(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
     """Return the inertia loads by component, (n, 3, n_t)."""
     m = np.array([b.mass for b in mechanism.bodies])
     J = np.array([b.inertia for b in mechanism.bodies])[..., None]
@@ -58,7 +58,7 @@ def inertia_rows(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array
     return force * np.array([[1.0], [1.0], [0.0]]), spin * np.array([[0.0], [0.0], [1.0]])
 
 
-def total_load(
+def sum_ground_loads(
     states: BodyStates, forces: Array, spin: Array, actions: Sequence[Action], reference: Array
 ) -> tuple[Array, Array]:
     """Return s and M_s, (n_t, 3).
@@ -86,9 +86,9 @@ def foundation_block(
 
     inner_forces: those between bodies that are not among the actions, (n_t, 3) each
     """
-    ma, spin = inertia_loads(mechanism, states)
+    ma, spin = find_inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-    force, moment = total_load(states, weight - ma, spin, actions, reference)
+    force, moment = sum_ground_loads(states, weight - ma, spin, actions, reference)
     ground_blocks: Block = {"supports": {}, "elements": {}}
     for (kind, name), load in find_ground_loads(mechanism, actions).items():
         where = {"point": load.point.copy()} if kind == "elements" else {}
@@ -100,7 +100,7 @@ def foundation_block(
     largest = largest_force(mechanism, force, ma, actions, inner_forces)
     block: Block = {
         "about": reference, "force": force, "moment": moment,
-        "axis": central_axis(force, moment, reference, largest),
+        "axis": find_central_axis(force, moment, reference, largest),
         "mass_effect": {
             "force": ma.sum(axis=1), "moment_orbital": orbital, "moment_spin": spin.sum(axis=1),
         },
@@ -192,7 +192,7 @@ def is_zero_force(s: Array, largest: float) -> Mask:
     return np.asarray(np.sum(s * s, axis=1) <= (tolerances.NO_FORCE * largest) ** 2)
 
 
-def central_axis(s: Array, M: Array, reference: Array, largest: float) -> Block:
+def find_central_axis(s: Array, M: Array, reference: Array, largest: float) -> Block:
     """Return the central axis of the wrench (s, M about `reference`): nearest point, direction, pitch [m]; nan where s
     = 0.
 

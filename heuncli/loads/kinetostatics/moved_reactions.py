@@ -184,7 +184,8 @@ def find_sensor_reaction(
     if sensor.joint is not None:
         load = next(load for load in joints if load.joint.name == sensor.joint)
         return Reaction(load.point, load.force, load.moment)
-    from heuncli.loads.kinetostatics.sections import find_attachments, make_section_block  # few sensors read a cut
+    from heuncli.loads.kinetostatics.piece_loads import find_attachments  # few sensors read a cut
+    from heuncli.loads.kinetostatics.sections import make_section_block
 
     own = next(own for own in cuts if own.name == sensor.section).for_impulse
     attached = find_attachments(own.body, states, [*list_whole_joint_actions(joints), *acting])

@@ -89,7 +89,9 @@ class JointPoints:
         from heuncli.scene.expressions.roller_path import left_normal  # few joints are
 
         assert joint.path is not None
-        n = left_normal(self.states.world_direction(joint.a, joint.path.normal), self.states.ways[:, joint.path_index])
+        n = left_normal(
+            self.states.world_direction(joint.a, joint.path.normal), self.states.path_directions[:, joint.path_index]
+        )
         return centre - joint.path.radius * n
 
 
@@ -214,7 +216,7 @@ def find_joint_loads(
         has_axis = kind.has_axis or joint.bearings is not None
         axis = states.world_direction(joint.a, joint.axis) if has_axis else None
         if kind.follows_path and joint.drive is not None:
-            axis = path_direction(joint, states)
+            axis = find_path_direction(joint, states)
         drive = tension = None
         if k in tree_links:
             i, h = tree_links[k]
@@ -227,7 +229,7 @@ def find_joint_loads(
             if k in driven_freedoms:
                 drive = results.freedoms["drive"][..., driven_freedoms[k]]
                 if kind.follows_path:  # the kernel's value belongs to the coordinate, which counts r' along the path
-                    drive = drive / np.sqrt(np.sum(states.ways[:, joint.path_index] ** 2, axis=1))
+                    drive = drive / np.sqrt(np.sum(states.path_directions[:, joint.path_index] ** 2, axis=1))
         else:
             force, moment = (_sum_joint_rows(layout, k, results.rows, name) for name in ("f", "m"))
             own_rows = find_joint_rows(layout, k)
@@ -284,13 +286,13 @@ def project_to_plane(force: Array, moment: Array) -> tuple[Array, Array]:
     return force * IN_PLANE, moment * ACROSS
 
 
-def path_direction(joint: Joint, states: BodyStates) -> Array:
+def find_path_direction(joint: Joint, states: BodyStates) -> Array:
     """Return the unit vector along the path at the joint's point, (n_t, 3)."""
-    direction = states.ways[:, joint.path_index]
+    direction = states.path_directions[:, joint.path_index]
     return np.asarray(direction / np.sqrt(np.sum(direction * direction, axis=1))[:, None])
 
 
-def constraint_map(joint: Joint, states: BodyStates) -> Array:
+def make_constraint_map(joint: Joint, states: BodyStates) -> Array:
     """Return the map of a wrench in the joint to the part that its constraint carries, (n_t, 6, 6)."""
     wrenches = np.broadcast_to(np.eye(6)[:, None, :], (6, len(states.x), 6))
     force, moment = remove_free_components(joint, states, wrenches[..., :3], wrenches[..., 3:])
@@ -317,7 +319,7 @@ def remove_free_components(joint: Joint, states: BodyStates, force: Array, momen
         moment = moment - np.sum(moment * n, axis=-1)[..., None] * n
     for d in kind.shifts:
         n = (
-            path_direction(joint, states)
+            find_path_direction(joint, states)
             if kind.follows_path
             else states.world_direction(joint.a, joint_direction(joint, d))
         )

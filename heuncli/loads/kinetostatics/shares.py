@@ -26,15 +26,14 @@ from heuncli.loads.kinetostatics.bodies import BodyStates
 from heuncli.loads.kinetostatics.couplings import CouplingLoads, find_coupling_loads, list_coupling_actions
 from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.foundation import find_ground_loads
-from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
-from heuncli.loads.kinetostatics.sections import (
-    ABOUT_CENTROID,
+from heuncli.loads.kinetostatics.piece_loads import (
     compute_acceleration_matrix,
     find_attachments,
     find_piece_loads,
-    make_cut_places,
     to_body_axes,
 )
+from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane
+from heuncli.loads.kinetostatics.sections import ABOUT_CENTROID, make_cut_places
 from heuncli.motion.integration.evaluator import CAUSES, Evaluation
 from heuncli.multibody.mechanism.model import Mechanism
 from heuncli.multibody.response import Columns
@@ -168,14 +167,14 @@ def sum_by_cause(evaluation: Evaluation, columns: Columns, cause_columns: CauseC
     return CauseResults(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows, {"value": load_values}, parts)
 
 
-def joint_shares_block(shares: Shares, load: JointLoads) -> Block:
+def make_joint_shares_block(shares: Shares, load: JointLoads) -> Block:
     """Return the shares in one joint's load by cause."""
     parts = {"force": load.force, "moment": load.moment, "drive": load.drive, "tension": load.tension}
     parts["torque"] = load.torque
     return shares.to_blocks({name: values for name, values in parts.items() if values is not None})
 
 
-def foundation_shares_blocks(
+def make_foundation_shares_blocks(
     mechanism: Mechanism, states: BodyStates, shares: Shares, reference: Array
 ) -> dict[tuple[str, ...], Block]:
     """Return the shares in the loads on the ground: of the total, of each support and element, by its keys in the
@@ -189,7 +188,7 @@ def foundation_shares_blocks(
     parts: dict[tuple[str, ...], Block] = {}
     inner_actions = [action for action in shares.applied_actions if action.from_end is not None]
     ground_actions = [
-        *(own_cause_action(shares, action) for action in inner_actions),
+        *(make_cause_action(shares, action) for action in inner_actions),
         *list_joint_actions(shares.joints),
     ]
     for keys, load in find_ground_loads(
@@ -206,7 +205,7 @@ def foundation_shares_blocks(
     return {(): total, **parts}
 
 
-def own_cause_action(shares: Shares, action: Action) -> Action:
+def make_cause_action(shares: Shares, action: Action) -> Action:
     """Return a load's action by cause: all of it belongs to its own cause."""
     index = shares.find_index(action.name) if action.name in shares.causes else None
 
@@ -246,7 +245,7 @@ def make_section_shares_block(
     k'_c is the load itself, with gravity the weight of the piece: `direct_*`.
     """
     direct_wrenches = find_direct_loads(cuts, layout.mechanism.gravity, states, shares)
-    force, moment = piece_loads_by_cause(cuts, layout, states, shares)
+    force, moment = find_piece_loads_by_cause(cuts, layout, states, shares)
     for cause, (F, M) in direct_wrenches.items():
         if cause not in shares.causes:
             continue  # a load without effect
@@ -275,7 +274,7 @@ def make_section_shares_block(
     return block
 
 
-def piece_loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares) -> tuple[Array, Array]:
+def find_piece_loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares) -> tuple[Array, Array]:
     """Return the effect of the piece's inertia and of the joints on it for every cause, (3, n_c, n_t, k)."""
     actions = [*list_whole_joint_actions(shares.joints), *list_coupling_actions(shares.rigid_couplings)]
     joints = find_attachments(cuts.body, states, actions)

@@ -226,7 +226,8 @@ def iter_self_stress_components(
     stress: SelfStress,
 ) -> Iterator[Block]:
     """Yield for each self-stress its share in the loads of cuts, by name."""
-    from heuncli.loads.kinetostatics.sections import compute_static_components, find_attachments
+    from heuncli.loads.kinetostatics.piece_loads import find_attachments
+    from heuncli.loads.kinetostatics.sections import compute_static_components
 
     for k in range(stress.largest.shape[1]):
         parts = zip(joints, stress.shares, strict=True)

@@ -4,11 +4,12 @@ sums.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.coupling_numbers import list_multiples
@@ -47,19 +48,21 @@ SUM_INSTANTS = 9  # instants whose self-stresses give the determinate sums
 class Resolution:
     """The joints' loads after a split of what redundancy leaves indeterminate.
 
-    words: sentences on the split
+    sentences: sentences on the split
     stress: the self-stresses that it chose from; None if there are none
     remaining_self_stress: those that it left indeterminate; None if there are none
     choices: the self-stresses that were added
+    added_multipliers: what the split adds to the multipliers of the closure rows, (n_t, rows)
+    found_self_stress: all self-stresses found before it, also where there are none; None if they were not looked for
     """
 
     joints: list[JointLoads]
-    words: tuple[str, ...] = ()
+    sentences: tuple[str, ...] = ()
     stress: SelfStress | None = None
     remaining_self_stress: SelfStress | None = None
     choices: tuple[SelfStressChoice, ...] = ()
-    added_multipliers: Array | None = None  # what the split adds to the multipliers of the closure rows, (n_t, rows)
-    found_self_stress: SelfStress | None = None  # all self-stresses found, also where there are none
+    added_multipliers: Array | None = None
+    found_self_stress: SelfStress | None = None
 
     def apply_choices(self, joints: list[JointLoads], states: BodyStates) -> tuple[list[JointLoads], Array | None]:
         """Apply the same split to other loads of the joints, such as shares by cause; also return what it adds to
@@ -80,7 +83,7 @@ class Resolution:
     @property
     def has_marks(self) -> bool:
         """Whether `mark` marks anything."""
-        return self.remaining_self_stress is not None or bool(self.words)
+        return self.remaining_self_stress is not None or bool(self.sentences)
 
     def mark(
         self, states: BodyStates, blocks: Block, couplings: Sequence[CouplingLoads], axes: str, keys: ElementKeys
@@ -94,7 +97,7 @@ class Resolution:
         if self.remaining_self_stress is not None:
             mark_joints(self.remaining_self_stress, self.joints, states, blocks, axes, keys)
             mark_couplings(self.remaining_self_stress, couplings, blocks, keys)
-        if self.words and self.stress is not None and reactions is not None:
+        if self.sentences and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, states, reactions, axes)
 
     def find_sums(
@@ -122,14 +125,10 @@ def resolve_redundancy(
         return Resolution(joints, found_self_stress=stress)
     chosen_split = split_self_stress(joints, states, stress, least_norm)
     return Resolution(
-        chosen_split.joints,
-        chosen_split.words,
-        chosen_split.initial_stress,
-        chosen_split.remaining_stress,
-        chosen_split.choices,
-        chosen_split.added_multipliers,
-        stress,
-    )
+        joints=chosen_split.joints, sentences=chosen_split.sentences, stress=chosen_split.initial_stress,
+        remaining_self_stress=chosen_split.remaining_stress, choices=chosen_split.choices,
+        added_multipliers=chosen_split.added_multipliers, found_self_stress=stress,
+    )  # fmt: skip
 
 
 def describe_singular_poses(count: Array, margins: RankMargins, times: Array, redundant: Array) -> list[str]:
@@ -216,6 +215,19 @@ def mark_chosen(
             reactions[load.joint.name]["chosen"] = names
 
 
+class OpenComponent(NamedTuple):
+    """An indeterminate component: its path, its values (n_t,), and its shares of every self-stress.
+
+    in_poses (poses, k): where sums must hold
+    at_instants (n_t, k): at the requested instants
+    """
+
+    path: str
+    values: Array
+    in_poses: Array
+    at_instants: Array
+
+
 def find_sums(
     runner: Runner,
     evaluation: Evaluation,
@@ -225,50 +237,69 @@ def find_sums(
 ) -> list[DeterminateSum]:
     """Find determinate sums of indeterminate components, valid at the requested instants and in neighbouring poses."""
     selected = np.unique(np.linspace(0, len(evaluation.times) - 1, SUM_INSTANTS).astype(int))
-    neighbour_poses = find_neighbour_poses(
+    neighbour_stress = find_neighbour_stress(runner, evaluation, joints)
+    stress = select_constraint_shares(stress, joints, make_body_states(runner.layout, evaluation))
+    components = [
+        *iter_joint_components(joints, stress, neighbour_stress, selected),
+        *iter_coupling_components(couplings, stress, neighbour_stress, selected),
+    ]
+    return find_determinate_sums(
+        {own.path: own.in_poses for own in components}, {own.path: own.at_instants for own in components},
+        {own.path: own.values for own in components}, stress.length,
+    )  # fmt: skip
+
+
+def find_neighbour_stress(runner: Runner, evaluation: Evaluation, joints: Sequence[JointLoads]) -> SelfStress | None:
+    """Find the self-stresses of poses next to the first one; None where there are none, or a stiffness splits loads.
+
+    What a stiffness leaves indeterminate is known only at the requested instants.
+    """
+    poses = find_neighbour_poses(
         runner, float(evaluation.times[0]), evaluation.states[0], tolerances.SUM_POSES, evaluation.holding[0]
     )
-    stress = select_constraint_shares(stress, joints, make_body_states(runner.layout, evaluation))
-    neighbour_stress = None
-    if neighbour_poses is not None and all(j.joint.stiffness is None for j in joints):
-        # what a stiffness leaves indeterminate is known only at the requested instants
-        neighbour_states = make_body_states(runner.layout, neighbour_poses)
-        stress_there = find_self_stress(runner, neighbour_poses, neighbour_states)
-        neighbour_stress = (
-            select_constraint_shares(stress_there, joints, neighbour_states) if stress_there is not None else None
-        )
+    if poses is None or any(load.joint.stiffness is not None for load in joints):
+        return None
+    states = make_body_states(runner.layout, poses)
+    stress = find_self_stress(runner, poses, states)
+    return select_constraint_shares(stress, joints, states) if stress is not None else None
+
+
+def iter_joint_components(
+    joints: Sequence[JointLoads], stress: SelfStress, neighbour_stress: SelfStress | None, selected: Indices
+) -> Iterator[OpenComponent]:
+    """Yield the indeterminate components of joints; selected: the instants at which sums must hold."""
     is_indeterminate = [
         np.concatenate(find_indeterminate_wrench(stress, share), axis=1).any(axis=0) for share in stress.shares
     ]
-    # joint, component: of each that is open
     joint_numbers, component = np.nonzero(np.reshape(is_indeterminate, (-1, 6)))
-    at_instants = relative_shares(stress, joint_numbers, component)
+    at_instants = find_relative_shares(stress, joint_numbers, component)
     in_poses = at_instants[:, selected]
     if neighbour_stress is not None:
-        in_poses = concatenate_shares(in_poses, relative_shares(neighbour_stress, joint_numbers, component))
-    poses, requested_shares, values = dict[str, Array](), dict[str, Array](), dict[str, Array]()
+        in_poses = concatenate_shares(in_poses, find_relative_shares(neighbour_stress, joint_numbers, component))
     for n, (k, i) in enumerate(zip(joint_numbers.tolist(), component.tolist(), strict=True)):
         load = joints[k]
-        name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
-        poses[name], requested_shares[name] = in_poses[n], at_instants[n]
-        values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
+        path = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
+        values = (load.force if i < 3 else load.moment)[:, i % 3]
+        yield OpenComponent(path, values, in_poses[n], at_instants[n])
+
+
+def iter_coupling_components(
+    couplings: Sequence[CouplingLoads], stress: SelfStress, neighbour_stress: SelfStress | None, selected: Indices
+) -> Iterator[OpenComponent]:
+    """Yield the indeterminate numbers of couplings that are multiples of a multiplier; selected: as of joints."""
     for loads, number in ((own, number) for own in couplings for number in list_multiples(own)):
         r = loads.rows[number.rows[0]]
-        multiplier_shares = number.factor * relative_multipliers(stress, r)
-        if np.abs(multiplier_shares).max(initial=0.0) * stress.coupling_scale[r] <= tolerances.OPEN_SHARE:
+        at_instants = number.factor * find_relative_multipliers(stress, r)
+        if np.abs(at_instants).max(initial=0.0) * stress.coupling_scale[r] <= tolerances.OPEN_SHARE:
             continue
-        name = f"couplings.{loads.coupling.name}.{number.name}"
-        selected_shares = multiplier_shares[:, selected]
+        in_poses = at_instants[:, selected]
         if neighbour_stress is not None:
-            selected_shares = concatenate_shares(
-                selected_shares, number.factor * relative_multipliers(neighbour_stress, r)
-            )
-        poses[name], requested_shares[name] = selected_shares[0], multiplier_shares[0]
-        values[name] = number.values
-    return find_determinate_sums(poses, requested_shares, values, stress.length)
+            in_poses = concatenate_shares(in_poses, number.factor * find_relative_multipliers(neighbour_stress, r))
+        path = f"couplings.{loads.coupling.name}.{number.name}"
+        yield OpenComponent(path, number.values, in_poses[0], at_instants[0])
 
 
-def relative_multipliers(stress: SelfStress, r: int) -> Array:
+def find_relative_multipliers(stress: SelfStress, r: int) -> Array:
     """Return for every self-stress the multiplier of a closure row, relative to its largest share, (1, n_t, k)."""
     return np.asarray(stress.multipliers[None, :, r] / np.where(stress.largest > 0.0, stress.largest, 1.0))
 
@@ -284,7 +315,7 @@ def select_constraint_shares(stress: SelfStress, joints: Sequence[JointLoads], s
     return result
 
 
-def relative_shares(stress: SelfStress, joints: Indices, components: Indices) -> Array:
+def find_relative_shares(stress: SelfStress, joints: Indices, components: Indices) -> Array:
     """Return the shares of every self-stress in one component of each joint, relative to its largest, (n, n_t, k)."""
     return np.asarray(stress.shares[joints, :, components] / np.where(stress.largest > 0.0, stress.largest, 1.0))
 

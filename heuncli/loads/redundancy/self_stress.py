@@ -42,6 +42,8 @@ class SelfStress:
     length [m]: divisor of moments
     margins: how clear the rank is; None where no row depends on others and it was not needed (`find_margins`)
     dependent (n_t,): number of rows that depend on others, in a planar scene including those across the plane
+    multipliers (n_t, rows, k): of the closure rows
+    coupling_scale (rows,): weight of a coupling's multiplier as a share: 1, for a couple 1/length; 0 for joints
     """
 
     shares: Array
@@ -50,10 +52,8 @@ class SelfStress:
     length: float
     margins: RankMargins | None
     dependent: Array
-    multipliers: Array  # (n_t, rows, k) of the closure rows
-    coupling_scale: (
-        Array  # (rows,) weight of a coupling's multiplier as a share: 1, for a couple 1/length; 0 for joints
-    )
+    multipliers: Array
+    coupling_scale: Array
 
     def has_share(self, shares: Array, length: float = 1.0) -> Mask:
         """Return whether a self-stress has a share in components (..., n_t, c, k) -> (..., n_t, c); for moments give
@@ -107,16 +107,9 @@ def make_stress_poses(layout: Layout, evaluation: Evaluation, states: BodyStates
     """Collect what self-stresses depend on at evaluated states."""
     rows, at_rest = evaluation.rows, stop_motion(layout, evaluation.states)
     return SelfStressPoses(
-        evaluation.times,
-        at_rest,
-        evaluation.gap,
-        rows["closed"],
-        rows["chosen"],
-        rows["f"],
-        rows["m"],
-        states.R,
-        states.x,
-    )
+        times=evaluation.times, states=at_rest, gap=evaluation.gap, is_active=rows["closed"],
+        is_independent=rows["chosen"], f=rows["f"], m=rows["m"], R=states.R, x=states.x,
+    )  # fmt: skip
 
 
 def find_self_stress(

@@ -23,7 +23,7 @@ import numpy as np
 from heuncli.base import tolerances
 from heuncli.base.records import record, replace
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.reactions import JointLoads, StopLoad, constraint_map, remove_free_components
+from heuncli.loads.kinetostatics.reactions import JointLoads, StopLoad, make_constraint_map, remove_free_components
 from heuncli.loads.redundancy.self_stress import SelfStress
 from heuncli.multibody.mechanism.model import Joint
 from heuncli.results.results import Array
@@ -50,7 +50,7 @@ def make_yield_maps(joints: Sequence[Joint], states: BodyStates, length: float) 
             for part, k in enumerate(joint.stiffness):
                 rows = slice(3 * part, 3 * part + 3)
                 yield_map[:, rows, rows] = axes * (k == 0.0)[:, None] / (length if part else 1.0)
-            yield_map = yield_map @ constraint_map(joint, states)
+            yield_map = yield_map @ make_constraint_map(joint, states)
         maps.append(yield_map)
     return maps
 
@@ -143,15 +143,15 @@ class SelfStressSplit:
     added_multipliers (n_t, rows): what the choices add to the multipliers of the closure rows
     initial_stress: the self-stresses before any choice, without those that yielding joints remove
     remaining_stress: those left; None if there are none
-    words: sentences on the choices
+    sentences: sentences on the choices
     """
 
     joints: list[JointLoads]
-    added_multipliers: Array | None  # what they add to the multipliers of the closure rows, (n_t, rows)
+    added_multipliers: Array | None
     initial_stress: SelfStress | None
     remaining_stress: SelfStress | None
     choices: tuple[SelfStressChoice, ...]
-    words: tuple[str, ...]
+    sentences: tuple[str, ...]
 
 
 def split_self_stress(
@@ -160,7 +160,7 @@ def split_self_stress(
     """Split what is indeterminate: remove loads from yielding joints, then by stiffness where it is given, then by
     least norm if requested.
     """
-    words: list[str] = []
+    sentences: list[str] = []
     choices: list[SelfStressChoice] = []
     remaining: SelfStress | None = stress
     exchanged: SelfStress | None = None  # what yielding joints exchange among each other
@@ -171,22 +171,22 @@ def split_self_stress(
         if remaining is not None:
             remaining, exchanged = separate_yielding(remaining, yield_maps)
     initial = join_stresses(remaining, exchanged)
-    maps = [stiffness_map(j, states) for j in joints]
+    maps = [make_stiffness_map(j, states) for j in joints]
     if remaining is not None and any(m.any() for m in maps):
         choice, remaining = minimise_strain(remaining, maps)
         choices.append(choice)
-        words.append("chosen by stiffness")
+        sentences.append("chosen by stiffness")
     remaining = join_stresses(remaining, exchanged)
     if least_norm and remaining is not None and joints:  # without joints there is nothing to minimise
         maps = [np.broadcast_to(np.diag([1.0] * 3 + [1.0 / stress.length] * 3), (len(states.x), 6, 6)) for _ in joints]
         choice, remaining = minimise_strain(remaining, maps)
         choices.append(choice)
-        words.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
+        sentences.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
     joints, added_multipliers = apply_choices(choices, joints, states)
-    return SelfStressSplit(joints, added_multipliers, initial, remaining, tuple(choices), tuple(words))
+    return SelfStressSplit(joints, added_multipliers, initial, remaining, tuple(choices), tuple(sentences))
 
 
-def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
+def make_stiffness_map(load: JointLoads, states: BodyStates) -> Array:
     """Return the map of a wrench (world axes) to strains F/sqrt(k), M/sqrt(k) in `from` axes, (n_t, 6, 6).
 
     Zero where the joint is rigid, and where it gives way.

@@ -20,8 +20,8 @@ from heuncli.study.load_collectives import (
     REFERENCE,
     Collective,
     Counting,
+    InvalidOption,
     LoadHistory,
-    UnfitCounting,
     make_collective,
     make_histories,
 )
@@ -68,7 +68,7 @@ def count_collectives(study: Study, paths: Sequence[str], options: Counting) -> 
 
     Raises as count_collective() does, and UsageError for options that do not fit together.
     """
-    if unfit := options.find_unfit():
+    if unfit := options.find_invalid_options():
         raise UsageError(
             *(make_option_problem(problem, problem.name, getattr(options, problem.name)) for problem in unfit)
         )
@@ -79,7 +79,7 @@ def count_collectives(study: Study, paths: Sequence[str], options: Counting) -> 
     return [make_collective(history, options) for history in found]
 
 
-def make_option_problem(unfit: UnfitCounting, option: str, value: object) -> Problem:
+def make_option_problem(unfit: InvalidOption, option: str, value: object) -> Problem:
     """Return the problem with an option."""
     message = f"{option} {value}: expected {unfit.requirement}"
     return Problem("bad-option", message, hint=f"for example {option} {unfit.example}")
@@ -174,7 +174,7 @@ def iter_notes(collective: Collective, units: Units, *, has_impacts: bool) -> It
             f"{append_unit(small, unit)}, below the numerical error"
         )
     if collective.history.is_magnitude:
-        yield NO_SIGN if collective.history.of_vector else NEVER_NEGATIVE
+        yield NO_SIGN if collective.history.is_vector else NEVER_NEGATIVE
     if has_impacts:
         yield IMPACT_NOTE
 

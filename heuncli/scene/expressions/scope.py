@@ -1,7 +1,7 @@
 """The names that an expression may use, and the errors of other names and of dimensions.
 
-For names of other programs and of results, others are proposed. A point of a body
-is named points.BODY.POINT.x, or points.POINT.x if only one body has it.
+For the names that other programs and heun's results use, the accepted ones are proposed. A point of a body is named
+points.BODY.POINT.x, or points.POINT.x if only one body has it.
 """
 
 from __future__ import annotations

@@ -31,9 +31,7 @@ NUMERIC_CHARACTERS = frozenset("0123456789+-.,eEdD_% ")
 NOT_FINITE = frozenset({"nan", "inf", "infinity"})
 GAP_WORDS = frozenset({"", "nan", "-nan", "+nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"})
 FORTRAN_EXPONENT = re.compile(r"(?<=[0-9.])[dD](?=[-+]?[0-9])")
-ERROR_CELL = re.compile(
-    r"#(?:N/A|NV|[A-ZÄÖÜ/0]+[!?])[ ]*(?:[,;\t]|\Z)"
-)  # a spreadsheet's error, such as #N/A or #DIV/0!
+ERROR_CELL = re.compile(r"#(?:N/A|NV|[A-ZÄÖÜ/0]+[!?])[ ]*(?:[,;\t]|\Z)")  # as #DIV/0! of a spreadsheet
 BEGINS_AS_NUMBER = re.compile(r"[-+]?[.,]?[0-9]")
 QUOTED = re.compile(r'"[^"]*"')
 DECLARED_SEPARATOR = re.compile(r'"?sep=([;,\t])"?\s*\Z', re.IGNORECASE)  # the first line of a file for Excel

@@ -19,7 +19,7 @@ from heuncli.base.records import record
 from heuncli.results.results import Array
 from heuncli.scene.file_format.profiles import Family, Measures
 
-# chords in place of an arc of a polygon: its area is exact, its second moments are so to some 1e-6 of the section's
+# Chords in place of an arc of a polygon: its area is exact, its second moments are so to some 1e-6 of the section's.
 CHORDS = 8
 
 

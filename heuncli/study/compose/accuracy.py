@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.base.errors import Problem, SolveError
-from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, power_imbalance, work_scale
+from heuncli.loads.kinetostatics.balance import balance_residual, energy_drift, find_power_imbalance, find_work_scale
 from heuncli.motion.integration.contacts.impulses import compute_free_impulse_energy
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Accuracy, Array, Mask, Results
@@ -53,7 +53,7 @@ class Balance:
         Energy is checked only if it is requested.
         """
         self.setup, self.span = setup, span
-        self.of_energy = bool(ENERGY_REPORTS & setup.selection.reports)
+        self.checks_energy = bool(ENERGY_REPORTS & setup.selection.reports)
         self.gap = self.residual = 0.0
         self.start: float | None = None  # energy less work at the first instant [J]
         self.change = self.kinetic = self.imbalance = 0.0  # the largest [J]
@@ -62,7 +62,7 @@ class Balance:
     def add(self, recovery: Recovery) -> Balance:
         """Add instants; returns itself."""
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
-        if self.of_energy:
+        if self.checks_energy:
             self.add_energy(recovery)
         self.gap = take_larger(self.gap, float(recovery.solutions.gap.max(initial=0.0)))
         residual = balance_residual(mechanism, recovery.states, recovery.inertia, recovery.actions, size)
@@ -73,7 +73,7 @@ class Balance:
         """Add the energy of instants, or their powers."""
         if self.span is not None:
             joints, layout = recovery.joints, self.setup.scene.layout
-            power_error = power_imbalance(
+            power_error = find_power_imbalance(
                 layout, recovery.states, recovery.loads, joints, recovery.couplings, self.span
             )
             self.imbalance = take_larger(self.imbalance, power_error)
@@ -95,20 +95,20 @@ class Balance:
         impulse_energy: the energy that the given impulses would bring to free bodies [J]
         """
         found, mechanism, size = Accuracy(), self.setup.scene.mechanism, self.setup.scene.layout.size
-        if self.of_energy:
+        if self.checks_energy:
             lift = (
                 sum(body.mass for body in mechanism.bodies) * float(np.abs(mechanism.gravity).max()) * size
                 + impulse_energy
             )
             if self.span is not None:
-                lift += work_scale(mechanism, self.loads, size, self.span)
+                lift += find_work_scale(mechanism, self.loads, size, self.span)
             change = self.change if self.span is None else self.imbalance
             found["energy_drift"] = energy_drift(change, max(kinetic, self.kinetic), lift)
         return found | {"constraint_gap": self.gap, "balance_residual": self.residual}
 
 
 def take_larger(so_far: float, value: float) -> float:
-    """Return the take_larger of the two; nan stays nan."""
+    """Return the larger of the two; nan stays nan."""
     return float(np.maximum(so_far, value))
 
 

@@ -42,7 +42,7 @@ from heuncli.base import tolerances
 from heuncli.loads.kinetostatics.actions import Action, AppliedLoad
 from heuncli.loads.kinetostatics.balance import system_vector
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, point_motions
+from heuncli.loads.kinetostatics.coordinates import evaluate_joint_coordinates, evaluate_point_motions
 from heuncli.loads.kinetostatics.coupling_numbers import (
     DRIVE_ELEMENT_NUMBERS,
     efficiency,
@@ -85,8 +85,8 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     axes = recovery.setup.selection.axes
     for load in recovery.requested_joints if axes != "world" and "joints" in blocks_by_name else ():
         rotate_block(blocks_by_name["joints"][load.joint.name], find_joint_axes(load.joint, states, axes))
-    if blocks_by_name and recovery.decided is not None:
-        recovery.decided.mark(states, blocks_by_name, recovery.couplings, axes, make_element_keys(mechanism))
+    if blocks_by_name and recovery.resolution is not None:
+        recovery.resolution.mark(states, blocks_by_name, recovery.couplings, axes, make_element_keys(mechanism))
         if layout.friction_contacts and "foundation" in blocks_by_name:
             from heuncli.loads.redundancy.shared_friction import mark_elements  # few scenes have such friction
 
@@ -95,23 +95,9 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
     if "energy" in reports:
         blocks_by_name["energy"] = recovery.energy
     if "motion" in reports:
-        from heuncli.loads.kinetostatics.coordinates import (  # tables do not show them
-            body_quaternions,
-            rodrigues_vectors,
-        )
-
-        attitude_quaternions = body_quaternions(layout, solutions)
-        vectors = rodrigues_vectors(attitude_quaternions)
-        body_momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
-        blocks_by_name["bodies"] = {
-            b.name: make_body_block(states, attitude_quaternions, vectors, body_momenta, i)
-            for i, b in enumerate(mechanism.bodies)
-        }
-        blocks_by_name["momentum"] = body_momenta.sum_bodies()
-        blocks_by_name["coordinates"] = evaluate_joint_coordinates(layout, solutions, states)
-        blocks_by_name["system_vector"] = system_vector(mechanism, states)
+        blocks_by_name |= make_motion_blocks(recovery)
     if "points" in reports:
-        blocks_by_name["points"] = point_motions(mechanism, states)
+        blocks_by_name["points"] = evaluate_point_motions(mechanism, states)
     if "sections" in reports:
         blocks_by_name["sections"] = {}
         if recovery.setup.cuts:
@@ -123,6 +109,29 @@ def make_blocks(recovery: Recovery, reports: Set[str]) -> dict[str, Any]:
             [own for own in recovery.loads if mechanism.spec_block(own.load) == "forces"], states
         )
     return blocks_by_name
+
+
+def make_motion_blocks(recovery: Recovery) -> dict[str, Any]:
+    """Make the blocks of the motion: bodies, their momenta, joint coordinates, Heun's system vector."""
+    from heuncli.loads.kinetostatics.coordinates import (  # tables do not show them
+        find_body_quaternions,
+        find_rodrigues_vectors,
+    )
+
+    mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
+    solutions, states = recovery.solutions, recovery.states
+    attitude_quaternions = find_body_quaternions(layout, solutions)
+    vectors = find_rodrigues_vectors(attitude_quaternions)
+    body_momenta = find_momenta(mechanism, states, recovery.setup.moment_point)
+    return {
+        "bodies": {
+            b.name: make_body_block(states, attitude_quaternions, vectors, body_momenta, i)
+            for i, b in enumerate(mechanism.bodies)
+        },
+        "momentum": body_momenta.sum_bodies(),
+        "coordinates": evaluate_joint_coordinates(layout, solutions, states),
+        "system_vector": system_vector(mechanism, states),
+    }
 
 
 def make_reaction_blocks(recovery: Recovery, by_cause: bool) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from heuncli.loads.kinetostatics.actions import (
     list_joint_actions,
     list_whole_joint_actions,
 )
-from heuncli.loads.kinetostatics.balance import energy_block, find_load_magnitudes, find_magnitudes, inertia_scale
+from heuncli.loads.kinetostatics.balance import energy_block, find_inertia_scale, find_load_magnitudes, find_magnitudes
 from heuncli.loads.kinetostatics.bodies import BodyStates, make_body_states
 from heuncli.loads.kinetostatics.couplings import (
     CouplingLoads,
@@ -47,7 +47,7 @@ RANK_REPORTS = SHARED_BLOCKS  # reports that need the rank of the closures
 ENERGY_REPORTS = frozenset({"energy", IMPULSES})  # reports that show energies
 # properties that do not depend on which components are indeterminate
 INDEPENDENT_OF_VERDICTS = frozenset({"states", "kernel_joint_loads", "loads", "energy", "inertia"})
-INDEPENDENT_OF_CUTS = INDEPENDENT_OF_VERDICTS | {"decided", "couplings", "shares"}
+INDEPENDENT_OF_CUTS = INDEPENDENT_OF_VERDICTS | {"resolution", "couplings", "shares"}
 
 
 @record
@@ -99,7 +99,7 @@ class Recovery:
         return make_body_states(self.setup.scene.layout, self.solutions, self.setup.steady_spin_axes)
 
     @cached_property
-    def decided(self) -> Resolution | None:
+    def resolution(self) -> Resolution | None:
         """What redundant joints leave indeterminate, after the requested split; None without closed chains."""
         layout = self.setup.scene.layout
         if not layout.rows:
@@ -147,14 +147,14 @@ class Recovery:
     @cached_property
     def joints(self) -> list[JointLoads]:
         """The joints' reactions."""
-        if self.decided is not None:
-            return self.decided.joints
+        if self.resolution is not None:
+            return self.resolution.joints
         return self.kernel_joint_loads
 
     @cached_property
     def requested_joints(self) -> list[JointLoads]:
         """The reactions of the requested joints, and of those that a requested stop belongs to."""
-        selection, resolution = self.setup.selection, self.decided
+        selection, resolution = self.setup.selection, self.resolution
         is_complete = "joints" not in selection.partial or IMPULSES in selection.reports  # impulses show all joints
         if is_complete or (resolution is not None and resolution.has_marks):
             return self.joints
@@ -177,7 +177,7 @@ class Recovery:
     @cached_property
     def couplings(self) -> list[CouplingLoads]:
         """The loads of couplings."""
-        return self.find_couplings(self.decided) if self.setup.scene.mechanism.couplings else []
+        return self.find_couplings(self.resolution) if self.setup.scene.mechanism.couplings else []
 
     def find_couplings(self, resolution: Resolution | None) -> list[CouplingLoads]:
         """Return the loads of couplings after a split."""
@@ -222,17 +222,17 @@ class Recovery:
         from heuncli.loads.kinetostatics.shares import (  # few runs ask for them
             find_cause_columns,
             find_shares,
-            own_cause_action,
+            make_cause_action,
         )
 
         layout = self.setup.scene.layout
         own = None if self.causes is None else {name: [k] for k, name in enumerate(self.causes)}
         members = find_cause_columns(layout.mechanism) if own is None else own
         found = find_shares(layout, self.solutions, self.states, self.law_actions, members)
-        if self.decided is None:
+        if self.resolution is None:
             return found
-        joints, correction = self.decided.apply_choices(found.joints, self.states)
-        friction_shares = [own_cause_action(found, action) for action in found.applied_actions]
+        joints, correction = self.resolution.apply_choices(found.joints, self.states)
+        friction_shares = [make_cause_action(found, action) for action in found.applied_actions]
         couplings = [own.add_multipliers(correction).with_friction(friction_shares) for own in found.couplings]
         return replace(found, joints=add_separating_forces(layout, joints, couplings), couplings=couplings)
 
@@ -294,7 +294,7 @@ class Recovery:
     @cached_property
     def inertia(self) -> Array:
         """The largest inertia load or weight of each body, (n_t, n) [N]."""
-        return inertia_scale(self.setup.scene.mechanism, self.states)
+        return find_inertia_scale(self.setup.scene.mechanism, self.states)
 
     @property
     def generic_self_stress_count(self) -> Array:
@@ -309,16 +309,16 @@ class Recovery:
 
     def describe_singular_poses(self) -> list[str]:
         """Return sentences on instants at singular poses, or close to them, where the results depend on it."""
-        if not self.needs_indeterminacy or self.decided is None:
+        if not self.needs_indeterminacy or self.resolution is None:
             return []
-        return self.decided.describe_singular_poses(
+        return self.resolution.describe_singular_poses(
             self.setup.runner, self.solutions, self.states, self.generic_self_stress_count
         )
 
     @property
     def indeterminate(self) -> SelfStress | None:
         """The self-stresses that no split has resolved."""
-        return self.decided.remaining_self_stress if self.decided is not None else None
+        return self.resolution.remaining_self_stress if self.resolution is not None else None
 
 
 def compute_vector_magnitudes(velocities: Array) -> Array:
@@ -338,10 +338,12 @@ def recover(
         require_on_sheaves(setup.scene.layout, solutions)
         require_directions(setup.scene, solutions)
     found = Recovery(setup, solutions, least_norm, state_instants=state_instants)
-    if setup.scene.mechanism.joint_friction and found.decided is not None:
+    if setup.scene.mechanism.joint_friction and found.resolution is not None:
         from heuncli.loads.redundancy.indeterminate_components import require_determinate_friction  # few scenes need it
 
-        require_determinate_friction(setup.scene.layout, found.decided.found_self_stress, found.states, solutions.times)
+        require_determinate_friction(
+            setup.scene.layout, found.resolution.found_self_stress, found.states, solutions.times
+        )
     if setup.scene.layout.friction_contacts:
         from heuncli.loads.redundancy.shared_friction import require_no_split  # few scenes need it
 
@@ -360,6 +362,6 @@ def find_determinate_sums(recovery: Recovery) -> list[DeterminateSum]:
         from heuncli.loads.redundancy.shared_friction import find_friction_sums  # few scenes have such friction
 
         sums = find_friction_sums(layout, recovery.solutions)
-    if recovery.decided is None:
+    if recovery.resolution is None:
         return sums
-    return sums + recovery.decided.find_sums(recovery.setup.runner, recovery.solutions, recovery.couplings)
+    return sums + recovery.resolution.find_sums(recovery.setup.runner, recovery.solutions, recovery.couplings)

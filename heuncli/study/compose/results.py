@@ -28,7 +28,7 @@ import numpy as np
 from heuncli.base.errors import SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import KERNEL
-from heuncli.loads.kinetostatics.foundation import inertia_loads, is_zero_force, largest_force
+from heuncli.loads.kinetostatics.foundation import find_inertia_loads, is_zero_force, largest_force
 from heuncli.motion.integration.integrated_scene import note_fallback_to_integration
 from heuncli.results.path_words import find_quantity
 from heuncli.results.results import Array, Block, Results
@@ -167,7 +167,7 @@ def make_model_block(setup: Setup, history: History, recovery: Recovery, compose
     """Make the block `model`: that of the setup, with what only the run shows; recovery: of the instants or some of
     them.
     """
-    split = recovery.decided.words if recovery.needs_indeterminacy and recovery.decided is not None else ()
+    split = recovery.resolution.sentences if recovery.needs_indeterminacy and recovery.resolution is not None else ()
     return (
         setup.model
         | ({"split": "; ".join(split)} if split else {})
@@ -278,7 +278,7 @@ def compose_parts(
 
 def depends_on_all_instants(recovery: Recovery) -> bool:
     """Return whether a closed chain is indeterminate at some instants, or singular, or nearly so."""
-    is_marked = recovery.needs_indeterminacy and recovery.decided is not None and recovery.decided.has_marks
+    is_marked = recovery.needs_indeterminacy and recovery.resolution is not None and recovery.resolution.has_marks
     return is_marked or bool(recovery.describe_singular_poses())
 
 
@@ -309,7 +309,7 @@ def copy_part(target: Mapping[str, Any], part: Mapping[str, Any], first: int) ->
 def find_largest_force(recovery: Recovery, s: Array) -> float:
     """Return the largest force of a part that its foundation's s (n_t, 3) is compared with [N]."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    ma, _ = inertia_loads(mechanism, states)
+    ma, _ = find_inertia_loads(mechanism, states)
     return largest_force(mechanism, s, ma, recovery.ground_actions, recovery.inner_forces)
 
 

@@ -15,7 +15,8 @@ import numpy as np
 from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
 from heuncli.loads.kinetostatics.moved_reactions import PlacedSensor, find_sensor_reaction, move_shares
-from heuncli.loads.kinetostatics.sections import find_attachments, make_section_block
+from heuncli.loads.kinetostatics.piece_loads import find_attachments
+from heuncli.loads.kinetostatics.sections import make_section_block
 from heuncli.results.results import Array, Block, Mask
 from heuncli.study.compose.recovery import Recovery
 

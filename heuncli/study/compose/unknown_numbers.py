@@ -132,8 +132,8 @@ def group_leaves(blocks: dict[str, Any], moved_blocks: dict[str, Any], close_ins
 def find_nearly_singular(recovery: Recovery, reports: Set[str]) -> Indices:
     """Return the instants at a singular pose, or so close to one that rounding may decide their results."""
     is_near = recovery.solutions.pivot < tolerances.NEAR_PIVOT
-    if reports & RANK_REPORTS and recovery.decided is not None and recovery.decided.found_self_stress is not None:
-        is_near |= recovery.decided.found_self_stress.count > recovery.generic_self_stress_count
+    if reports & RANK_REPORTS and recovery.resolution is not None and recovery.resolution.found_self_stress is not None:
+        is_near |= recovery.resolution.found_self_stress.count > recovery.generic_self_stress_count
     return np.flatnonzero(is_near)
 
 
@@ -142,7 +142,7 @@ def find_left_out_rows(recovery: Recovery, close_instants: Indices) -> Mask:
 
     Their multipliers are missing from the loads, and the directions that they constrain accelerate freely.
     """
-    stress = recovery.decided.found_self_stress if recovery.decided is not None else None
+    stress = recovery.resolution.found_self_stress if recovery.resolution is not None else None
     if stress is None:
         return np.zeros(len(close_instants), dtype=bool)
     return np.asarray(stress.count[close_instants] > recovery.generic_self_stress_count[close_instants])
@@ -311,17 +311,22 @@ def find_verdicts(recovery: Recovery, reports: frozenset[str]) -> Verdicts | Non
 
     A split of the reactions, by least norm or stiffness, changes with the pose: it is found at each instant.
     """
-    decided, solutions = recovery.decided, recovery.solutions
-    if decided is None or decided.choices or decided.words or recovery.setup.scene.mechanism.joint_friction:
+    resolution, solutions = recovery.resolution, recovery.solutions
+    if (
+        resolution is None
+        or resolution.choices
+        or resolution.sentences
+        or recovery.setup.scene.mechanism.joint_friction
+    ):
         return None
-    stress = decided.found_self_stress
+    stress = resolution.found_self_stress
     ordinary = (
         np.ones(len(solutions.times), dtype=bool)
         if stress is None
         else stress.count <= recovery.generic_self_stress_count
     )
     found: tuple[Mask | None, ...] = ()
-    if decided.remaining_self_stress is not None:
+    if resolution.remaining_self_stress is not None:
         determinate_blocks, blocks = (
             make_requested_blocks(own, reports) for own in (recovery.without_indeterminacy_search(), recovery)
         )

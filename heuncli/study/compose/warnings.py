@@ -16,7 +16,7 @@ import numpy as np
 
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
-from heuncli.loads.kinetostatics.balance import inertia_scale
+from heuncli.loads.kinetostatics.balance import find_inertia_scale
 from heuncli.loads.kinetostatics.couplings import CouplingLoads
 from heuncli.motion.integration.contacts.shared_impulses import format_sharing_warning
 from heuncli.motion.integration.diagnosis.guide_departures import format_slant_warnings
@@ -332,7 +332,7 @@ def find_load_scale(recovery: Recovery) -> Array:
     Moments are divided by the scene's size.
     """
     setup = recovery.setup
-    largest: Array = inertia_scale(setup.scene.mechanism, recovery.states)[0]
+    largest: Array = find_inertia_scale(setup.scene.mechanism, recovery.states)[0]
     for action in recovery.actions:
         for end, F, M in action.iter_ends():
             if end.body != GROUND:

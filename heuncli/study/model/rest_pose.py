@@ -11,9 +11,9 @@ from heuncli.base.errors import Problem, SolveError
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import record, replace
 from heuncli.base.spelling import MAX_NAMES, format_count, list_some
-from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose, no_rest_problem
+from heuncli.loads.equilibrium.pose import Pose, make_bearing_pose, make_no_rest_problem
+from heuncli.loads.equilibrium.rest_law import separate_indifferent
 from heuncli.loads.equilibrium.search import RestSearch
-from heuncli.loads.equilibrium.slopes import separate_indifferent
 from heuncli.loads.equilibrium.steady_states import (
     NamedMotion,
     Stability,
@@ -25,7 +25,7 @@ from heuncli.loads.equilibrium.steady_states import (
 )
 from heuncli.loads.equilibrium.verification import (
     VerifiedPose,
-    find_neighbour_poses,
+    find_indistinguishable_states,
     find_verified_pose,
     perturb_states,
     require_at_rest,
@@ -117,13 +117,13 @@ def start_at_rest(scene: PreparedScene, runner: Runner, *, with_time: bool = Fal
         require_no_rolling(runner.layout, found.pose.state)
     if runner.layout.friction_contacts:
         require_no_slip(runner, found.pose.state)
-    require_steady(runner, found.coordinates, found.pose, found.slopes)
-    law = found.slopes.law
-    indifferent_directions = find_indifference(scene, 0.0, found.pose.holding, law)
-    found = replace(found, slopes=separate_indifferent(found.slopes, indifferent_directions))
-    states, curvatures = find_neighbour_poses(runner, found, indifferent_directions)
+    require_steady(runner, found.coordinates, found.pose, found.law)
+    equations = found.law.equations
+    indifferent_directions = find_indifference(scene, 0.0, found.pose.holding, equations)
+    found = replace(found, law=separate_indifferent(found.law, indifferent_directions))
+    states, curvatures = find_indistinguishable_states(runner, found, indifferent_directions)
     found_stability = find_stability(
-        scene, found.coordinates, law, found.pose.evaluation, indifferent_directions, curvatures
+        scene, found.coordinates, equations, found.pose.evaluation, indifferent_directions, curvatures
     )
     layout = replace(scene.layout, y0=found.pose.state)
     without_slope = list(find_roots(examine_laws(layout, 0.0, layout.y0)))
@@ -158,7 +158,7 @@ def require_no_slip(runner: Runner, state: Array) -> None:
     if slipping:
         message = f"{list_some(slipping)} does not hold the start position"
         hint = "where it comes to rest depends on the motion: give analysis a duration; or more static friction"
-        raise SolveError(no_rest_problem(message, hint))
+        raise SolveError(make_no_rest_problem(message, hint))
 
 
 def require_no_rolling(layout: Layout, state: Array) -> None:

@@ -264,7 +264,7 @@ def build_with_cuts(spec: Spec, stages: Stages = NO_CACHE) -> tuple[Mechanism, t
     mechanism = build(spec, forms, stages)
     if not spec.sections:
         return mechanism, ()
-    from heuncli.loads.kinetostatics.cuts import make_cuts  # with the shapes 9 ms that other scenes do not need
+    from heuncli.loads.kinetostatics.cut_planes import make_cuts  # with the shapes 9 ms that other scenes do not need
 
     cuts = make_cuts(mechanism, spec, forms)
     if any(section.beam_theory for section in spec.sections.values()):

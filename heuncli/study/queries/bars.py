@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from heuncli.base.records import record, replace
-from heuncli.loads.kinetostatics.cuts import Cuts, list_attachments
+from heuncli.loads.kinetostatics.cut_planes import list_attachments
+from heuncli.loads.kinetostatics.cuts import Cuts
 from heuncli.loads.kinetostatics.stretch import Stretch, make_cuts_at
 from heuncli.multibody.mechanism.loads import GROUND
 from heuncli.results.path_words import IMPULSE_UNITS

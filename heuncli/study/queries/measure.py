@@ -234,7 +234,7 @@ def make_joint_reader(study: Study, numbers: PathValues, path: str) -> Callable[
 
     def read(recovery: Recovery) -> Array | None:
         """Return the searched values of a joint's load without composing results; None where that is not possible."""
-        if not is_known or recovery.decided is not None:
+        if not is_known or recovery.resolution is not None:
             return None
         load = next(load for load in recovery.requested_joints if load.joint.name == numbers.keys[1])
         values: Array = getattr(load, quantity)

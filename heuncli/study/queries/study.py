@@ -268,13 +268,14 @@ class Study:
         causes = len(mechanism.loads) + 3 if SHARES in self.options.reports else 0
         return max(50, CHUNK // max(1, len(mechanism.bodies) * (1 + causes)))
 
-    def with_whole_cuts(self, bent: bool) -> Setup:
-        """Return the setup with its series of cuts as whole lengths; bent: for numbers that are no polynomial of the
-        loads.
+    def with_whole_cuts(self, is_nonlinear: bool) -> Setup:
+        """Return the setup with its series of cuts as whole lengths.
+
+        is_nonlinear: whether they are for numbers that are no polynomial of the loads
         """
         from heuncli.study.search.cuts import replace_series_by_stretches  # only series of cuts are worth it
 
-        return replace_series_by_stretches(self.setup, bent)
+        return replace_series_by_stretches(self.setup, is_nonlinear)
 
     def is_searched(self, columns: int) -> bool:
         """Return whether the extremes of that many columns of a whole report are searched between the requested

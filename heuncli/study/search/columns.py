@@ -51,7 +51,7 @@ class Sampleable(Protocol):
     def chunk_size(self) -> int:
         """How many instants are solved in one call."""
 
-    def with_whole_cuts(self, bent: bool) -> Setup:
+    def with_whole_cuts(self, is_nonlinear: bool) -> Setup:
         """Return the setup with its series of cuts as whole lengths."""
 
     def compute_reports(self, times: Array, reports: frozenset[str], setup: Setup | None = None) -> Results:
@@ -102,8 +102,8 @@ class StudyColumns:
         self.errors = np.array([search.find_error(channel) for channel in channels])
         self.is_squared = np.array([channel.is_magnitude for channel in channels], dtype=bool)
         along = [channel for channel in channels if channel.has_cuts]
-        self.bent = any(channel.is_nonlinear for channel in along)
-        self.setup = study.with_whole_cuts(self.bent) if along and setup is None else setup
+        self.is_nonlinear = any(channel.is_nonlinear for channel in along)
+        self.setup = study.with_whole_cuts(self.is_nonlinear) if along and setup is None else setup
         self.unknown: list[float] = []
         self.grid: list[Recovery] = []
         self.n_single = len(channels) - len(along)
@@ -132,7 +132,7 @@ class StudyColumns:
 
         None if they are not needed, or if it must be found at each instant.
         """
-        if not self.reports & RANK_REPORTS or any(recovery.decided is None for recovery in self.grid):
+        if not self.reports & RANK_REPORTS or any(recovery.resolution is None for recovery in self.grid):
             # the scene is a tree, or needs no verdicts
             return None
         from heuncli.study.compose.unknown_numbers import (  # where there are closed chains
@@ -222,7 +222,7 @@ class StudyColumns:
 
         setup, (name, instant, nodes, values) = self.setup, series_sample
         s, load_side, ends = locate_summit(nodes, values, side)  # ends: of the smooth piece
-        if self.bent and math.isfinite(value):
+        if self.is_nonlinear and math.isfinite(value):
 
             def sample_places(s: Array) -> Array:
                 """Return the channel at some places along the bar."""

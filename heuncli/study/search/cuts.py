@@ -17,7 +17,8 @@ from heuncli.base.named_tuples import NamedTuple
 from heuncli.base.records import replace
 from heuncli.loads.kinetostatics.actions import list_whole_joint_actions
 from heuncli.loads.kinetostatics.couplings import list_coupling_actions
-from heuncli.loads.kinetostatics.cuts import Cuts, PlaceableCuts, list_attachments, list_distributed_loads
+from heuncli.loads.kinetostatics.cut_planes import list_attachments, list_distributed_loads
+from heuncli.loads.kinetostatics.cuts import Cuts, PlaceableCuts
 from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, StretchPeaks, find_peaks, make_cuts_at, make_stretch
 from heuncli.results.results import BEFORE, BEYOND, SIDE_SIGNS, Array, Block, CutPosition, Extremes
 from heuncli.results.results_schema import RESULTANTS
@@ -30,11 +31,12 @@ SIGN_CHANGE_HALVINGS = (
 )
 
 
-def replace_series_by_stretches(setup: Setup, bent: bool) -> Setup:
-    """Return the setup with its series of cuts replaced by stretches; bent: for quantities that are no polynomial of
-    loads.
+def replace_series_by_stretches(setup: Setup, is_nonlinear: bool) -> Setup:
+    """Return the setup with its series of cuts replaced by stretches.
+
+    is_nonlinear: whether they are for quantities that are no polynomial of the loads
     """
-    mechanism, halved = setup.scene.mechanism, SIGN_CHANGE_HALVINGS if bent else 0
+    mechanism, halved = setup.scene.mechanism, SIGN_CHANGE_HALVINGS if is_nonlinear else 0
 
     def make_whole(cuts: Cuts) -> PlaceableCuts:
         """Return a series of cuts through shapes as a stretch, all others as they are."""
@@ -171,7 +173,7 @@ def find_passages(recover: Callable[[Array], Recovery], grid: Array) -> Array:
 
 def find_points_on_pieces(recovery: Recovery) -> Array:
     """Return 1 where a point that moves over a body lies on the piece of a single cut of it, else 0, (n_t, m)."""
-    from heuncli.loads.kinetostatics.sections import find_attachments, mark_points_on_pieces
+    from heuncli.loads.kinetostatics.piece_loads import find_attachments, mark_points_on_pieces
 
     actions = [
         *list_whole_joint_actions(recovery.joints),

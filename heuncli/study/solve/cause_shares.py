@@ -28,8 +28,8 @@ from heuncli.loads.kinetostatics.shares import (
     Shares,
     find_cause_columns,
     find_shares,
-    foundation_shares_blocks,
-    joint_shares_block,
+    make_foundation_shares_blocks,
+    make_joint_shares_block,
 )
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.model import Mechanism
@@ -49,7 +49,7 @@ def add_shares(
         for load in shares.joints:
             if load.joint.name in blocks["joints"]:  # if single joints are requested, only these are shown
                 block = blocks["joints"][load.joint.name]
-                block["shares"] = joint_shares_block(shares, load)
+                block["shares"] = make_joint_shares_block(shares, load)
                 if load.joint.bearings is not None:
                     for key, own in make_bearing_loads(load, mechanism.planar).items():
                         block["bearings"][key]["shares"] = shares.to_blocks(own)
@@ -57,7 +57,7 @@ def add_shares(
             carried = {number.name: number.values for number in list_numbers(coupled) if number.is_sum}
             blocks["couplings"][coupled.coupling.name]["shares"] = shares.to_blocks(carried)
     if "foundation" in blocks:
-        for keys, foundation_block in foundation_shares_blocks(mechanism, states, shares, moment_point).items():
+        for keys, foundation_block in make_foundation_shares_blocks(mechanism, states, shares, moment_point).items():
             find_block(blocks["foundation"], keys)["shares"] = foundation_block
 
 
@@ -166,7 +166,7 @@ def list_coupling_shares(couplings: Sequence[CouplingLoads]) -> KindValues:
 def list_foundation_shares(setup: Setup, states: BodyStates, shares: Shares) -> KindValues:
     """Return the shares of the foundation's total and of its elements."""
     found: KindValues = []
-    for keys, block in foundation_shares_blocks(setup.scene.mechanism, states, shares, setup.moment_point).items():
+    for keys, block in make_foundation_shares_blocks(setup.scene.mechanism, states, shares, setup.moment_point).items():
         if keys[:1] == ("supports",):
             continue  # those of their joints
         for name in ("force", "moment"):

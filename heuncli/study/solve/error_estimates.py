@@ -23,7 +23,7 @@ from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.loads.kinetostatics.actions import AppliedLoad
 from heuncli.loads.kinetostatics.bodies import BodyStates
-from heuncli.loads.kinetostatics.foundation import inertia_rows
+from heuncli.loads.kinetostatics.foundation import find_inertia_rows
 from heuncli.motion.integration.evaluator import Evaluation
 from heuncli.multibody.mechanism.loads import RopeLoad
 from heuncli.results.path_words import BY_CAUSE
@@ -170,7 +170,7 @@ class BalanceTerms:
 
     def __init__(self, setup: Setup, solutions: Evaluation, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
         mechanism, size = setup.scene.mechanism, setup.scene.layout.size
-        ma, spin = self.by_component = inertia_rows(mechanism, states)
+        ma, spin = self.by_component = find_inertia_rows(mechanism, states)
         self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
         row_forces = solutions.rows["multiplier"][..., None] * solutions.rows["f"]
         applied = [load.action for load in loads]

@@ -27,7 +27,7 @@ from heuncli.loads.kinetostatics.couplings import (
     list_coupling_actions,
     list_rope_actions,
 )
-from heuncli.loads.kinetostatics.foundation import central_axis, find_ground_loads, total_load
+from heuncli.loads.kinetostatics.foundation import find_central_axis, find_ground_loads, sum_ground_loads
 from heuncli.loads.kinetostatics.reactions import JointLoads, find_joint_loads, project_to_plane, rotate_joint_loads
 from heuncli.motion.integration.diagnosis.guide_departures import require_on_sheaves
 from heuncli.motion.integration.evaluator import Evaluation
@@ -257,7 +257,7 @@ class LoadErrors(MotionErrors):
         moments = terms.moment + reach * terms.force
         forces_rounding, moments_rounding = terms.rounding
         elements = [load for (kind, _), load in find_ground_loads(mechanism, actions).items() if kind == "elements"]
-        total_wrench = total_load(states, terms.weight - terms.ma, terms.spin, actions, origin)
+        total_wrench = sum_ground_loads(states, terms.weight - terms.ma, terms.spin, actions, origin)
         self.add_axis(*total_wrench)
         wrenches = [
             ("foundation", *total_wrench, reach),
@@ -276,7 +276,7 @@ class LoadErrors(MotionErrors):
         """
         count = len(force) // len(self.is_requested)
         is_requested = np.repeat(self.is_requested, count)
-        axis = central_axis(force[is_requested], moment[is_requested], self.setup.moment_point, 0.0)
+        axis = find_central_axis(force[is_requested], moment[is_requested], self.setup.moment_point, 0.0)
         for unit, values in (("1", axis["direction"]), ("m", axis["point"]), ("m", axis["pitch"][:, None])):
             first_run = values[0::count]
             difference = np.max(
@@ -286,7 +286,7 @@ class LoadErrors(MotionErrors):
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """Add the cuts' loads in body axes, and the difference of the bodies' own orientation between the runs."""
-        from heuncli.loads.kinetostatics.sections import (  # only scenes with sections load it
+        from heuncli.loads.kinetostatics.piece_loads import (  # only scenes with sections load it
             find_acceleration_matrix,
             find_attachments,
             find_piece_loads,

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from heuncli.analyses.motion_diagnostics.growth import to_results
+from heuncli.analyses.motion_diagnostics.growth import make_results
 from heuncli.analyses.motion_diagnostics.lyapunov import DisturbanceGrowth
 from heuncli.analyses.motion_diagnostics.study import probe
 from heuncli.scene.file_format.load import load
@@ -27,7 +27,7 @@ def tilted_by(x: float) -> str:
 def grown(x: float) -> str:
     """A disturbance that grows x times over the second half of a run, and as evenly before."""
     times = np.linspace(0.0, 1.0, 11)
-    growing, _ = to_results(DisturbanceGrowth(times, 2.0 * math.log(x) * times, np.ones(11)), 1)
+    growing, _ = make_results(DisturbanceGrowth(times, 2.0 * math.log(x) * times, np.ones(11)), 1)
     assert growing is not None
     near(growing.rate, 2.0 * math.log(x), 1.0)
     return "exponential" if growing.exponential else "with the time"

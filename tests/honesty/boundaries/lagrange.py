@@ -7,7 +7,7 @@ import numpy as np
 from heuncli.analyses.lagrange.coordinates import require_independent
 from heuncli.analyses.lagrange.state_space import drop_rounding
 from heuncli.base.errors import SolveError
-from heuncli.loads.kinetostatics.coordinates import rodrigues_vectors
+from heuncli.loads.kinetostatics.coordinates import find_rodrigues_vectors
 from tests.honesty.boundaries.part import Part, Row
 
 
@@ -29,7 +29,7 @@ def rests(x: float) -> str:
 
 def vector(x: float) -> str:
     """A turn whose quaternion has the scalar part x."""
-    return "none" if np.isnan(rodrigues_vectors(np.array([x, 0.0, 0.0, 1.0]))).all() else "told"
+    return "none" if np.isnan(find_rodrigues_vectors(np.array([x, 0.0, 0.0, 1.0]))).all() else "told"
 
 
 PART = Part(

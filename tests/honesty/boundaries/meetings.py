@@ -23,7 +23,7 @@ def sampled(places: list[float], measure: Callable[[float], float], *, value: fl
     course = MeasureCourse(lambda x: Sample(x, measure(x) - value, ERROR), -1.0, 1.0, 5, 100, value)
     for x in places:
         course.sample_at(x)
-    course.usual = 1.0
+    course.median_magnitude = 1.0
     return course
 
 

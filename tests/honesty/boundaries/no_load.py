@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.loads.kinetostatics.balance import energy_drift
-from heuncli.loads.kinetostatics.foundation import central_axis
+from heuncli.loads.kinetostatics.foundation import find_central_axis
 from heuncli.study.compose.warnings import warn_unbalanced
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar
@@ -37,7 +37,7 @@ def carried_by_nothing(x: float) -> str:
 
 
 def axis_of(x: float) -> str:
-    found: Any = central_axis(np.array([[x, 0, 0]]), np.array([[0, 0, x]]), np.zeros(3), 1.0)
+    found: Any = find_central_axis(np.array([[x, 0, 0]]), np.array([[0, 0, x]]), np.zeros(3), 1.0)
     return "no axis" if np.isnan(found["pitch"][0]) else "an axis"
 
 

@@ -26,7 +26,7 @@ from heuncli.output.tables.measure import require_known_paths
 from heuncli.results.results import Results
 from heuncli.results.results_paths import find_values
 from heuncli.scene.file_format.models import Spec
-from heuncli.study.load_collectives import BINS, Collective, Counting
+from heuncli.study.load_collectives import DEFAULT_BINS, Collective, Counting
 from heuncli.study.quantities.table_units import Units
 from heuncli.study.queries.measure import MeasureRequest, NotOneNumber
 from heuncli.study.queries.study import Study
@@ -89,11 +89,11 @@ def parse_counting(request: RunRequest) -> Counting:
     counting = Counting(
         slopes=() if request.slope is None else tuple(dict.fromkeys(map(parse_number, request.slope.split(",")))),
         cycles=request.cycles,
-        bins=BINS if request.bins is None else request.bins,
+        bins=DEFAULT_BINS if request.bins is None else request.bins,
         repeat=1 if is_closed or request.repeat is None else parse_whole(request.repeat),
         is_endless=is_closed,
     )
-    if invalid := counting.find_unfit():
+    if invalid := counting.find_invalid_options():
         options = [(one, OPTIONS.get(one.name, one.name)) for one in invalid]
         raise UsageError(
             *(make_option_problem(one, f"--{option}", getattr(request, option)) for one, option in options)

@@ -54,7 +54,7 @@ def main(request: TuneRequest) -> int:
     if request.history is not None:
         require_other_file(request.history, [options.path], "--history")
     tuning = run_search(request, options, evaluator)
-    results = tuning.to_results()
+    results = tuning.make_results()
     require_result(results)
     spec = evaluator.spec
     scene = TunedScene(spec.title, spec.path, spec.sha256, format_command(options, evaluator.recipe, results))

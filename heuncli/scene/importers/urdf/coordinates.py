@@ -6,6 +6,7 @@ the joints are free, a coupling holds it there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -44,6 +45,8 @@ QUANTITIES = {
     "pin": JointQuantity("angle", "0 deg", "30 deg", "rad", "torque"),
     "slide": JointQuantity("travel", "0 m", "10 mm", "m", "force"),
 }
+LIMITS_HINT = "leave out --limits, or correct them"
+UNLIMITED = (-math.inf, math.inf)
 MAX_PLAIN_FACTOR = 9  # whole numbers up to this are factors without dimension (manual/format.md, "Parameters")
 
 
@@ -78,6 +81,10 @@ class RobotCoordinates:
         self.names = {joint.name: name for _, joint, name in self.single_coordinate_joints}
         self.types = {joint.name: spec_joint.type for spec_joint, joint, _ in self.single_coordinate_joints}
         self.names_in_loops = {joint.name: name for one, joint, name in self.single_coordinate_joints if one.in_loop}
+        self.followers: dict[str, list[tuple[UrdfJoint, MimicRelation]]] = {}  # by the name of the leader
+        for _, joint, _ in self.single_coordinate_joints:
+            if joint.name in leaders:
+                self.followers.setdefault(leaders[joint.name].leader.name, []).append((joint, leaders[joint.name]))
         for spec_joint, joint, name in self.single_coordinate_joints:
             self._add_joint(joint, name, QUANTITIES[spec_joint.type])
 
@@ -105,7 +112,7 @@ class RobotCoordinates:
         elif leader is not None:
             self._add_follower(joint, name, quantity, leader)
         elif joint.name not in self.names_in_loops:
-            value = self._start_value(joint, quantity)
+            value = self._find_start_value(joint, quantity)
             remark = "; ".join(
                 filter(None, (format_original_name("joint", name, joint.name), self._format_limits(joint, quantity)))
             )
@@ -151,27 +158,44 @@ class RobotCoordinates:
         )
 
     def _format_limits(self, joint: UrdfJoint, quantity: JointQuantity) -> str:
-        if joint.limits is None or joint.kind == "continuous":
+        limits = find_range(joint)
+        if limits is None:
             return ""
-        lower, upper = joint.limits
+        lower, upper = limits
         outside = "" if lower <= 0.0 <= upper else "; 0 is outside"
         return f"limits {format_number(lower)} to {format_number(upper)} {quantity.unit}{outside}"
 
-    def _start_value(self, joint: UrdfJoint, quantity: JointQuantity) -> str:
-        """Return the start value: 0, or the nearest limit if stops are imported and exclude 0."""
-        if not self.options.limits or joint.limits is None or joint.limits[0] <= 0.0 <= joint.limits[1]:
+    def _find_start_value(self, joint: UrdfJoint, quantity: JointQuantity) -> str:
+        """Return the start value: 0, or the nearest to it that stops allow, if they are imported.
+
+        Stops that allow no motion together are added to the problems.
+        """
+        if not self.options.limits:
             return quantity.zero
-        return f"{format_number(min(joint.limits, key=abs))} {quantity.unit}"
+        lower, upper = find_range(joint) or UNLIMITED
+        limited_followers = []
+        for follower, relation in self.followers.get(joint.name, ()):
+            limits = find_range(follower)
+            if limits is None or relation.multiplier == 0.0:
+                continue
+            ends = sorted((limit - relation.offset) / relation.multiplier for limit in limits)
+            lower, upper = max(lower, ends[0]), min(upper, ends[1])
+            limited_followers.append(follower.name)
+        if limited_followers and lower >= upper:
+            names = list_words(limited_followers)
+            message = f"its limits and those of {names}, which follow it, leave no range of motion"
+            self.fields.report("import-limits", joint.element, joint.path, message, LIMITS_HINT)
+        start = min(max(0.0, lower), upper)
+        return f"{format_number(start)} {quantity.unit}" if start else quantity.zero
 
     def _add_stop(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
-        if joint.limits is None or joint.kind == "continuous":
+        limits, relation = find_range(joint), self.leaders.get(joint.name)
+        if limits is None or (relation is not None and relation.multiplier == 0.0):  # a drive holds such a follower
             return
-        lower, upper = joint.limits
+        lower, upper = limits
         if lower >= upper:
             message = f"its limits, {lower:g} to {upper:g}, leave no range of motion"
-            self.fields.report(
-                "import-limits", joint.element, joint.path, message, "leave out --limits, or correct them"
-            )
+            self.fields.report("import-limits", joint.element, joint.path, message, LIMITS_HINT)
             return
         keys = {"joint": name, quantity.key: (lower, upper)}
         self.stops.append(DescribedEntry(self.namer.assign(f"limits_{name}"), keys))
@@ -193,6 +217,11 @@ class RobotCoordinates:
         message = f'friction="{joint.friction:g}" is left out'
         hint = f"add it with the speed at which it is fully developed: forces: {{friction_{name}: {law}}}"
         self.left_out.append(self.fields.make_problem(LEFT_OUT_CODE, joint.element, joint.path, message, hint))
+
+
+def find_range(joint: UrdfJoint) -> tuple[float, float] | None:
+    """Return the lower and upper limit of a joint, or None if it has none; a continuous joint has none."""
+    return None if joint.kind == "continuous" else joint.limits
 
 
 def format_mimic(leader: str, multiplier: float, offset: float, same_quantity: bool) -> str:

@@ -25,10 +25,7 @@ NON_MECHANICAL_TAGS = frozenset({
     "group", "group_state", "end_effector", "passive_joint", "author", "comment", "description", "license", "date",
     "version", "metadata", "properties", "verbose", "camera", "light", "color", "texture", "rviz",
 })  # fmt: skip
-DEFAULT_TEXTS = {
-    "gravity": ("1", "true"),
-    "kinematic": ("0", "false"),
-}  # Gazebo's defaults: such an element changes nothing
+DEFAULT_TEXTS = {"gravity": ("1", "true"), "kinematic": ("0", "false")}  # Gazebo's defaults, which change nothing
 COMMON_TAGS = ("gazebo", "material", "mujoco", "transmission", "sensor", "plugin", "ros2_control", "safety_controller")
 OBSERVES = re.compile(r"sensor|controller|collision|contact|visual|state|publisher|limit|filter", re.IGNORECASE)
 CLOSES = re.compile(r"loop|constraint|closure|weld", re.IGNORECASE)

@@ -25,32 +25,34 @@ from heuncli.base.errors import SolveError
 from heuncli.base.linear_algebra import solve_least_squares
 from heuncli.base.records import record, replace
 from heuncli.kernel.choose import scene as kernel
-from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, rounding_displacement
+from heuncli.loads.equilibrium.coordinates import Coordinates, evaluate_at_rest, make_rounding_displacement
 from heuncli.loads.equilibrium.directions import SpectralDecomposition, decompose, decompose_with_null_space
-from heuncli.loads.equilibrium.pose import Pose, no_value_problem
-from heuncli.motion.integration.evaluator import Evaluator
+from heuncli.loads.equilibrium.pose import Pose, make_no_value_problem
+from heuncli.motion.integration.evaluator import Evaluation, Evaluator
 from heuncli.motion.linearisation.indifference import Indifference
 from heuncli.motion.linearisation.linearise import LinearisedEquations, linearise
 from heuncli.multibody.response import solve_columns
+from heuncli.multibody.tree.layout import Layout
 from heuncli.results.results import Array, Mask
 
-# Slopes
+# Rest law
 
 PERTURBED_POSES = 4  # poses moved by rounding; it is unlikely that all of them hide a direction
+EVALUATIONS_OF_LAW = 3 + PERTURBED_POSES  # evaluations of the kernel that a law takes
 
 
 @record
 class RestLaw:
     """The linear law at a pose: T (n, f), T+ (f, n), A (f, f) and its decomposition, c and its noise (f,).
 
-    law: the linearised equations it was made from
+    equations: the linearised equations that it was made from
     eigenvalue_errors (f,): rounding errors of the eigenvalues
     sum_rounding (f,): rounding of the sums in c alone, a part of its noise
     nonlinearity (f,): deviation from the law at poses moved by rounding; larger than rounding only for loads that jump
     pose_rounding (f,): effect of the rounding of a pose in the law
     """
 
-    law: LinearisedEquations
+    equations: LinearisedEquations
     T: Array
     T_inverse: Array
     A: Array
@@ -114,37 +116,42 @@ class RestLaw:
 
 def make_rest_law(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> RestLaw:
     """Make the linear law at a pose. Raises SolveError [no-rest-pose] where loads have no value or no slope."""
-    law = linearise(evaluator.layout, pose.t, pose.state, pose.holding)
-    T = law.tangent
-    back = T.T * coordinates.weights**2
-    A = back @ law.by_place @ T
-    displacements = np.array([rounding_displacement(coordinates, pose.state, k) for k in range(PERTURBED_POSES)])
+    equations = linearise(evaluator.layout, pose.t, pose.state, pose.holding)
+    T = equations.tangent
+    T_inverse = T.T * coordinates.weights**2
+    A = T_inverse @ equations.by_place @ T
+    displacements = np.array([make_rounding_displacement(coordinates, pose.state, k) for k in range(PERTURBED_POSES)])
     perturbed = evaluate_at_rest(
         evaluator,
         pose.t,
         coordinates.displace(np.repeat(pose.state[None, :], PERTURBED_POSES, axis=0), displacements),
         pose.holding,
     )
-    change = (coordinates.accelerations(perturbed) - pose.accelerations) @ back.T
+    change = (coordinates.accelerations(perturbed) - pose.accelerations) @ T_inverse.T
     if not (np.isfinite(A).all() and np.isfinite(change).all()):
-        raise SolveError(no_value_problem(coordinates, change))
-    decomposition = decompose(A, T.T @ law.mass @ T)
+        raise SolveError(make_no_value_problem(coordinates, change))
+    decomposition = decompose(A, T.T @ equations.mass @ T)
     inverse = decomposition.inverse
     noise = np.abs(inverse @ change.T).max(axis=1, initial=0.0)
-    sums = acceleration_rounding(evaluator, coordinates, pose)
-    c = inverse @ (back @ pose.accelerations)
-    terms = np.abs(back) @ np.abs(law.by_place) @ np.abs(T)
+    sums = estimate_acceleration_rounding(evaluator, coordinates, pose)
+    c = inverse @ (T_inverse @ pose.accelerations)
+    terms = np.abs(T_inverse) @ np.abs(equations.by_place) @ np.abs(T)
     eigenvalue_errors = find_eigenvalue_errors(
         decomposition, terms, float(np.abs(pose.evaluation.bodies["omega"]).max(initial=0.0))
     )
-    sum_rounding = np.abs(inverse) @ (np.abs(back) @ sums)
-    sum_rounding = sum_rounding + np.abs(inverse @ (back @ spring_rounding(evaluator, coordinates, pose))).sum(axis=1)
-    nonlinearity = np.abs(inverse @ (change.T - A @ (back @ displacements.T))).max(axis=1, initial=0.0)
-    pose_rounding = np.abs(inverse) @ (np.abs(back) @ (np.abs(law.by_place) @ np.abs(displacements).max(axis=0)))
-    noise = tolerances.PUSHED_BY_ROUNDING * (noise + sum_rounding)
-    return RestLaw(
-        law, T, back, A, decomposition, c, noise, eigenvalue_errors, sum_rounding, nonlinearity, pose_rounding
+    sum_rounding = np.abs(inverse) @ (np.abs(T_inverse) @ sums)
+    sum_rounding = sum_rounding + np.abs(
+        inverse @ (T_inverse @ estimate_spring_rounding(evaluator, coordinates, pose))
+    ).sum(axis=1)
+    nonlinearity = np.abs(inverse @ (change.T - A @ (T_inverse @ displacements.T))).max(axis=1, initial=0.0)
+    pose_rounding = np.abs(inverse) @ (
+        np.abs(T_inverse) @ (np.abs(equations.by_place) @ np.abs(displacements).max(axis=0))
     )
+    return RestLaw(
+        equations=equations, T=T, T_inverse=T_inverse, A=A, directions=decomposition, c=c,
+        noise=tolerances.PUSHED_BY_ROUNDING * (noise + sum_rounding), eigenvalue_errors=eigenvalue_errors,
+        sum_rounding=sum_rounding, nonlinearity=nonlinearity, pose_rounding=pose_rounding,
+    )  # fmt: skip
 
 
 def separate_indifferent(rest_law: RestLaw, indifference: Indifference) -> RestLaw:
@@ -154,7 +161,7 @@ def separate_indifferent(rest_law: RestLaw, indifference: Indifference) -> RestL
         rest_law.T_inverse @ indifference.T @ indifference.elimination.left_null,
     )
     decomposition = decompose_with_null_space(
-        rest_law.A, rest_law.T.T @ rest_law.law.mass @ rest_law.T, right_null, left_null
+        rest_law.A, rest_law.T.T @ rest_law.equations.mass @ rest_law.T, right_null, left_null
     )
     if decomposition is None:
         return rest_law
@@ -210,7 +217,7 @@ def find_eigenvalue_errors(decomposition: SpectralDecomposition, terms: Array, f
     return np.asarray(errors)
 
 
-def acceleration_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> Array:
+def estimate_acceleration_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> Array:
     """Return the rounding errors of the accelerations from their sums, (n,): of each cause alone, and of weight."""
     terms = coordinates.acceleration_terms(
         evaluate_at_rest(evaluator, pose.t, pose.state[None, :], pose.holding, causes=True)
@@ -219,41 +226,58 @@ def acceleration_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: 
     return tolerances.SUM_ROUNDING * (terms + gravity / coordinates.weights)
 
 
-def spring_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> Array:
-    """Return the rounding error of the accelerations from each spring's length, (n, k): all there is near its free
-    length.
+def estimate_spring_rounding(evaluator: Evaluator, coordinates: Coordinates, pose: Pose) -> Array:
+    """Return the rounding error of the accelerations from the length of each spring and elastic rope, (n, k).
+
+    Near its free length there is no other.
     """
-    layout, bodies = evaluator.layout, pose.evaluation.bodies[0]
+    layout, evaluation = evaluator.layout, pose.evaluation
     rows = layout.tables["loads"]
-    spring_rows = [
-        k for k in np.flatnonzero(rows["kind"] == kernel.SPRING).tolist() if pose.evaluation.loads["span"][0, k] > 0.0
+    springs = [
+        k for k in np.flatnonzero(rows["kind"] == kernel.SPRING).tolist() if evaluation.loads["span"][0, k] > 0.0
     ]
     ropes = np.flatnonzero(rows["kind"] == kernel.ROPE).tolist()
-    units = np.zeros((len(spring_rows) + len(ropes), len(bodies), 6))
-    for n, k in enumerate(ropes, len(spring_rows)):
-        size = (
-            tolerances.SUM_ROUNDING * rows["stiffness"][k] * (pose.evaluation.loads["span"][0, k] + rows["length"][k])
-        )
-        for part in range(int(rows["part"][k]), int(rows["part"][k] + rows["part_count"][k])):
-            ends, part_result = layout.tables["parts"][part], pose.evaluation.parts[0, part]
-            for body, sign in ((int(ends["b"]), size), (int(ends["a"]), -size)):
-                if body >= 0:
-                    units[n, body, :3] += sign * (
-                        part_result["m"] + np.cross(part_result["Q"] - bodies["r"][body], part_result["f"])
-                    )
-                    units[n, body, 3:] += sign * part_result["f"]
-    for n, k in enumerate(spring_rows):
-        load = pose.evaluation.loads[0, k]
-        line = (load["at"] - load["from_at"]) / load["span"]
-        force = tolerances.SUM_ROUNDING * rows["stiffness"][k] * (load["span"] + rows["length"][k]) * line
-        for body, place, sign in ((int(rows["b"][k]), load["at"], 1.0), (int(rows["a"][k]), load["from_at"], -1.0)):
-            if body >= 0:
-                units[n, body, :3] += sign * np.cross(place - bodies["r"][body], force)
-                units[n, body, 3:] += sign * force
-    if not len(units):
+    if not springs and not ropes:
         return np.zeros((coordinates.count, 0))
-    response = solve_columns(evaluator.workspace, pose.t, pose.state, units, np.zeros(len(units)))
+    wrenches = np.array([
+        *(_make_spring_wrenches(layout, evaluation, k) for k in springs),
+        *(_make_rope_wrenches(layout, evaluation, k) for k in ropes),
+    ])  # fmt: skip
+    response = solve_columns(evaluator.workspace, pose.t, pose.state, wrenches, np.zeros(len(wrenches)))
     return coordinates.collect(response.bodies["alpha"], response.freedoms["udot"]).T
+
+
+def _find_length_rounding(layout: Layout, evaluation: Evaluation, k: int) -> float:
+    """Return the rounding of a spring's force from that of its length [N]."""
+    row, span = layout.tables["loads"][k], evaluation.loads["span"][0, k]
+    return float(tolerances.SUM_ROUNDING * row["stiffness"] * (span + row["length"]))
+
+
+def _make_spring_wrenches(layout: Layout, evaluation: Evaluation, k: int) -> Array:
+    """Return moment and force of that rounding ON each body, about its reference, (n_b, 6), tree order."""
+    row, load, bodies = layout.tables["loads"][k], evaluation.loads[0, k], evaluation.bodies[0]
+    wrenches = np.zeros((len(bodies), 6))
+    force = _find_length_rounding(layout, evaluation, k) * ((load["at"] - load["from_at"]) / load["span"])
+    for body, place, sign in ((int(row["b"]), load["at"], 1.0), (int(row["a"]), load["from_at"], -1.0)):
+        if body >= 0:
+            wrenches[body, :3] += sign * np.cross(place - bodies["r"][body], force)
+            wrenches[body, 3:] += sign * force
+    return wrenches
+
+
+def _make_rope_wrenches(layout: Layout, evaluation: Evaluation, k: int) -> Array:
+    """Return the same for an elastic rope, all of whose strands have that rounding."""
+    row, bodies = layout.tables["loads"][k], evaluation.bodies[0]
+    wrenches = np.zeros((len(bodies), 6))
+    size = _find_length_rounding(layout, evaluation, k)
+    for part in range(int(row["part"]), int(row["part"] + row["part_count"])):
+        ends, result = layout.tables["parts"][part], evaluation.parts[0, part]
+        for body, sign in ((int(ends["b"]), size), (int(ends["a"]), -size)):
+            if body >= 0:
+                lever = result["Q"] - bodies["r"][body]
+                wrenches[body, :3] += sign * (result["m"] + np.cross(lever, result["f"]))
+                wrenches[body, 3:] += sign * result["f"]
+    return wrenches
 
 
 # Rosenbrock step
@@ -287,6 +311,6 @@ class RosenbrockStep:
         return replace(self, d=np.where(np.abs(d) > law.noise, d, 0.0))
 
 
-def uncorrected_step(law: RestLaw, h: float) -> RosenbrockStep:
+def make_uncorrected_step(law: RestLaw, h: float) -> RosenbrockStep:
     """Return the step by the linear law alone."""
     return RosenbrockStep(law, h, np.zeros(len(law.c)))
