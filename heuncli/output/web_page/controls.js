@@ -8,7 +8,8 @@ import { proposeSpeed, SPEEDS } from "./player.js";
 const TURN = 0.008; // rad a pixel
 const KEY_TURN = 0.1; // rad a key
 const KEY_SHIFT = 24; // pixels a key
-export const ZOOM = 1.15; // of one step
+const ZOOM = 1.15; // of one step
+/** By the key of an arrow: steps to the right, and down. */
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 const MAX_MARK_BUTTONS = 8;
 const SIZE_STEP = 1.2; // factor of the arrow length for one step of its slider
@@ -17,7 +18,7 @@ const SIZE_STEP = 1.2; // factor of the arrow length for one step of its slider
  * Let pointers on a canvas move the view.
  * @param {HTMLCanvasElement} canvas @param {View} view @param {() => void} redraw
  */
-export function listenToPointers(canvas, view, redraw) {
+function listenToPointers(canvas, view, redraw) {
   /** @type {Map<number, number[]>} fingers or the mouse, by their numbers */
   const held = new Map();
   const spread = () => {
@@ -61,10 +62,10 @@ export function listenToPointers(canvas, view, redraw) {
 }
 
 /** Move the view by a key; returns whether the key has a meaning. @param {KeyboardEvent} event */
-export function moveViewByKey(event, view) {
-  const way = ARROWS[event.key];
-  if (way && event.shiftKey) view.move(KEY_SHIFT * way[0], KEY_SHIFT * way[1]);
-  else if (way) view.turn(KEY_TURN * way[0], -KEY_TURN * way[1]);
+function moveViewByKey(event, view) {
+  const [right, down] = ARROWS[event.key] ?? [0, 0];
+  if (event.key in ARROWS && event.shiftKey) view.move(KEY_SHIFT * right, KEY_SHIFT * down);
+  else if (event.key in ARROWS) view.turn(KEY_TURN * right, -KEY_TURN * down);
   else if (event.key === "+" || event.key === "=") view.magnify(ZOOM);
   else if (event.key === "-") view.magnify(1 / ZOOM);
   else if (event.key === "0") view.reset();

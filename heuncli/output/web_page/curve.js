@@ -2,7 +2,7 @@
  * controls that choose the curves. */
 
 import { listenToCheckBox } from "./controls.js";
-import { formatNumber, formatShort, roundBelow } from "./digits.js";
+import { formatShort, formatWithUnit, roundBelow } from "./digits.js";
 import { fillSelect, findElement, makeElement } from "./elements.js";
 import { findPeakFrame } from "./histories.js";
 import { clearCanvas, drawPolyline, drawRing } from "./strokes.js";
@@ -137,7 +137,7 @@ function drawPeak(pen, panel, history, highest, colour, colours, labels, rank) {
   const value = (highest ? history.high : history.low)[k];
   const [x, y] = [panel.x(panel.values[k]), panel.y(value)];
   drawRing(pen, x, y, 3, colours.panel, colour, 1.5);
-  const text = `${formatNumber(value, history.style)} ${history.unit === "1" ? "" : history.unit}`.trim();
+  const text = formatWithUnit(value, history.style, history.unit);
   labels.add(`peak ${history.path} ${highest}`, text, x, y, colours.ink, rank, 7);
 }
 
@@ -150,7 +150,7 @@ function drawEnvelope(pen, panel, envelope, { style, unit, path }, colours, labe
   for (const [end, rank] of [[envelope.greatest, 8], [envelope.least, 7.5]]) {
     const [x, y] = [panel.x(end.x), panel.y(end.value)];
     drawRing(pen, x, y, 3, colours.panel, colours.ink, 1.5);
-    const value = `${formatNumber(end.value, style)} ${unit === "1" ? "" : unit}`.trim();
+    const value = formatWithUnit(end.value, style, unit);
     labels.add(`envelope ${path} ${rank}`, `${value}, ${envelope.names[end.run]}`, x, y, colours.ink, rank, 7);
   }
 }

@@ -23,6 +23,16 @@ function useMinusSign(text) {
   return text.startsWith("-") ? `−${text.slice(1)}` : text;
 }
 
+/** Format a unit to stand after a number; a plain number has none. @param {string} unit */
+export function formatUnit(unit) {
+  return unit === "1" ? "" : unit;
+}
+
+/** Format a number with its unit. @param {number} value in that unit @param {Style} style @param {string} unit */
+export function formatWithUnit(value, style, unit) {
+  return `${formatNumber(value, style)} ${formatUnit(unit)}`.trim();
+}
+
 /** Format a number with all digits that the page holds. @param {number} value @returns {string} */
 export function formatAllDigits(value) {
   return useMinusSign(String(Number(value.toPrecision(MAX_DIGITS))));

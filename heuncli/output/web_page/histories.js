@@ -118,8 +118,8 @@ function makeCaseCurve(data, run, path, label, size) {
 /** Extend one side of the envelope by a curve, which is linear between its instants and ends with them. */
 function extendEnvelope(curve, grid, found, values, isBeyond) {
   const { x } = curve;
-  const way = x[x.length - 1] < x[0] ? -1 : 1;
-  const at = (k) => (way > 0 ? k : x.length - 1 - k);
+  const isRising = x[x.length - 1] >= x[0];
+  const at = (k) => (isRising ? k : x.length - 1 - k);
   let k = 0;
   for (let i = 0; i < grid.length; i += 1) {
     while (k + 1 < x.length && x[at(k + 1)] <= grid[i]) k += 1;

@@ -1,7 +1,7 @@
 /** @file Draws a section load on the moving body: a diagram across the bar, or an arrow at a single cut. */
 
 import { rememberByObject } from "./data.js";
-import { formatNumber, formatShort, roundBelow } from "./digits.js";
+import { formatShort, formatUnit, formatWithUnit, roundBelow } from "./digits.js";
 import { add, locatePoint, rotateDirection, scale } from "./poses.js";
 import { drawArrow, drawPolyline, drawRing } from "./strokes.js";
 
@@ -94,7 +94,7 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres, la
 
 /** Format a load with its label, number and unit. */
 function formatLoad(load, value) {
-  return `${load.label} ${formatNumber(value * load.size, load.style)} ${load.unit === "1" ? "" : load.unit}`.trim();
+  return `${load.label} ${formatWithUnit(value * load.size, load.style, load.unit)}`;
 }
 
 /** Mark the largest value of a frame with its number. */
@@ -149,7 +149,6 @@ export function drawLoadScale(pen, view, { force: load, size }, colours, line, l
   const begin = x - amount * pixels;
   drawPolyline(pen, [[begin, y], [x, y]], colours.positive, 2.2);
   for (const end of [begin, x]) drawPolyline(pen, [[end, y - 4], [end, y + 4]], colours.positive, 1.5);
-  const unit = load.unit === "1" ? "" : ` ${load.unit}`;
-  const text = `${load.label} ${formatShort(amount)}${unit} =`;
+  const text = `${load.label} ${formatShort(amount)} ${formatUnit(load.unit)}`.trimEnd() + " =";
   labels.addFixed("scale of the section", text, begin - 8, y, colours.positive, 10, "right");
 }

@@ -3,7 +3,7 @@
 import { listenToDrawing, listenToSections, listenToTime, listenToView } from "./controls.js";
 import { drawCurve, listenToCurve, listenToEnvelope } from "./curve.js";
 import { prepareCase } from "./data.js";
-import { formatInstant, formatNumber, formatShort } from "./digits.js";
+import { formatInstant, formatNumber, formatShort, formatWithUnit } from "./digits.js";
 import { findElement, makeElement } from "./elements.js";
 import { computeEnvelope } from "./histories.js";
 import { LabelList } from "./labels.js";
@@ -113,7 +113,7 @@ function showGoverning(envelope, history, goTo) {
   bar.hidden = !envelope;
   const ends = envelope ? { greatest: envelope.greatest, least: envelope.least } : {};
   const buttons = Object.entries(ends).map(([word, end]) => {
-    const value = `${formatNumber(end.value, history.style)} ${history.unit === "1" ? "" : history.unit}`.trim();
+    const value = formatWithUnit(end.value, history.style, history.unit);
     const button = makeElement("button", `${word} ${value}: ${envelope.names[end.run]}`, { type: "button" });
     button.addEventListener("click", () => goTo(end.run, end.frame));
     return button;

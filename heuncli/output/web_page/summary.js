@@ -1,7 +1,7 @@
 /** @file The summary table: the greatest loads of the run, when they occur, and their values at the shown frame. */
 
 import { listArrowChoices, readVector } from "./arrows.js";
-import { formatAllDigits, formatInstant, formatNumber } from "./digits.js";
+import { formatAllDigits, formatInstant, formatNumber, formatUnit } from "./digits.js";
 import { makeElement } from "./elements.js";
 import { norm } from "./poses.js";
 
@@ -103,7 +103,7 @@ export class SummaryTable {
       line.append(makeElement("th", caption, { scope: "row" }));
       const all = Number.isFinite(value) ? `${formatAllDigits(value * row.size)} ${row.unit}` : "";
       line.append(makeElement("td", formatNumber(value * row.size, row.style), { title: all }));
-      line.append(makeElement("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
+      line.append(makeElement("td", formatUnit(row.unit), { class: "unit" }));
       if (isMoving) {
         const turn = crank ? `${Math.round(crank.values[frame])}°` : "";
         const when = `${formatInstant(data.time[frame], span, 3)} s`;
