@@ -65,7 +65,7 @@ def test_a_picture_is_what_its_command_draws(picture: str, tmp_path: Path, monke
     ("old", "new"),
     [
         (" 113.5 kN<", " 113.7 kN<"),
-        ('x="101.63"', 'x="101.73"'),
+        ('x="102.31"', 'x="102.41"'),
         (">elbow ", ">knee "),
         ("</svg>", '<line x1="0"/></svg>'),
     ],

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from heuncli.output.drawing.canvas import TerminalStyle
-from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace, VerticalMark
+from heuncli.output.drawing.figure import Arrow, Figure, Panel, PlaceLabel, Scaling, Spot, Trace, VerticalMark
 from heuncli.output.drawing.labels import WordBox, estimate_width
 from heuncli.output.drawing.layout import lay_out
 from heuncli.output.drawing.letters import draw_text
-from heuncli.output.drawing.shapes import Mark, Text
+from heuncli.output.drawing.shapes import Area, Mark, Text
 from heuncli.output.drawing.style import BASE_FACTOR, HEIGHT_FACTOR, LEFT, RIGHT, SMALL_SIZE, WIDTH
 
 NARROW = WordBox(LEFT, 0.0, WIDTH - RIGHT, 400.0)
@@ -79,6 +79,18 @@ def test_two_marks_at_one_place_have_their_words_apart() -> None:
     texts = [shape for shape in lay_out(Figure("", [], [panel])).shapes if isinstance(shape, Text) and shape.has_halo]
     assert {text.text for text in texts} == {"127.96 at 0 s", "128.01 at 0 s"}
     assert not box(texts[0]).overlaps(box(texts[1]))
+
+
+@pytest.mark.parametrize("x", np.linspace(-0.1, 0.1, 9))
+@pytest.mark.parametrize("down", [1.0, -1.0])
+def test_labels_hide_no_head_of_an_arrow(x: float, down: float) -> None:
+    arrow = Arrow(x, 0.6 * down, 0.0, -0.55 * down, 0, description="load")  # its head reaches where words would stand
+    items = (arrow, PlaceLabel(0.0, 0.0, "place"))
+    panel = Panel(Scaling("x [m]", -1.0, 1.0), Scaling("y [m]", -1.0, 1.0), items)
+    shapes = lay_out(Figure("", [], [panel])).shapes
+    (word,) = [box(shape) for shape in shapes if isinstance(shape, Text) and shape.text == "place"]
+    (head,) = [shape.points for shape in shapes if isinstance(shape, Area)]
+    assert not word.overlaps(WordBox(*np.min(head, axis=0), *np.max(head, axis=0)))
 
 
 @pytest.mark.parametrize("braille", [True, False])

@@ -148,7 +148,7 @@ def test_the_envelope_holds_every_curve_and_reaches_no_farther() -> None:
         histories: [{ path: "p", make: () => ({ path: "p", size, low: values, high: values }) }],
       }));
       const own = histories_js.computeHistory(runs[0].histories[0]);
-      const { values, low, high, greatest, least } = envelope_js.computeEnvelope(runs, own, { label: "angle" });
+      const { values, low, high, greatest, least } = histories_js.computeEnvelope(runs, own, { label: "angle" });
       return [[...values], [...low], [...high], [greatest.run, greatest.value, least.run, least.value]];
     """
     random = np.random.default_rng(11)
@@ -196,7 +196,7 @@ def test_a_section_load_that_is_open_is_shown_as_open() -> None:
 def test_an_unbounded_value_leaves_the_other_arrows_their_length() -> None:
     code = """
       const parts = [[1, Infinity, NaN, -4], [0, 0, 0, 3], [0, 0, 0, 0]].map((values) => ({ values }));
-      return [arrow_choices_js.getLargest({ parts }), arrow_choices_js.getLargest({ parts: parts.slice(0, 1) })];
+      return [arrows_js.findLargest({ parts }), arrows_js.findLargest({ parts: parts.slice(0, 1) })];
     """
     assert run(code, None) == [5, 4]  # of a vector, and of a drive, which has one component
 
@@ -210,3 +210,23 @@ def test_the_ground_may_be_either_end_of_a_support(a: int, b: int) -> None:
 
 def test_every_kind_of_joint_has_a_symbol() -> None:
     assert set(run("return symbols_js.DRAWN_KINDS;", None)) == set(TYPES)
+
+
+def test_labels_avoid_arrows_while_there_is_room() -> None:
+    code = """
+      return given.map((arrows) => {
+        const placed = [];
+        const pen = { measureText: () => ({ width: 40 }), strokeText() {}, fillText: (_, x, y) => placed.push([x, y]) };
+        const labels = new labels_js.LabelList();
+        labels.begin(pen, 400, 300);
+        for (const [from, to] of arrows) labels.avoid(from, to);
+        labels.add("key", "words", 200, 150, "ink", 1);
+        labels.write("paper");
+        return placed;
+      });
+    """
+    across = [[[0, y], [400, y]] for y in range(0, 300, 4)]  # no place is free of them
+    free, beside, full = run(code, [[], [[[230, 0], [230, 200]]], across])
+    assert free == full == [[208.0, 142.0]]  # to the upper right of its point
+    ((x, _),) = beside
+    assert x + 40 <= 200  # to the left of it

@@ -33,7 +33,8 @@ MAX_LINES = 5  # maximum distance of words, in lines of text
 ROUNDING = 1e-6  # of a coordinate
 COST_PER_LINE = 7.0  # cost of a line of distance
 CURVE_COST = 3.0  # cost of a cell of a curve
-ARROW_COST = 9.0  # cost of a cell of an arrow, which words would cut in two
+ARROW_COST = 9.0  # cost of a cell of an arrow, which words would cut in two, or whose head they would hide
+ARROW_HEAD_CORNERS = 3
 N_SAMPLES = 25  # places along a line that may strike words
 Place = tuple[float, float]
 CELL_SIZE = 3.0  # pixels of a cell of the word field
@@ -225,6 +226,8 @@ def make_field(shapes: Sequence[Shape], area: WordBox) -> WordField:
         elif isinstance(shape, Area):
             if shape.opacity == style.BAR_OPACITY:
                 field.add_area(np.array(shape.points))
+            elif shape.name and len(shape.points) == ARROW_HEAD_CORNERS:
+                field.add_curve(np.array([*shape.points, shape.points[0]]), ARROW_COST)
         elif isinstance(shape, Mark):
             field.occupy(_make_mark_box(shape))
         elif isinstance(shape, Text):

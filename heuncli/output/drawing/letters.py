@@ -78,60 +78,69 @@ def _draw_legend(entries: Sequence[LegendEntry], style: TerminalStyle) -> list[s
 
 
 def _draw_panel(panel: Panel, style: TerminalStyle) -> tuple[list[str], list[str]]:
-    """Return a panel with its axes, and the words that found no room."""
-    max_columns = max(style.width - LABEL_WIDTH - 2, 10)
-    rows = max(MIN_ROWS, round(ROWS * panel.height / PANEL_HEIGHT))
-    columns = max_columns
-    if panel.has_equal_scales:
-        x_span, y_span = panel.x.high - panel.x.low, panel.y.high - panel.y.low
-        columns_per_unit = min(max_columns / x_span, ASPECT * rows / y_span)  # columns per unit
-        columns, rows = max(2, round(columns_per_unit * x_span)), max(2, round(columns_per_unit * y_span / ASPECT))
-    canvas = Canvas(columns, rows, panel.x, panel.y, style)
-    if not panel.is_bare and panel.y.low < 0.0 < panel.y.high and not panel.y.tick_texts:
-        canvas.draw_line(
-            0.0,
-            canvas.to_dot_y(0.0),
-            columns * canvas.per_x - 1.0,
-            canvas.to_dot_y(0.0),
-            NO_PEN,
-            ZERO_STRIDE * canvas.per_x,
-        )
-    hides_bands = any(isinstance(item, Trace) for item in panel.items)
-    for item in panel.items:
-        if hides_bands and isinstance(item, Band):
-            continue  # its edges could not be told from the curve
-        draw: Callable[[Any, Canvas], None] = DRAW_FUNCTIONS[type(item)]
-        draw(item, canvas)
-    omitted = _write_words(panel.items, canvas)
-    key, omitted_labels = _write_labels(
-        [item for item in panel.items if isinstance(item, PlaceLabel) and item.letter], canvas
-    )
-    omitted += omitted_labels
+    """Return the lines of a panel with its axes, legend and key, and the words that found no room."""
+    canvas = _make_canvas(panel, style)
+    _draw_items(panel, canvas)
+    omitted_words = _write_words(panel.items, canvas)
+    letter_labels = [item for item in panel.items if isinstance(item, PlaceLabel) and item.letter]
+    label_key, omitted_labels = _write_labels(letter_labels, canvas)
     if style.uses_letters and style.has_braille:
         _mark_curves(panel.items, canvas)
     heads = wrap_text(escape(_find_head(panel)), style.width, 0)
-    lines = [*(head for head in heads if head)]
-    lines += _draw_legend([(name, number, "") for name, number in panel.legend], style)
-    if panel.is_bare:
-        scale = columns / (panel.x.high - panel.x.low)
-        explained = format_key(panel.key, scale, style) if panel.key is not None else []
-        indent = "" if panel.has_equal_scales else " " * (LABEL_WIDTH + 2)  # as panels with axes on the same axis
-        drawn = [f"{indent}{line}".rstrip() for line in canvas.format_lines()]
-        return lines + drawn + explained + key, omitted
-    labels_above = {
-        round(canvas.to_dot_x(i.x)) // canvas.per_x: i.text
-        for i in panel.items
-        if isinstance(i, VerticalMark) and i.is_above
+    legend = _draw_legend([(name, number, "") for name, number in panel.legend], style)
+    lines = [*(head for head in heads if head), *legend]
+    lines += _frame_bare_canvas(panel, canvas) if panel.is_bare else _frame_canvas(panel, canvas)
+    return lines + label_key, omitted_words + omitted_labels
+
+
+def _make_canvas(panel: Panel, style: TerminalStyle) -> Canvas:
+    """Make the empty canvas of a panel, as wide as the terminal or, with equal scales, as both sides allow."""
+    columns = max(style.width - LABEL_WIDTH - 2, 10)
+    rows = max(MIN_ROWS, round(ROWS * panel.height / PANEL_HEIGHT))
+    if panel.has_equal_scales:
+        x_span, y_span = panel.x.high - panel.x.low, panel.y.high - panel.y.low
+        columns_per_unit = min(columns / x_span, ASPECT * rows / y_span)
+        columns, rows = max(2, round(columns_per_unit * x_span)), max(2, round(columns_per_unit * y_span / ASPECT))
+    return Canvas(columns, rows, panel.x, panel.y, style)
+
+
+def _draw_items(panel: Panel, canvas: Canvas) -> None:
+    """Draw the line of zero and the items of a panel; beside curves no bands, whose edges look like curves."""
+    if not panel.is_bare and panel.y.low < 0.0 < panel.y.high and not panel.y.tick_texts:
+        zero, width = canvas.to_dot_y(0.0), canvas.columns * canvas.per_x - 1.0
+        canvas.draw_line(0.0, zero, width, zero, NO_PEN, ZERO_STRIDE * canvas.per_x)
+    hides_bands = any(isinstance(item, Trace) for item in panel.items)
+    for item in panel.items:
+        if hides_bands and isinstance(item, Band):
+            continue
+        draw: Callable[[Any, Canvas], None] = DRAW_FUNCTIONS[type(item)]
+        draw(item, canvas)
+
+
+def _frame_bare_canvas(panel: Panel, canvas: Canvas) -> list[str]:
+    """Return the lines of a canvas without axes, with the key of its space below."""
+    scale = canvas.columns / (panel.x.high - panel.x.low)
+    key = format_key(panel.key, scale, canvas.style) if panel.key is not None else []
+    indent = "" if panel.has_equal_scales else " " * (LABEL_WIDTH + 2)  # as panels with axes on the same axis
+    return [*(f"{indent}{line}".rstrip() for line in canvas.format_lines()), *key]
+
+
+def _frame_canvas(panel: Panel, canvas: Canvas) -> list[str]:
+    """Return the lines of a canvas between its axes, with the words above it."""
+    words_above = {
+        round(canvas.to_dot_x(item.x)) // canvas.per_x: item.text
+        for item in panel.items
+        if isinstance(item, VerticalMark) and item.is_above
     }
-    lines += [_center_words(labels_above, canvas)] if labels_above else []
-    marks = {round(canvas.to_dot_y(v)) // canvas.per_y: text for v, text in choose_ticks(panel.y, max(2, rows // 3))}
-    for row, text in enumerate(canvas.format_lines()):
-        lines.append(
-            f"{escape(marks.get(row, ''))[:LABEL_WIDTH]:>{LABEL_WIDTH}} │{text}"
-            if style.has_braille
-            else f"{escape(marks.get(row, ''))[:LABEL_WIDTH]:>{LABEL_WIDTH}} |{text}"
-        )
-    return lines + _draw_x_axis(panel, canvas) + key, omitted
+    ticks = choose_ticks(panel.y, max(2, canvas.rows // 3))
+    tick_texts = {round(canvas.to_dot_y(value)) // canvas.per_y: text for value, text in ticks}
+    bar = "│" if canvas.style.has_braille else "|"
+    rows = [
+        f"{escape(tick_texts.get(row, ''))[:LABEL_WIDTH]:>{LABEL_WIDTH}} {bar}{text}"
+        for row, text in enumerate(canvas.format_lines())
+    ]
+    above = [_center_words(words_above, canvas)] if words_above else []
+    return [*above, *rows, *_draw_x_axis(panel, canvas)]
 
 
 def _write_words(items: Sequence[Item], canvas: Canvas) -> list[str]:

@@ -155,20 +155,20 @@ def _draw_marks(group: Sequence[TipCurve], per_si: float, mark_space: float, lab
 
 def thin_marks(spots: Sequence[Spot], mark_space: float, label_space: float) -> list[Spot]:
     """Drop marks and labels that are too close to others of a curve; labelled marks first, and all firings stay."""
-    kept: list[Spot] = []
+    shown: list[Spot] = []
     for spot in sorted(spots, key=lambda spot: (not spot.is_filled, not spot.text)):
-        distances = [math.hypot(spot.x - other.x, spot.y - other.y) for other in kept]
-        near = [other for other, distance in zip(kept, distances, strict=True) if distance < label_space]
+        distances = [math.hypot(spot.x - other.x, spot.y - other.y) for other in shown]
+        near = [other for other, distance in zip(shown, distances, strict=True) if distance < label_space]
         same = next((k for k, distance in enumerate(distances) if distance < SAME_PLACE * label_space), None)
         if spot.is_filled:
-            kept.append(spot)
-        elif same is not None and spot.text and kept[same].text and not kept[same].is_filled:
-            if ", " not in kept[same].text:  # the ends of a cycle; a vector that rests has only two of its instants
-                kept[same] = kept[same]._replace(text=f"{kept[same].text}, {spot.text}")
+            shown.append(spot)
+        elif same is not None and spot.text and shown[same].text and not shown[same].is_filled:
+            if ", " not in shown[same].text:  # the ends of a cycle; a vector that rests has only two of its instants
+                shown[same] = shown[same]._replace(text=f"{shown[same].text}, {spot.text}")
         elif min(distances, default=math.inf) >= mark_space:
             is_labelled = not any(other.text and not other.is_filled for other in near)
-            kept.append(spot if is_labelled else spot._replace(text=""))
-    return kept
+            shown.append(spot if is_labelled else spot._replace(text=""))
+    return shown
 
 
 def _break_at_jumps(times: Array, x: Array, y: Array, width: float) -> tuple[Array, Array]:

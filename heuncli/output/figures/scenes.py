@@ -131,21 +131,12 @@ def make_machine_figure(
     has_point_names: whether the paths have labels
     """
     first = _draw_first_instant(posed_machine, loads.names)
-    later = [
-        item for k in range(len(posed_machine.poses.times) - 1, 0, -1) for item in _draw_later_instant(posed_machine, k)
-    ]
-    strands = [line.ends.reshape(-1, 2) for line in machine_items.draw_ropes(posed_machine, 0)]
-    machine_window = choose_window(
-        posed_machine,
-        [
-            *(project_path(posed_machine, point_path) for point_path in point_paths),
-            *strands,
-            *machine_items.iter_mark_places(posed_machine),
-        ],
-    )
-    view, per_si, side = posed_machine.view, posed_machine.per_si, machine_window.side
+    n_instants = len(posed_machine.poses.times)
+    later = [item for k in range(n_instants - 1, 0, -1) for item in _draw_later_instant(posed_machine, k)]
+    machine_window = _choose_machine_window(posed_machine, point_paths)
+    per_si, side = posed_machine.per_si, machine_window.side
     loads = loads.drop_slight_moments(side / per_si)
-    drawing = scale_loads(loads, view, per_si, side)
+    drawing = scale_loads(loads, posed_machine.view, per_si, side)
     load_items = list(draw_loads(drawing, machine_window))
     arrows = [item for item in load_items if isinstance(item, Arrow)]
     window = machine_window.extend_to_arrows(arrows)
@@ -165,16 +156,32 @@ def make_machine_figure(
         *place_labels,
         *label_instants(posed_machine),
     ]
-    unit, (x_name, y_name) = units.find("m")[0], view.format_axes()
-    x_axis, y_axis = (
-        Scaling(f"{axis} [{unit}]", low, high)
-        for axis, low, high in zip((x_name, y_name), window.low.tolist(), window.high.tolist(), strict=True)
-    )
     key = _make_key(posed_machine, window, units, [*iter_key_arrows(drawing, arrows, units)], numbers)
-    panel = Panel(x_axis, y_axis, tuple(items), HEIGHT, True, True, name, True, key)
+    panel = _make_space_panel(posed_machine, window, units, items, name)._replace(key=key)
     notes = [*window.notes, *_make_notes(posed_machine, loads)]
     words = [describe_instants(posed_machine, None, units)]
     return Figure(posed_machine.spec.title, words, [panel], (), ["; ".join(notes)] if notes else [])
+
+
+def _choose_machine_window(posed_machine: PosedMachine, point_paths: Sequence[PointPath]) -> Window:
+    """Choose the window that shows the machine, its ropes and marks, and the paths of points."""
+    paths = [project_path(posed_machine, point_path) for point_path in point_paths]
+    ropes = [line.ends.reshape(-1, 2) for line in machine_items.draw_ropes(posed_machine, 0)]
+    return choose_window(posed_machine, [*paths, *ropes, *machine_items.iter_mark_places(posed_machine)])
+
+
+def _make_space_panel(
+    posed_machine: PosedMachine, window: Window, units: Units, items: Sequence[Item], title: str
+) -> Panel:
+    """Make a panel with equal scales of both directions of the view, and without axes."""
+    unit = units.find("m")[0]
+    x, y = (
+        Scaling(f"{axis} [{unit}]", low, high)
+        for axis, low, high in zip(
+            posed_machine.view.format_axes(), window.low.tolist(), window.high.tolist(), strict=True
+        )
+    )
+    return Panel(x, y, tuple(items), HEIGHT, has_equal_scales=True, is_bare=True, title=title, is_layered=True)
 
 
 def _draw_first_instant(posed_machine: PosedMachine, drawn_names: Collection[str]) -> list[Item]:

@@ -130,7 +130,7 @@ def compute_span_ends(rope: RopeGeometry, poses: Poses) -> Array:
 
 
 def _compute_ends(span: SpanGeometry, poses: Poses) -> Array:
-    """Compute the two ends of a span, (n, 2, 3)."""
+    """Compute the two ends of a span, (n, 2, 3); on sheaves, where the common tangent touches them (formulas above)."""
     P, Q = poses.trace_point(span.a, span.p), poses.trace_point(span.b, span.q)
     if span.axis is None:
         return np.stack([P, Q], axis=1)

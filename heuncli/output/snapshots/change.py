@@ -8,7 +8,9 @@ from collections.abc import Iterator, Sequence
 from heuncli.base import tolerances
 from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import append_unit
-from heuncli.output.snapshots.golden_file import N_EVEN, NumberSnapshot, RunSnapshot, Value
+from heuncli.output.snapshots.golden_file import NumberSnapshot, RunSnapshot, Value
+
+SAME_INSTANTS = 1e-6  # share of the run: closer even instants of two runs are the same
 
 
 class Change(NamedTuple):
@@ -84,10 +86,6 @@ def describe_failure(change: Change) -> str:
         return change.reason
     more = f"; {change.n_similar} more values changed" if change.n_similar else ""
     return f"changed by {format_difference(change)}, allowed {change.tolerance or 0.0:.3g}{more}"
-
-
-N_TENTHS = N_EVEN - 1
-SAME_INSTANTS = 1e-6  # as a share of the run
 
 
 def find_course_changes(

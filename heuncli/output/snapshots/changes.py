@@ -212,9 +212,9 @@ def _name_absence(old: object, new: object) -> str:
 
 
 def _make_absence_change(path: str, old: object) -> Change:
-    return Change(
-        path, MISSING if old is not None else EXTRA, "", None, None, reason=_name_absence(old, None if old else 1)
-    )
+    """Make the change of what only one run has; old: None if it is the new one."""
+    word = EXTRA if old is None else MISSING
+    return Change(path, word, "", None, None, reason=word)
 
 
 def _compare_sums(

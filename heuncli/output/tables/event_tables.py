@@ -249,9 +249,9 @@ def make_series_share_tables(
     """Make the tables of what each cause contributes to the impulses along a series of cuts, if that is requested."""
     if SHARES not in view.sections[series.name]:
         return []
-    from heuncli.output.tables import series_cause_tables
+    from heuncli.output.tables.page_cause_tables import make_series_instants_tables  # few runs need it
 
-    return series_cause_tables.make_series_instants_tables(series, view, horizon, stated_errors)
+    return make_series_instants_tables(series, view, horizon, stated_errors)
 
 
 def make_impact_results(results: Results, impulse: Block) -> Results:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,7 +31,7 @@ from heuncli.output.tables.run_description import add_pins_note
 from heuncli.output.tables.table_blocks import TableBlock, build_block
 from heuncli.output.tables.table_plans import PLANS
 from heuncli.results.path_words import find_quantity
-from heuncli.results.results import Array, CutPosition, DeterminateSum, Extremes, Magnitudes, Results
+from heuncli.results.results import Array, DeterminateSum, Extremes, Magnitudes, Results
 from heuncli.results.results_schema import REPORT_OF, REPORTS, RESULTANTS, SHARES
 from heuncli.study.compose.warnings import has_smoothed_friction, make_partial_note
 from heuncli.study.model.selection import EntryKeys, Selection
@@ -43,6 +43,9 @@ from heuncli.study.quantities.labels import Labels
 from heuncli.study.queries.study import Study, find_partial_friction
 from heuncli.study.search.columns import ChannelSearch
 
+if TYPE_CHECKING:
+    from heuncli.output.tables.page_cause_tables import ShareSource
+
 TABLE_DEFAULT = frozenset(REPORTS) - {"motion", "points"}
 EXPORT_DEFAULT = frozenset(REPORTS) - {"points"}
 NO_EXTREMES: Mapping[str, Extremes] = MappingProxyType({})
@@ -50,16 +53,6 @@ AXIS: EntryKeys = ("foundation", "axis")
 SERIES_EXTREMES_SUFFIX = " (some of the extremes along series of cuts)"
 AXIS_NOTE = "the central axis has no extremes: show it at given times with --at or --all"
 SECTIONS = frozenset({"sections"})
-
-
-class ShareSource(Protocol):
-    """Solves a run's loads by cause at any instants."""
-
-    def compute_shares(self, times: Array) -> Results:
-        """Return the results with shares at instants (n,), in ascending order."""
-
-    def compute_shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
-        """Return the results with shares at instants (n,), with a series of cuts that is cut only at these places."""
 
 
 class Page(NamedTuple):
@@ -113,40 +106,20 @@ class Page(NamedTuple):
         for series in collect_cut_series(self.results, self.labels):
             cuts = self.cut_extremes.get(series.name)
             tables += cut_tables.make_extremes_tables(series, times, search_result, self.stated_errors, cuts)
-        share_tables = self._make_share_tables(search_result, shares) if shares is not None else []
+        share_tables = self._make_extremes_share_tables(search_result, shares) if shares is not None else []
         return [*tables, *share_tables, *self._make_closing_tables()]
 
-    def _make_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[OutputTable]:
+    def _make_extremes_share_tables(self, search_result: Extremes, shares: ShareSource) -> list[OutputTable]:
         """Make the tables of what each cause contributes to the extremes."""
-        from heuncli.output.tables import cause_tables  # few runs ask for them
+        from heuncli.output.tables.page_cause_tables import PageContents, make_page_extremes_tables
 
-        blocks = self.make_blocks(self.results, only_searched=True)
-        found = search_result.find([path for block in blocks for path in block.paths])
-        instants = np.unique(np.concatenate([found.low_at, found.high_at]))
-        numbers = self._collect_shares(shares.compute_shares(instants)) if len(instants) else {}
-        span, tables = float(np.ptp(self.results.time)), list[OutputTable]()
-        for block in blocks:
-            tables += cause_tables.make_extremes_tables(block, numbers, instants, found, self.stated_errors, span)
-        for series in collect_cut_series(self.results, self.labels):
-            tables += self._make_series_share_tables(series, search_result, shares)
-        return tables
-
-    def _collect_shares(self, results: Results) -> Mapping[str, Any]:
-        """Collect the loads by cause of all channels, by path."""
-        from heuncli.output.tables import cause_tables
-
-        return cause_tables.collect_shares(iter_channels(results, self.labels), results)
-
-    def _make_series_share_tables(
-        self, series: CutSeries, search_result: Extremes, shares: ShareSource
-    ) -> list[OutputTable]:
-        """Make the tables of what each cause contributes to the extremes along a series of cuts."""
-        from heuncli.output.tables import series_cause_tables
-
-        found = search_result.find([load.path for load in series.loads])
-        instants = np.unique(np.concatenate([found.low_at, found.high_at]))
-        results = shares.compute_shares_along(series.name, instants, [place for both in found.places for place in both])
-        return series_cause_tables.make_series_extremes_tables(series, results, found, self.stated_errors)
+        contents = PageContents(
+            self.make_blocks(self.results, only_searched=True),
+            collect_cut_series(self.results, self.labels),
+            self.labels,
+            self.stated_errors,
+        )
+        return make_page_extremes_tables(contents, search_result, shares, float(np.ptp(self.results.time)))
 
     def make_tables_at_instants(
         self,
@@ -185,17 +158,21 @@ class Page(NamedTuple):
         self, results: Results, stated_errors: StatedErrors, search_result: Extremes | None, shares: ShareSource
     ) -> list[OutputTable]:
         """Make the tables of what each cause contributes at the given instants."""
-        from heuncli.output.tables import cause_tables, series_cause_tables  # few runs ask for them
+        from heuncli.output.tables.page_cause_tables import (
+            PageContents,
+            find_series_extremes_tables,
+            make_page_instants_tables,
+            make_series_instants_tables,
+        )
 
-        horizon = self.results.horizon
-        numbers, tables = self._collect_shares(results), list[OutputTable]()
-        for block in self.make_blocks(results):
-            tables += cause_tables.make_instants_tables(block, numbers, results.time, horizon, stated_errors)
-        for series in collect_cut_series(results, self.labels):
+        horizon, all_series = self.results.horizon, collect_cut_series(results, self.labels)
+        contents = PageContents(self.make_blocks(results), all_series, self.labels, self.stated_errors)
+        tables = make_page_instants_tables(contents, results, horizon, stated_errors)
+        for series in all_series:
             if search_result is not None:
-                tables += self._make_series_share_tables(series, search_result, shares)
+                tables += find_series_extremes_tables(series, self.stated_errors, search_result, shares)
             else:
-                tables += series_cause_tables.make_series_instants_tables(series, results, horizon, stated_errors)
+                tables += make_series_instants_tables(series, results, horizon, stated_errors)
         return tables
 
     def _find_last_values(self) -> dict[str, float]:

@@ -1,9 +1,77 @@
-/** @file The controls of the machine's picture: view, time, what is drawn, sections. Each changes the selection. */
+/** @file The controls of the machine's picture: view, time, what is drawn, sections. Each changes the view, the player
+ * or the selection, and asks for a new picture. */
 
 import { formatInstant } from "./digits.js";
-import { findElement, fillSelect, makeElement } from "./elements.js";
-import { ZOOM, listenToPointers, moveViewByKey } from "./pointing.js";
-import { SPEEDS, proposeSpeed } from "./player.js";
+import { fillSelect, findElement, makeElement } from "./elements.js";
+import { proposeSpeed, SPEEDS } from "./player.js";
+
+const TURN = 0.008; // rad a pixel
+const KEY_TURN = 0.1; // rad a key
+const KEY_SHIFT = 24; // pixels a key
+const ZOOM = 1.15; // of one step
+/** By the key of an arrow: steps to the right, and down. */
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const MAX_MARK_BUTTONS = 8;
+const SIZE_STEP = 1.2; // factor of the arrow length for one step of its slider
+
+/**
+ * Let pointers on a canvas move the view.
+ * @param {HTMLCanvasElement} canvas @param {View} view @param {() => void} redraw
+ */
+function listenToPointers(canvas, view, redraw) {
+  /** @type {Map<number, number[]>} fingers or the mouse, by their numbers */
+  const held = new Map();
+  const spread = () => {
+    const [a, b] = [...held.values()];
+    return { apart: Math.hypot(a[0] - b[0], a[1] - b[1]) || 1, x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2 };
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    held.set(event.pointerId, [event.offsetX, event.offsetY]);
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const last = held.get(event.pointerId);
+    if (!last) return;
+    const before = held.size === 2 ? spread() : null;
+    held.set(event.pointerId, [event.offsetX, event.offsetY]);
+    const [dx, dy] = [event.offsetX - last[0], event.offsetY - last[1]];
+    if (before) {
+      const after = spread();
+      view.magnify(after.apart / before.apart, after.x, after.y);
+      view.move(after.x - before.x, after.y - before.y);
+    } else if (event.shiftKey || event.buttons > 1) {
+      view.move(dx, dy);
+    } else {
+      view.turn(-TURN * dx, TURN * dy);
+    }
+    redraw();
+  });
+  for (const name of ["pointerup", "pointercancel"]) {
+    canvas.addEventListener(name, (event) => held.delete(event.pointerId));
+  }
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      view.magnify(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), event.offsetX, event.offsetY);
+      redraw();
+    },
+    { passive: false },
+  );
+}
+
+/** Move the view by a key; returns whether the key has a meaning. @param {KeyboardEvent} event */
+function moveViewByKey(event, view) {
+  const [right, down] = ARROWS[event.key] ?? [0, 0];
+  if (event.key in ARROWS && event.shiftKey) view.move(KEY_SHIFT * right, KEY_SHIFT * down);
+  else if (event.key in ARROWS) view.turn(KEY_TURN * right, -KEY_TURN * down);
+  else if (event.key === "+" || event.key === "=") view.magnify(ZOOM);
+  else if (event.key === "-") view.magnify(1 / ZOOM);
+  else if (event.key === "0") view.reset();
+  else return false;
+  return true;
+}
 
 /** How opaque bodies are drawn, and the word for it. */
 const OPACITIES = [
@@ -11,8 +79,6 @@ const OPACITIES = [
   [0.35, "transparent"],
   [0, "wireframe"],
 ];
-const MAX_MARK_BUTTONS = 8;
-const SIZE_STEP = 1.2; // factor of the arrow length for one step of its slider
 
 /** Whether the focused control uses a key itself, so that the page must leave it alone. @param {KeyboardEvent} event */
 function isUsedByControl(event) {

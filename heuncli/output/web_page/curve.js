@@ -1,7 +1,10 @@
-/** @file Draws curves over time or an angle: axes, events, extremes, and a cursor at the frame that is shown. */
+/** @file Draws curves over time or an angle: axes, events, extremes, and a cursor at the frame that is shown; and the
+ * controls that choose the curves. */
 
+import { listenToCheckBox } from "./controls.js";
+import { formatShort, formatWithUnit, roundBelow } from "./digits.js";
+import { fillSelect, findElement, makeElement } from "./elements.js";
 import { findPeakFrame } from "./histories.js";
-import { roundBelow, formatShort, formatNumber } from "./digits.js";
 import { clearCanvas, drawPolyline, drawRing } from "./strokes.js";
 
 const MARGIN = { left: 66, right: 14, top: 24, bottom: 46 };
@@ -134,7 +137,7 @@ function drawPeak(pen, panel, history, highest, colour, colours, labels, rank) {
   const value = (highest ? history.high : history.low)[k];
   const [x, y] = [panel.x(panel.values[k]), panel.y(value)];
   drawRing(pen, x, y, 3, colours.panel, colour, 1.5);
-  const text = `${formatNumber(value, history.style)} ${history.unit === "1" ? "" : history.unit}`.trim();
+  const text = formatWithUnit(value, history.style, history.unit);
   labels.add(`peak ${history.path} ${highest}`, text, x, y, colours.ink, rank, 7);
 }
 
@@ -147,18 +150,18 @@ function drawEnvelope(pen, panel, envelope, { style, unit, path }, colours, labe
   for (const [end, rank] of [[envelope.greatest, 8], [envelope.least, 7.5]]) {
     const [x, y] = [panel.x(end.x), panel.y(end.value)];
     drawRing(pen, x, y, 3, colours.panel, colours.ink, 1.5);
-    const value = `${formatNumber(end.value, style)} ${unit === "1" ? "" : unit}`.trim();
+    const value = formatWithUnit(end.value, style, unit);
     labels.add(`envelope ${path} ${rank}`, `${value}, ${envelope.names[end.run]}`, x, y, colours.ink, rank, 7);
   }
 }
 
 /**
  * Draw the curves and return their plot area.
- * @param {HTMLCanvasElement} canvas @param {import("./data.js").CaseData} data
- * @param {import("./histories.js").TimeHistory[]} histories of one unit
+ * @param {HTMLCanvasElement} canvas @param {CaseData} data
+ * @param {TimeHistory[]} histories of one unit
  * @param {{label: string, values: Float64Array}} axis
- * @param {import("./envelope.js").Envelope & {names: string[]}|null} envelope of the first curve @param {number} frame
- * @param {import("./labels.js").LabelList} labels @returns {Panel}
+ * @param {Envelope & {names: string[]}|null} envelope of the first curve @param {number} frame
+ * @param {LabelList} labels @returns {Panel}
  */
 export function drawCurve(canvas, data, histories, axis, envelope, frame, colours, labels) {
   const { pen, width, height } = clearCanvas(canvas);
@@ -194,4 +197,72 @@ export function drawCurve(canvas, data, histories, axis, envelope, frame, colour
   }
   labels.write(colours.panel);
   return panel;
+}
+
+/**
+ * Let the user choose curves; a click into the plot goes to the frame there.
+ * @param {() => Panel|null} panel
+ */
+export function listenToCurve(selection, player, redraw, panel) {
+  const select = findElement("path");
+  fillSelect(select, selection.histories.map((history) => [history.path, history.label]));
+  const showAddable = () => {
+    const addable = selection.addableHistories.map((history) => [history.path, history.label]);
+    fillSelect(findElement("more"), [["", "…"], ...addable]);
+    findElement("more").disabled = !addable.length || selection.curves.length >= PENS.length;
+    const chips = selection.curves.slice(1).map((path, k) => {
+      const { label } = selection.histories.find((history) => history.path === path);
+      const chip = makeElement("button", `${label} ×`, { type: "button", class: "chip" });
+      chip.style.borderLeftColor = `var(--${PENS[(k + 1) % PENS.length][0]})`;
+      chip.addEventListener("click", () => {
+        selection.curves = selection.curves.filter((other) => other !== path);
+        showAddable();
+      });
+      return chip;
+    });
+    findElement("added").replaceChildren(...chips);
+    redraw();
+  };
+  const showFirst = () => {
+    if (selection.curves.length) select.value = selection.curves[0];
+    showAddable();
+  };
+  const show = (path) => {
+    selection.showHistory(path);
+    showFirst();
+  };
+  select.addEventListener("change", () => show(select.value));
+  findElement("more").addEventListener("change", () => {
+    if (findElement("more").value) selection.curves.push(findElement("more").value);
+    showAddable();
+  });
+  fillSelect(findElement("across"), selection.axes.map((axis, k) => [String(k), axis.label]));
+  findElement("across").value = String(selection.axes.indexOf(selection.axis));
+  findElement("acrosslabel").hidden = selection.axes.length < 2;
+  findElement("across").addEventListener("change", () => {
+    selection.axis = selection.axes[Number(findElement("across").value)];
+    redraw();
+  });
+  const goToPeak = (highest) => () => player.halt(Math.max(0, findPeakFrame(selection.shownHistories[0], highest)));
+  findElement("lowest").addEventListener("click", goToPeak(false));
+  findElement("highest").addEventListener("click", goToPeak(true));
+  const canvas = findElement("curve");
+  const goToPointer = (event) => {
+    if (event.buttons && panel()) player.halt(panel().findFrame(event.offsetX));
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    goToPointer(event);
+  });
+  canvas.addEventListener("pointermove", goToPointer);
+  if (!selection.curves.length) selection.showHistory(selection.findLargestHistory());
+  showFirst();
+  if (!selection.histories.length) findElement("over").hidden = true;
+  return show;
+}
+
+/** Let the user show the envelope of all load cases. @param {boolean} hasCases whether there are several */
+export function listenToEnvelope(selection, redraw, hasCases) {
+  findElement("bandlabel").hidden = !hasCases;
+  listenToCheckBox("band", selection, "hasEnvelope", redraw);
 }

@@ -1,69 +1,6 @@
 /** @file Decodes the data of the page once: inflates them and unpacks their columns. Numbers are SI; NaN stands
  * for open. */
 
-/**
- * @typedef {object} CaseData One load case, as moving_page.py writes it. Packed columns are numbers of all frames.
- * @property {string} title @property {string} case its name, "" for the spec itself @property {string} version of heun
- * @property {[string, string][]} about label and text of the lines at the foot @property {string} file of the spec
- * @property {string[]} notes on the run @property {number} alerts how many of them are warnings
- * @property {number} count of frames @property {Float64Array} time of each [s] @property {number|null} horizon [s]
- * @property {number} worst the frame of the greatest load
- * @property {{frame: number, time: number, words: string}[]} marks impacts and events
- * @property {[string, number]} length the unit of lengths, and how many of it a metre has
- * @property {Scene} scene what is drawn
- * @property {ActingLoad[]} acting forces and moments on bodies
- * @property {Block[]} blocks the tables of all frames
- * @property {{number: number, frame: number, words: string, blocks: Block[]}[]} impulses the tables of impacts
- * @property {PageSection[]} sections @property {{heading: string, note: string}} cutting the head of their tables
- * @property {number[]|null} foundation the point about which its moment counts [m]
- * @property {Map<string, Row>} rows of all tables by path; made here
- */
-
-/**
- * @typedef {object} Scene Bodies and symbols, by geometry.py; a body is its number, the ground is -1.
- * @property {object[]} bodies shapes in body axes, with places (3 a frame) and attitudes (quaternions, 4 a frame)
- * @property {number[][][]} topologies the faces of surfaces, which equal surfaces share
- * @property {object[]} joints kind, axis, and a point p of body a and q of body b @property {object[]} lines springs
- * and the like, with such points @property {object[]} paths @property {object[]} belts @property {object[]} ropes
- * @property {object[]} marks stops, latches and others, with places and directions (`ways`)
- * @property {{joint: number, symbols: string[], slides: boolean}[]} acting symbols of loads in joints
- * @property {Record<string, object[]>} symbols polygons of each symbol, in pixels
- * @property {{name: string, at: number[]}[]} ground its points [m] @property {number[]} gravity [m/s²]
- * @property {object[]} pulls forces of couplings @property {number[]|null} normal of the plane of motion
- */
-
-/**
- * @typedef {object} Shown How a quantity is written: `size` times the SI number is in `unit`.
- * @property {string} unit @property {number} size @property {import("./digits.js").Style} style
- */
-
-/**
- * @typedef {Shown & {name: string, caption: string, what: string, at: Float64Array, forces: Float64Array}} ActingLoad
- */
-
-/**
- * @typedef {object} Block A table. @property {string} heading @property {string} note signs and axes
- * @property {string} kind joints, sections or another tab @property {string} missing what stands for nan
- * @property {{name: string, note: string, rows: Row[]}[]} groups @property {string[]} notes below it
- */
-
-/**
- * @typedef {object} RowParts A quantity: a number, or components.
- * @property {string} path as in --measure @property {string} label @property {string} caption
- * @property {{name: string, caption: string, values: Float64Array}[]} parts its numbers
- * @property {boolean} sized whether its magnitude is shown @property {boolean} fixed whether it has one frame only
- * @typedef {Shown & RowParts} Row
- */
-
-/**
- * @typedef {object} PageSection A section plane, or a run of cuts along a bar.
- * @property {string} name @property {number} body @property {string} note @property {number[][]} cuts points [m]
- * @property {number[]|null} s positions of a run [m] @property {string[]} side before or beyond a load there
- * @property {number[]} normal @property {number[]} first axis e1 @property {number[]} second axis e2, body axes
- * @property {(Shown & {path: string, label: string, caption: string, values: Float64Array})[]} loads values of all cuts
- * of a frame, then those of the next
- */
-
 /** Decode base64. @param {string} text @returns {Uint8Array} */
 function decodeBase64(text) {
   const letters = atob(text);
@@ -79,6 +16,19 @@ function joinPlanes(bytes, offset, count, size) {
     for (let k = 0; k < count; k += 1) result[k * size + plane] = bytes[offset + plane * count + k];
   }
   return new DataView(result.buffer);
+}
+
+/**
+ * Make a function remember its result for each object, so that what derives from the data is computed once. The results
+ * hang on the objects weakly: those of a load case that is dropped go with it.
+ * @template {object} T, R @param {(key: T) => R} compute @returns {(key: T) => R}
+ */
+export function rememberByObject(compute) {
+  const results = new WeakMap();
+  return (key) => {
+    if (!results.has(key)) results.set(key, compute(key));
+    return results.get(key);
+  };
 }
 
 const MAX_GAIN = 64; // as in packing.py

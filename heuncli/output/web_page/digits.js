@@ -3,11 +3,6 @@
 const MAX_DIGITS = 6;
 
 /**
- * @typedef {[number, boolean, number, boolean]} Style
- * decimals; whether with an exponent; what is not above it is 0; whether any digit is known
- */
-
-/**
  * Format a number given in the unit in which it is shown.
  * @param {number} value @param {Style} style @returns {string}
  */
@@ -26,6 +21,16 @@ export function formatNumber(value, [decimals, exponent, rounding, known]) {
 /** Replace the hyphen by the minus sign, which is as wide as plus. @param {string} text @returns {string} */
 function useMinusSign(text) {
   return text.startsWith("-") ? `−${text.slice(1)}` : text;
+}
+
+/** Format a unit to stand after a number; a plain number has none. @param {string} unit */
+export function formatUnit(unit) {
+  return unit === "1" ? "" : unit;
+}
+
+/** Format a number with its unit. @param {number} value in that unit @param {Style} style @param {string} unit */
+export function formatWithUnit(value, style, unit) {
+  return `${formatNumber(value, style)} ${formatUnit(unit)}`.trim();
 }
 
 /** Format a number with all digits that the page holds. @param {number} value @returns {string} */

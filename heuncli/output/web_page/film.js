@@ -1,17 +1,16 @@
 /** @file Draws pictures of the machine alone and leaves them as text, from which heun show makes PNG, GIF or video. */
 
-import { collectCloudPoints, makeCoverMeasure } from "./cloud.js";
-import { readColours } from "./colours.js";
-import { getAxes } from "./histories.js";
 import { prepareCase, readData } from "./data.js";
 import { formatInstant } from "./digits.js";
 import { findElement } from "./elements.js";
 import { encodeGif } from "./gif.js";
+import { getAxes } from "./histories.js";
 import { LabelList } from "./labels.js";
 import { Player, proposeSpeed } from "./player.js";
 import { Selection } from "./selection.js";
 import { drawMachine } from "./stage.js";
-import { View } from "./view.js";
+import { readColours } from "./strokes.js";
+import { prepareView, View } from "./view.js";
 
 const HEAD = 40; // pixels above the machine, for title and instant
 const MAX_DURATION = 10; // s: of a film
@@ -77,8 +76,7 @@ function chooseInstants(data, rate) {
 
 /** Draw what the data ask for: the picture of an instant, a GIF, or the pictures of a video. */
 function drawFilm(data) {
-  data.scene.cloud = collectCloudPoints(data.scene, data.count);
-  data.scene.cover = makeCoverMeasure(data.scene);
+  prepareView(data);
   const { kind, width, height, instant: wanted, rate } = data.film;
   const player = new Player(data.time, () => {});
   const picture = makePicturePainter(data, width, height);

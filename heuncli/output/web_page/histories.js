@@ -1,21 +1,15 @@
-/** @file Time histories: the numbers that can be drawn as curves, and the axes over which they can be drawn. */
+/** @file Time histories: the numbers that can be drawn as curves, the axes over which they can be drawn, and the
+ * envelope of a number over the load cases. */
 
 import { getLoadsAlong } from "./loads.js";
-import { norm } from "./vectors.js";
+import { norm } from "./poses.js";
 
 const FULL_TURN = 2 * Math.PI * 0.98; // rad: an angle that goes as far and never back is that of a crank
 const DEGREES = 180 / Math.PI;
 
 /**
- * @typedef {object} TimeHistory
- * @property {string} path of the number @property {string} label what it is called @property {string} unit shown
- * @property {import("./digits.js").Style} style of its digits @property {number} size of the unit, in SI
- * @property {Float64Array} low in the unit shown @property {Float64Array} high the same, but of a series of cuts
- */
-
-/**
  * Make the histories of a row: its magnitude and its components.
- * @param {import("./data.js").Row} row @param {number} count frames
+ * @param {Row} row @param {number} count frames
  */
 function makeRowHistories(row, count) {
   const history = (path, label, pick) => {
@@ -50,7 +44,7 @@ function makeLoadHistory(section, load, count) {
   return { path: load.path, label, unit: load.unit, make };
 }
 
-/** Get all histories; each computes its numbers when it is first drawn. @param {import("./data.js").CaseData} data */
+/** Get all histories; each computes its numbers when it is first drawn. @param {CaseData} data */
 export function getHistories(data) {
   data.histories ??= collectHistories(data);
   return data.histories;
@@ -107,4 +101,65 @@ export function findPeakFrame(history, highest) {
     if (best < 0 || (highest ? values[k] > values[best] : values[k] < values[best])) best = k;
   }
   return best;
+}
+
+/** Make the curve of a case over an axis, in a unit of the given size; null if the case lacks either. */
+function makeCaseCurve(data, run, path, label, size) {
+  const history = getHistories(data).find((each) => each.path === path);
+  const axis = getAxes(data).find((each) => each.label === label);
+  if (!history || !axis) return null;
+  const made = computeHistory(history);
+  const share = size / made.size;
+  const low = made.low.map((value) => value * share);
+  const high = made.low === made.high ? low : made.high.map((value) => value * share);
+  return { run, made, x: axis.values, low, high };
+}
+
+/** Extend one side of the envelope by a curve, which is linear between its instants and ends with them. */
+function extendEnvelope(curve, grid, found, values, isBeyond) {
+  const { x } = curve;
+  const isRising = x[x.length - 1] >= x[0];
+  const at = (k) => (isRising ? k : x.length - 1 - k);
+  let k = 0;
+  for (let i = 0; i < grid.length; i += 1) {
+    while (k + 1 < x.length && x[at(k + 1)] <= grid[i]) k += 1;
+    if (grid[i] < x[at(k)] || (k + 1 === x.length && grid[i] > x[at(k)])) continue;
+    const [a, b] = [at(k), at(Math.min(k + 1, x.length - 1))];
+    const share = x[b] === x[a] ? 0 : (grid[i] - x[a]) / (x[b] - x[a]);
+    const value = share === 0 ? values[a] : values[a] + share * (values[b] - values[a]);
+    if (Number.isFinite(value) && (Number.isNaN(found[i]) || isBeyond(value, found[i]))) found[i] = value;
+  }
+}
+
+/** Find the extreme of all cases, with its case and frame. */
+function findExtreme(curves, highest) {
+  let best = null;
+  for (const { run, made, x, low, high } of curves) {
+    const frame = findPeakFrame(made, highest);
+    if (frame < 0) continue;
+    const value = (highest ? high : low)[frame];
+    if (!best || (highest ? value > best.value : value < best.value)) best = { run, frame, value, x: x[frame] };
+  }
+  return best;
+}
+
+/**
+ * Compute the envelope of a number over all cases that have it.
+ * @param {CaseData[]} runs ready to be shown
+ * @param {TimeHistory} history of the case that is shown
+ * @param {{label: string}} axis over what @returns {Envelope|null} null where fewer than two cases have the number
+ */
+export function computeEnvelope(runs, history, axis) {
+  const curves = runs
+    .map((data, run) => makeCaseCurve(data, run, history.path, axis.label, history.size))
+    .filter((curve) => curve && curve.x.length > 1);
+  const greatest = findExtreme(curves, true);
+  if (curves.length < 2 || !greatest) return null;
+  const values = Float64Array.from(new Set(curves.flatMap(({ x }) => Array.from(x)))).sort();
+  const [low, high] = [new Float64Array(values.length).fill(NaN), new Float64Array(values.length).fill(NaN)];
+  for (const curve of curves) {
+    extendEnvelope(curve, values, low, curve.low, (value, found) => value < found);
+    extendEnvelope(curve, values, high, curve.high, (value, found) => value > found);
+  }
+  return { values, low, high, least: findExtreme(curves, false), greatest };
 }

@@ -1,6 +1,7 @@
-/** @file Labels of a canvas: collected, then placed by rank so that none overlaps another or leaves the canvas. */
+/** @file Labels of a canvas: collected, then placed by rank so that none overlaps another or leaves the canvas, nor
+ * lies over an arrow if there is another place. */
 
-import { FONT, drawText } from "./strokes.js";
+import { drawText, FONT } from "./strokes.js";
 
 const MARGIN_TO_RIM = 4; // pixels: words keep so far from the rim of their canvas
 const LINE_HEIGHT = 15; // pixels: of a line of words
@@ -39,6 +40,28 @@ function orderSlots({ slots, direction }, last) {
   return order;
 }
 
+/** A box of a label: left, top, right, bottom [pixels]. @typedef {[number, number, number, number]} Box */
+
+/** Whether two boxes overlap. @param {Box} a @param {Box} b */
+function isOverlapping(a, b) {
+  return a[0] < b[2] && a[2] > b[0] && a[1] < b[3] && a[3] > b[1];
+}
+
+/** Whether a line from one point to another passes through a box. @param {Box} box */
+function isCrossing([from, to], box) {
+  let [first, last] = [0, 1]; // the part of the line that is within the sides looked at so far
+  for (const i of [0, 1]) {
+    const step = to[i] - from[i];
+    const ends = [box[i] - from[i], box[i + 2] - from[i]];
+    if (step === 0 && (ends[0] > 0 || ends[1] < 0)) return false;
+    if (step === 0) continue;
+    const shares = ends.map((end) => end / step);
+    first = Math.max(first, Math.min(...shares));
+    last = Math.min(last, Math.max(...shares));
+  }
+  return first < last;
+}
+
 /** The labels of one canvas. */
 export class LabelList {
   constructor() {
@@ -49,7 +72,7 @@ export class LabelList {
   /** Begin a picture. @param {number} view its number; a new view forgets where labels stood */
   begin(pen, width, height, view = 0) {
     if (view !== this.view) this.last.clear();
-    Object.assign(this, { pen, width, height, view, items: [] });
+    Object.assign(this, { pen, width, height, view, items: [], arrows: [] });
   }
 
   /**
@@ -60,6 +83,11 @@ export class LabelList {
   add(key, text, x, y, colour, rank, gap = 8, direction = null) {
     const stickiness = this.last.has(key) ? STICKINESS : 0;
     this.items.push({ key, text, x, y, colour, rank: rank + stickiness, gap, slots: SLOTS, direction });
+  }
+
+  /** Keep labels off an arrow, as far as they find another place. @param {number[]} from @param {number[]} to */
+  avoid(from, to) {
+    this.arrows.push([from, to]);
   }
 
   /** Add a label with one possible position, which is left out if that is taken. */
@@ -75,16 +103,15 @@ export class LabelList {
     this.items.sort((a, b) => b.rank - a.rank);
     for (const item of this.items) {
       const textWidth = measureWidth(this.pen, item.text);
-      const slotOrder = orderSlots(item, this.last.get(item.key));
-      for (const slot of slotOrder) {
-        const box = this.findBox(item, item.slots[slot], textWidth);
-        const free = placed.every((b) => box[0] >= b[2] || box[2] <= b[0] || box[1] >= b[3] || box[3] <= b[1]);
-        if (!free) continue;
-        placed.push(box);
-        shown.set(item.key, slot);
-        drawText(this.pen, item.text, box[0] + LABEL_GAP, (box[1] + box[3]) / 2, item.colour, paper);
-        break;
-      }
+      const free = orderSlots(item, this.last.get(item.key))
+        .map((slot) => ({ slot, box: this.findBox(item, item.slots[slot], textWidth) }))
+        .filter(({ box }) => !placed.some((other) => isOverlapping(box, other)));
+      const chosen = free.find(({ box }) => !this.arrows.some((arrow) => isCrossing(arrow, box))) ?? free[0];
+      if (!chosen) continue;
+      const { slot, box } = chosen;
+      placed.push(box);
+      shown.set(item.key, slot);
+      drawText(this.pen, item.text, box[0] + LABEL_GAP, (box[1] + box[3]) / 2, item.colour, paper);
     }
     this.last = shown;
   }

@@ -1,30 +1,25 @@
 /** @file Draws a section load on the moving body: a diagram across the bar, or an arrow at a single cut. */
 
-import { roundBelow, formatShort, formatNumber } from "./digits.js";
-import { rotateDirection, locatePoint } from "./poses.js";
+import { rememberByObject } from "./data.js";
+import { formatShort, formatUnit, formatWithUnit, roundBelow } from "./digits.js";
+import { add, locatePoint, rotateDirection, scale } from "./poses.js";
 import { drawArrow, drawPolyline, drawRing } from "./strokes.js";
-import { add, scale } from "./vectors.js";
 
 const HIGHEST = 0.28; // of the scene's radius: the largest load of the run
 /** The axis of the section along which a load is plotted, and the one along which it acts. */
 const DRAWN_ALONG = { Q2: "second", M1: "second", w2: "second", slope2: "second" };
 const ACTS_ALONG = { N: "normal", T: "normal", Q1: "first", M1: "first", Q2: "second", M2: "second" };
-/** @type {WeakMap<object, number>} the largest magnitude of each load */
-const largestSizes = new WeakMap();
 
-/** Get the largest magnitude of a load over the run and along the section. @param {object} load */
-function getLargest(load) {
-  if (!largestSizes.has(load)) {
-    let largest = 0;
-    for (const value of load.values) if (Math.abs(value) > largest) largest = Math.abs(value);
-    largestSizes.set(load, largest);
-  }
-  return largestSizes.get(load);
-}
+/** Find the largest magnitude of a load over the run and along the section. @param {SectionLoad} load */
+const findLargest = rememberByObject((load) => {
+  let largest = 0;
+  for (const value of load.values) if (Math.abs(value) > largest) largest = Math.abs(value);
+  return largest;
+});
 
 /**
  * Get the loads of a frame along a section, SI, as a view of the stored array.
- * @param {import("./data.js").PageSection} section @param {object} load @param {number} frame
+ * @param {PageSection} section @param {object} load @param {number} frame
  */
 export function getLoadsAlong(section, load, frame) {
   const n = section.cuts.length;
@@ -99,7 +94,7 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres, la
 
 /** Format a load with its label, number and unit. */
 function formatLoad(load, value) {
-  return `${load.label} ${formatNumber(value * load.size, load.style)} ${load.unit === "1" ? "" : load.unit}`.trim();
+  return `${load.label} ${formatWithUnit(value * load.size, load.style, load.unit)}`;
 }
 
 /** Mark the largest value of a frame with its number. */
@@ -124,7 +119,7 @@ function labelLargest(pen, view, poses, section, load, frame, colours, off, labe
 export function drawLoad(pen, view, poses, options, colours, labels) {
   const { section, cut, size, values: hasLabels, frame } = options;
   const load = options.force;
-  const metres = getLargest(load) > 0 ? (HIGHEST * view.radius * size) / getLargest(load) : 0;
+  const metres = findLargest(load) > 0 ? (HIGHEST * view.radius * size) / findLargest(load) : 0;
   const at = locatePoint(poses, section.body, section.cuts[cut] ?? section.cuts[0]);
   const [x, y] = view.project(at);
   if (section.s) {
@@ -141,19 +136,19 @@ export function drawLoad(pen, view, poses, options, colours, labels) {
   const colour = value < 0 ? colours.negative : colours.positive;
   const heads = load.unit.includes("·") ? 2 : 1;
   drawArrow(pen, [x, y], [x + dx, y + dy], near * view.scale, colour, colours.panel, heads, value < 0 ? [6, 3] : []);
+  labels.avoid([x, y], [x + dx, y + dy]);
   if (hasLabels) labels.add(`load ${load.path}`, formatLoad(load, value), x + dx, y + dy, colour, 4);
 }
 
 /** Draw the scale of the diagram in the corner. @param {number} line its place, counted from below */
 export function drawLoadScale(pen, view, { force: load, size }, colours, line, labels) {
-  if (!(getLargest(load) > 0)) return;
-  const pixels = (HIGHEST * view.radius * size * view.scale) / getLargest(load) / load.size;
+  if (!(findLargest(load) > 0)) return;
+  const pixels = (HIGHEST * view.radius * size * view.scale) / findLargest(load) / load.size;
   const amount = roundBelow(90 / pixels);
   const [x, y] = [view.width - 14, view.height - 16 - 20 * line];
   const begin = x - amount * pixels;
   drawPolyline(pen, [[begin, y], [x, y]], colours.positive, 2.2);
   for (const end of [begin, x]) drawPolyline(pen, [[end, y - 4], [end, y + 4]], colours.positive, 1.5);
-  const unit = load.unit === "1" ? "" : ` ${load.unit}`;
-  const text = `${load.label} ${formatShort(amount)}${unit} =`;
+  const text = `${load.label} ${formatShort(amount)} ${formatUnit(load.unit)}`.trimEnd() + " =";
   labels.addFixed("scale of the section", text, begin - 8, y, colours.positive, 10, "right");
 }

@@ -1,240 +1,48 @@
-/** @file The page: reads its data, shows the frame of the greatest load, and redraws after every change. */
+/** @file The page: reads its data and shows a load case; starts another one when the user changes to it. */
 
-import { collectCloudPoints, makeCoverMeasure } from "./cloud.js";
-import { readColours } from "./colours.js";
-import { listenToDrawing, listenToSections, listenToTime, listenToView } from "./controls.js";
-import { drawCurve } from "./curve.js";
-import { listenToEnvelope, listenToCurve } from "./curve_controls.js";
-import { prepareCase, readData } from "./data.js";
-import { formatInstant, formatShort, formatNumber } from "./digits.js";
-import { findElement, makeElement } from "./elements.js";
-import { computeEnvelope } from "./envelope.js";
-import { LabelList } from "./labels.js";
-import { Player } from "./player.js";
-import { Selection } from "./selection.js";
-import { drawMachine } from "./stage.js";
-import { SummaryTable } from "./summary.js";
-import { NumberTable } from "./table.js";
-import { listenToCases, listenToTabs, formatCaseName, readAddressNumber } from "./tabs.js";
-import { View } from "./view.js";
+import { readData } from "./data.js";
+import { findElement } from "./elements.js";
+import { formatCaseName, ShownCase } from "./shown_case.js";
 
-const MAX_CELLS_AT_ONCE = 400; // cells of the table that are written at every image while the machine plays
-const CELL_PAUSE = 0.25; // ms for each cell beyond these until they are written again
-
-/** List the notes on the run at the foot of the page, and link to them at its head. */
-function showRunNotes(data, signal) {
-  const count = `${data.alerts} ${data.alerts === 1 ? "note" : "notes"} on this run`;
-  document.title = findElement("title").textContent = data.title;
-  findElement("alert").hidden = !data.alerts;
-  findElement("alert").textContent = count;
-  findElement("alert").addEventListener("click", () => (findElement("about").open = true), { signal });
-  findElement("notes").replaceChildren(...data.notes.map((sentence) => makeElement("li", sentence)));
-  const lines = [...data.about, ["heun", data.version], ["file", data.file]];
-  for (const [label, text] of lines.filter((line) => line[1])) {
-    findElement("lines").append(makeElement("dt", label), makeElement("dd", text));
-  }
-}
-
-/** Describe the sign conventions of what is drawn. */
-function describeSigns(selection) {
-  const parts = [];
-  const { choice, section, load } = selection;
-  if (choice?.key.startsWith("foundation")) parts.push("Arrows: load of the machine on the ground.");
-  else if (choice?.frame !== undefined) parts.push("Arrows: impulses of “from” on “to”, at their frame.");
-  else if (choice) parts.push("Arrows: load of “from” on “to”; of gears, belts and ropes on the named body.");
-  if (section && load) {
-    parts.push(`Section ${section.name}: force of the far side on the near side of the cut; N > 0 is tension.`);
-  }
-  return parts.join(" ");
-}
-
-/** Show the position of the chosen cut along its bar. */
-function showPlace(selection, [unit, perSi]) {
-  const { section, load } = selection;
-  const s = section && load ? section.s?.[selection.getCutNumber(section)] : undefined;
-  findElement("place").textContent = s === undefined ? "" : `s = ${formatShort(s * perSi)} ${unit}`;
-}
-
-/** Show the instant as text and on the slider. */
-function showInstant(data, player, crank) {
-  const { time, count } = data;
-  const span = time[count - 1] - time[0];
-  const text = `t = ${formatInstant(time[player.frame], span)} s`;
-  const angleText = crank ? `  ·  ${crank.label} ${crank.values[player.frame].toFixed(1).replace("-", "−")}°` : "";
-  const output = findElement("instant");
-  output.textContent = count > 1 ? `${text}${angleText}` : `${text}  (one instant)`;
-  output.title = `frame ${player.frame + 1} of ${count}`;
-  output.dataset.value = String(time[player.frame]);
-  findElement("time").value = String(player.frame);
-  findElement("time").setAttribute("aria-valuetext", text);
-  findElement("play").textContent = player.playing ? "Pause" : "Play";
-  findElement("play").setAttribute("aria-pressed", String(player.playing));
-}
-
-/** Describe the curve at this frame for screen readers. */
-function showCurve(history, frame, axisLabel) {
-  const low = formatNumber(history.low[frame], history.style);
-  const high = formatNumber(history.high[frame], history.style);
-  const value = history.low === history.high ? low : `${low} to ${high}`;
-  findElement("curve").setAttribute("aria-label", `${history.label} over ${axisLabel}; now ${value} ${history.unit}`);
-}
-
-/** Call `listener` with the colours whenever the page turns dark or light, until the signal. */
-function listenToColours(listener, signal) {
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => listener(readColours()), { signal });
-}
-
-/** Make the function that finds the envelope of a curve over all cases, or null; it remembers the last one. */
-function makeEnvelopeFinder(runs) {
-  const names = runs.map(formatCaseName);
-  let [key, envelope] = ["", null];
-  return ({ hasEnvelope, axis }, [history]) => {
-    if (!hasEnvelope || runs.length < 2 || !history) return null;
-    if (key !== `${history.path} ${axis.label}`) {
-      key = `${history.path} ${axis.label}`;
-      envelope = computeEnvelope(runs.map(prepareCase), history, axis);
-      if (envelope) envelope.names = names;
-    }
-    return envelope;
-  };
+/**
+ * Let the user choose the load case.
+ * @param {CaseData[]} runs @param {number} run @param {(run: number) => void} change
+ */
+function listenToCases(runs, run, change) {
+  const select = findElement("case");
+  findElement("caselabel").hidden = runs.length < 2 && !runs[0].case;
+  select.replaceChildren(...runs.map((data, k) => new Option(formatCaseName(data), String(k))));
+  select.value = String(run);
+  select.disabled = runs.length < 2;
+  select.addEventListener("change", () => change(Number(select.value)));
 }
 
 /**
- * Show which case has each extreme of the curve, as buttons that go there.
- * @param {(run: number, frame: number) => void} goTo
+ * Read the number of a frame or a case from the page's address, as in #frame=12: a whole one that there is.
+ * @param {string} name @param {number} fallback @param {number} count how many there are
  */
-function showGoverning(envelope, history, goTo) {
-  const key = envelope ? `${history.path} ${envelope.greatest.run} ${envelope.least.run}` : "";
-  const bar = findElement("governing");
-  if (bar.dataset.key === key) return;
-  bar.dataset.key = key;
-  bar.hidden = !envelope;
-  const ends = envelope ? { greatest: envelope.greatest, least: envelope.least } : {};
-  const buttons = Object.entries(ends).map(([word, end]) => {
-    const value = `${formatNumber(end.value, history.style)} ${history.unit === "1" ? "" : history.unit}`.trim();
-    const button = makeElement("button", `${word} ${value}: ${envelope.names[end.run]}`, { type: "button" });
-    button.addEventListener("click", () => goTo(end.run, end.frame));
-    return button;
-  });
-  bar.replaceChildren(makeElement("span", "Of all load cases", { class: "word" }), ...buttons);
+function readAddressNumber(name, fallback, count) {
+  const found = new URLSearchParams(location.hash.slice(1)).get(name);
+  if (found === null || !Number.isFinite(Number(found))) return fallback;
+  return Math.min(count - 1, Math.max(0, Math.round(Number(found))));
 }
 
-/** A load case while it is shown. */
-class ShownCase {
-  /**
-   * @param {import("./data.js").CaseData[]} runs all cases @param {number} run the number of this one
-   * @param {object} previous what the case before it left
-   * @param {(run: number, frame?: number) => void} change to another case
-   */
-  constructor(runs, run, previous, change) {
-    const data = prepareCase(runs[run]);
-    data.scene.cloud ??= collectCloudPoints(data.scene, data.count);
-    data.scene.cover ??= makeCoverMeasure(data.scene);
-    Object.assign(this, { data, change, waiting: false, lastTableTime: 0, panel: null });
-    this.ended = new AbortController();
-    this.colours = readColours();
-    this.labels = { machine: new LabelList(), curve: new LabelList() };
-    this.redraw = () => {
-      if (!this.waiting) requestAnimationFrame(() => this.draw());
-      this.waiting = true;
-    };
-    this.player = new Player(data.time, this.redraw);
-    this.view = new View(data.scene);
-    if (previous.view) this.view.copyFrom(previous.view);
-    this.selection = new Selection(data, previous.selection);
-    this.table = new NumberTable(findElement("numbers"), data, this.selection);
-    this.crank = this.selection.axes[1] ?? null;
-    this.findEnvelope = makeEnvelopeFinder(runs);
-    this.summary = new SummaryTable(findElement("summary"), data, this.crank, (frame, path) => {
-      if (this.selection.histories.some((history) => history.path === path)) this.showHistory(path);
-      this.player.halt(frame);
-    });
-    this.listen(previous, runs.length > 1);
-    this.player.show(previous.frame ?? this.selection.findNearestFrame(previous.place) ?? data.worst);
-    this.draw();
-    if (previous.playing && data.count > 1) this.player.toggle();
-  }
-
-  /** Connect the controls. */
-  listen(previous, hasCases) {
-    const { data, player, selection, redraw } = this;
-    const { signal } = this.ended;
-    showRunNotes(data, signal);
-    findElement("caption").textContent = data.count > 1 ? "Values at this frame" : "Values at this instant";
-    listenToView(this.view, player, redraw, signal);
-    listenToTime(data, player, previous.player);
-    listenToDrawing(selection, player, redraw);
-    listenToSections(selection, redraw);
-    this.tab = listenToTabs(this.table, redraw, previous.tab);
-    listenToEnvelope(selection, redraw, hasCases && data.count > 1);
-    this.showHistory = listenToCurve(selection, player, redraw, () => this.panel);
-    listenToColours((now) => {
-      this.colours = now;
-      redraw();
-    }, signal);
-    this.resizeObserver = new ResizeObserver(redraw);
-    this.resizeObserver.observe(findElement("machine"));
-  }
-
-  draw() {
-    this.waiting = false;
-    if (this.ended.signal.aborted) return;
-    const { data, player, selection, table } = this;
-    const { frame, share } = player;
-    const options = { frame, share, ...selection.drawOptions };
-    drawMachine(findElement("machine"), data, this.view, options, this.colours, this.labels.machine);
-    this.drawCurves(frame);
-    // while playing, a large table is written more rarely: CELL_PAUSE for each cell above the limit
-    const now = performance.now();
-    if (!player.playing || now - this.lastTableTime > CELL_PAUSE * (table.cells.length - MAX_CELLS_AT_ONCE)) {
-      this.lastTableTime = now;
-      table.show(frame);
-      findElement("signs").textContent = describeSigns(selection);
-      showPlace(selection, data.length);
-      findElement("machine").setAttribute("aria-label", `${data.title}, at ${formatInstant(data.time[frame], 0)} s`);
-    }
-    this.summary.show(frame);
-    showInstant(data, player, this.crank);
-    document.documentElement.dataset.frame = String(frame);
-  }
-
-  drawCurves(frame) {
-    const histories = this.selection.shownHistories;
-    if (this.data.count < 2 || !histories.length) return;
-    const { axis } = this.selection;
-    const envelope = this.findEnvelope(this.selection, histories);
-    const canvas = findElement("curve");
-    this.panel = drawCurve(canvas, this.data, histories, axis, envelope, frame, this.colours, this.labels.curve);
-    showCurve(histories[0], frame, axis.label);
-    showGoverning(envelope, histories[0], this.change);
-  }
-
-  /** Leave the case. @returns {object} what the next case takes over */
-  leave() {
-    const { view, player, selection } = this;
-    const { playing } = player;
-    const place = { label: selection.axis.label, value: selection.axis.values[player.frame] };
-    player.halt();
-    this.ended.abort();
-    this.resizeObserver.disconnect();
-    return { view, player, selection, place, tab: this.tab(), playing };
-  }
-}
-
-/** Show the load cases, each in a fresh copy of the page's main part. @param {import("./data.js").CaseData[]} runs */
+/** Show the load cases, each in a fresh copy of the page's main part. @param {CaseData[]} runs */
 function showCases(runs) {
   const blank = document.querySelector("main").cloneNode(true);
+  /** @type {ShownCase|null} */
   let shown = null;
   const change = (run, frame) => {
     const previous = shown?.leave() ?? {};
     if (shown) document.querySelector("main").replaceWith(blank.cloneNode(true));
     findElement("case").value = String(run);
-    shown = new ShownCase(runs, run, Object.assign(previous, { frame }), change);
+    shown = new ShownCase(runs, run, previous, frame, change);
   };
   const first = readAddressNumber("case", 0, runs.length);
   listenToCases(runs, first, (run) => change(run));
   change(first, readAddressNumber("frame", runs[first].worst, runs[first].count));
 }
 
+// a browser that cannot inflate the data shows a note instead
 if (typeof DecompressionStream === "undefined") findElement("old").hidden = false;
 else readData(findElement("data").textContent).then(showCases);

@@ -3,12 +3,6 @@
 const OVERLAP = 0.4; // pixels: how far beyond its sides a face is painted, so that no seam shows between two
 const MIN_CORNER = 0.3; // where two sides meet in a point, that does not stand out farther
 
-/**
- * @typedef {object} Item
- * @property {number} near how near to the viewer [m]
- * @property {(pen: CanvasRenderingContext2D, opaque: number) => void} paint what paints it
- */
-
 /** Trace a polygon: right, down, right, down, ... [pixels]. */
 function tracePolygon(pen, points) {
   pen.beginPath();

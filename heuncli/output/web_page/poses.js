@@ -1,15 +1,74 @@
-/** @file Positions of bodies and points, at a frame or between two while the machine plays, and the paths of joints. */
-
-import { drawPolyline } from "./strokes.js";
-import { makeRotationMatrix, add, rotate } from "./vectors.js";
+/** @file Vectors of three numbers, attitudes as unit quaternions w, x, y, z, and the poses of bodies and points at a
+ * frame, or between two while the machine plays. */
 
 const MAX_TURN = 0.5; // rad between two frames: beyond it interpolation visibly distorts a mechanism, so it is left out
-const MAX_PATHS = 24; // joints whose paths are drawn
-const MIN_PATH = 1e-4; // of the scene's radius: a joint that moves less stands still
-/** @type {WeakMap<object, number[][][]>} the paths of the joints of each scene */
-const jointPaths = new WeakMap();
 
-/** @typedef {{place: number[], R: number[]}} Pose origin [m] and attitude; null: the ground */
+/** @param {Vector} a @param {Vector} b @returns {Vector} */
+export function add(a, b) {
+  return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+}
+
+/** @param {Vector} a @param {Vector} b @returns {Vector} */
+export function subtract(a, b) {
+  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
+/** @param {Vector} a @param {number} size @returns {Vector} */
+export function scale(a, size) {
+  return [a[0] * size, a[1] * size, a[2] * size];
+}
+
+/** @param {Vector} a @param {Vector} b @returns {number} */
+export function dot(a, b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/** @param {Vector} a @param {Vector} b @returns {Vector} */
+export function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+/** @param {Vector} a @returns {number} */
+export function norm(a) {
+  return Math.sqrt(dot(a, a));
+}
+
+/**
+ * Normalize a vector; the zero vector gives the third axis, so that nothing becomes NaN.
+ * @param {Vector} a @returns {Vector}
+ */
+export function normalize(a) {
+  const length = norm(a);
+  return length > 0 ? scale(a, 1 / length) : [0, 0, 1];
+}
+
+/**
+ * Make the rotation matrix of an attitude, row by row: from body axes to world axes.
+ * @param {number[]} q unit quaternion
+ * @returns {number[]} nine numbers
+ */
+export function makeRotationMatrix([w, x, y, z]) {
+  return [
+    1 - 2 * (y * y + z * z),
+    2 * (x * y - w * z),
+    2 * (x * z + w * y),
+    2 * (x * y + w * z),
+    1 - 2 * (x * x + z * z),
+    2 * (y * z - w * x),
+    2 * (x * z - w * y),
+    2 * (y * z + w * x),
+    1 - 2 * (x * x + y * y),
+  ];
+}
+
+/** Rotate a vector by a matrix. @param {number[]} R @param {Vector} v @returns {Vector} */
+export function rotate(R, v) {
+  return [
+    R[0] * v[0] + R[1] * v[1] + R[2] * v[2],
+    R[3] * v[0] + R[4] * v[1] + R[5] * v[2],
+    R[6] * v[0] + R[7] * v[1] + R[8] * v[2],
+  ];
+}
 
 /**
  * Compute the pose of a body.
@@ -37,7 +96,7 @@ function computePose(body, frame, share) {
 
 /**
  * Compute the poses of all bodies.
- * @param {import("./data.js").Scene} scene @param {number} frame @param {number} share @returns {Pose[]}
+ * @param {Scene} scene @param {number} frame @param {number} share @returns {Pose[]}
  */
 export function computePoses(scene, frame, share) {
   return scene.bodies.map((body) => computePose(body, frame, share));
@@ -71,34 +130,4 @@ export function interpolatePlace(values, width, i, { frame, share }) {
  */
 export function rotateDirection(poses, body, direction) {
   return body < 0 ? direction : rotate(poses[body].R, direction);
-}
-
-/** Get the paths of the joints that move, world axes [m]: a point for each frame. @returns {number[][][]} */
-function getJointPaths({ scene, count }) {
-  if (!jointPaths.has(scene)) jointPaths.set(scene, computeJointPaths(scene, count));
-  return jointPaths.get(scene);
-}
-
-function computeJointPaths(scene, count) {
-  const joints = scene.joints.filter((joint) => joint.a >= 0 || joint.b >= 0).slice(0, MAX_PATHS);
-  const paths = joints.map(() => []);
-  for (let frame = 0; frame < count; frame += 1) {
-    const poses = computePoses(scene, frame, 0);
-    joints.forEach((joint, k) => paths[k].push(locatePoint(poses, joint.b, joint.q)));
-  }
-  const least = MIN_PATH * scene.radius;
-  const isMoving = (path) => path.some((place) => place.some((c, i) => Math.abs(c - path[0][i]) > least));
-  return paths.filter(isMoving);
-}
-
-/** Draw the paths of the joints; they are drawn first, so that the machine stands before them. */
-export function drawPaths(pen, view, data, colours) {
-  for (const path of getJointPaths(data)) {
-    drawPolyline(
-      pen,
-      path.map((place) => view.project(place)),
-      colours.accent,
-      1,
-    );
-  }
 }

@@ -1,7 +1,7 @@
 /** @file What the user has selected on the page: arrows, section load, curves, looks; all but the frame. */
 
+import { listArrowChoices } from "./arrows.js";
 import { computeHistory, getAxes, getHistories } from "./histories.js";
-import { listArrowChoices } from "./arrow_choices.js";
 
 const MAX_JOINT_ARROWS = 40; // with more joints the load on the ground is drawn first, so that arrows do not overlap
 const MAX_NAMES = 7; // bodies and joints: with more of them names start switched off
@@ -15,7 +15,7 @@ function findMagnitude(values) {
 /** The selection of one load case; it calls nobody when it changes: whoever changes it redraws. */
 export class Selection {
   /**
-   * @param {import("./data.js").CaseData} data of the case
+   * @param {CaseData} data of the case
    * @param {Selection} [previous] of the case before, which is kept where it can be
    */
   constructor(data, previous) {
@@ -102,7 +102,7 @@ export class Selection {
     this.curves = history ? [history.path] : [];
   }
 
-  /** The curves that are shown. @returns {import("./histories.js").TimeHistory[]} */
+  /** The curves that are shown. @returns {TimeHistory[]} */
   get shownHistories() {
     return this.curves.map((path) => computeHistory(this.histories.find((history) => history.path === path)));
   }

@@ -1,11 +1,54 @@
 /** @file Paints bodies: the faces and edges of their shapes, lit from above left; bars where a body has no shapes. */
 
-import { SHADES, getBodyKinds, getTints } from "./colours.js";
+import { rememberByObject } from "./data.js";
 import { locatePoint } from "./poses.js";
 
 const MAX_SMOOTH = 0.8; // cosine of the angle between two faces below which the side between them is an edge
-/** @type {WeakMap<object, object[][]>} the sides of the faces of each surface */
-const sidesOfSurfaces = new WeakMap();
+/** Hue [degrees] and saturation [%] of each kind of body, chosen so that the colour-blind can tell them apart. */
+const HUES = [
+  [205, 45],
+  [28, 60],
+  [160, 38],
+  [325, 35],
+  [48, 50],
+  [265, 30],
+  [190, 20],
+  [95, 28],
+];
+const SHADES = 12;
+const LIGHT = [-0.37, 0.56, 0.74]; // direction to the light: right, up, toward the viewer
+const BAR = 6; // pixels: how thick a body without shapes is drawn
+const ARM = 2; // pixels: lines on a body, and from its shapes to a point that lies off them
+const PLATE_OPACITY = 0.45; // how opaque the plate is that is drawn between the points of a body without shapes
+const BAR_OFFSET = 0.004; // of the scene: how much nearer a bar is taken than its rim
+
+/** Number the kinds of the bodies: those whose names differ in digits alone are of one kind, and share a colour. */
+const numberKinds = rememberByObject((scene) => {
+  const known = new Map();
+  return scene.bodies.map(({ name }) => {
+    const kind = name.replace(/[\d_ .-]+/g, "") || name;
+    if (!known.has(kind)) known.set(kind, known.size);
+    return known.get(kind);
+  });
+});
+
+/**
+ * Mix the colours of a kind of body: shades from dark to bright, and one for its edges.
+ * @param {number} k @param {boolean} dark
+ */
+function mixTints(k, dark) {
+  const [hue, rich] = HUES[k % HUES.length];
+  const [low, high] = dark ? [24, 52] : [52, 88];
+  const shades = [];
+  for (let i = 0; i < SHADES; i += 1) {
+    shades.push(`hsl(${hue} ${rich}% ${(low + ((high - low) * i) / (SHADES - 1)).toFixed(1)}%)`);
+  }
+  return {
+    shades,
+    edge: `hsl(${hue} ${rich}% ${dark ? 78 : 27}%)`,
+    bar: `hsl(${hue} ${rich + 8}% ${dark ? 55 : 58}%)`,
+  };
+}
 
 /** Compute the unit normal of a face from all of its corners (Newell's method). */
 function computeFaceNormal(corners, face) {
@@ -22,15 +65,11 @@ function computeFaceNormal(corners, face) {
 }
 
 /**
- * Get the sides of each face: its corners, the face beyond (-1: none), whether it is an edge.
- * @param {object} surface @returns {{i: number, j: number, beyond: number, edge: boolean}[][]}
+ * Find the sides of each face of a surface: where its two corners begin in the list of coordinates, the face beyond it
+ * (-1: none), whether it is an edge, and its own face.
+ * @type {(surface: Surface) => {i: number, j: number, beyond: number, edge: boolean, face: number}[][]}
  */
-function getSides(surface) {
-  if (!sidesOfSurfaces.has(surface)) sidesOfSurfaces.set(surface, findSides(surface));
-  return sidesOfSurfaces.get(surface);
-}
-
-function findSides({ corners, faces }) {
+const findSides = rememberByObject(({ corners, faces }) => {
   const known = new Map();
   const looks = faces.map((face) => computeFaceNormal(corners, face));
   const key = (i, j) => (i < j ? `${i},${j}` : `${j},${i}`);
@@ -49,13 +88,7 @@ function findSides({ corners, faces }) {
       return side;
     }),
   );
-}
-
-const LIGHT = [-0.37, 0.56, 0.74];
-const BAR = 6; // pixels: how thick a body without shapes is drawn
-const ARM = 2; // pixels: lines on a body, and from its shapes to a point that lies off them
-const PLATE_OPACITY = 0.45; // how opaque the plate is that is drawn between the points of a body without shapes
-const BAR_OFFSET = 0.004; // of the scene: how much nearer a bar is taken than its rim
+});
 
 /**
  * Project corners to the screen: right, down [pixels], near [m], one after the other.
@@ -106,7 +139,7 @@ function computeScreenArea(c, face) {
 /** Paint the faces of a surface that face the viewer, with sharp edges and the outline. */
 function paintFaces(painter, surface, pose, view, { shades, edge }) {
   const { faces } = surface;
-  const sides = getSides(surface);
+  const sides = findSides(surface);
   const c = projectCorners(surface.corners, pose, view);
   const looks = faces.map((face) => computeScreenArea(c, face) < 0);
   faces.forEach((face, f) => {
@@ -178,8 +211,10 @@ function paintBars(painter, line, pose, view, { edge, bar, shades }) {
 
 /** Give the painter all bodies. */
 export function paintBodies(painter, scene, poses, view, colours) {
+  const kinds = numberKinds(scene);
+  const tints = new Map([...new Set(kinds)].map((kind) => [kind, mixTints(kind, colours.dark)]));
   scene.bodies.forEach((body, k) => {
-    const own = getTints(getBodyKinds(scene)[k], colours.dark);
+    const own = tints.get(kinds[k]);
     for (const surface of body.surfaces) {
       if (surface.ball) {
         const [x, y, near] = view.project(locatePoint(poses, k, surface.ball.center));

@@ -1,24 +1,22 @@
 /** @file Draws the machine: bodies and symbols by depth, then arrows and section loads, then all labels. */
 
-import { drawArrowScales, drawArrows } from "./arrows.js";
-import { splitPoints } from "./cloud.js";
-import { paintLine } from "./load_symbols.js";
+import { drawArrows, drawArrowScales } from "./arrows.js";
+import { rememberByObject } from "./data.js";
+import { drawActing, drawMark, nameMark, paintBelt, paintLine, paintRope } from "./load_symbols.js";
 import { drawLoad, drawLoadScale } from "./loads.js";
-import { drawActing, drawMark, nameMark } from "./marks.js";
 import { Painter } from "./painter.js";
-import { drawPaths, computePoses, locatePoint, rotateDirection } from "./poses.js";
+import { add, computePoses, cross, locatePoint, norm, normalize, rotateDirection, scale, subtract } from "./poses.js";
 import { paintBodies } from "./solids.js";
-import { paintBelt, paintRope } from "./ropes.js";
-import { clearCanvas } from "./strokes.js";
+import { clearCanvas, drawPolyline } from "./strokes.js";
 import { drawCorner, drawGroundPoint, paintJoint, paintPath } from "./symbols.js";
-import { add, cross, norm, normalize, scale, subtract } from "./vectors.js";
+import { splitPoints } from "./view.js";
 
 const MANY_JOINTS = 40; // with more of them symbols are dots
 const MAX_THIN = 22; // largest half thickness [pixels] of a body whose name stands beside it
 const SLENDER = 4; // its length is more than so many times that
+const MAX_PATHS = 24; // joints whose paths are drawn
+const MIN_PATH = 1e-4; // of the scene's radius: a joint that moves less stands still
 const NAME_GAP = 8; // pixels between a name and the middle or the edge of its body
-/** @type {WeakMap<object, {middle: number[], axis: number[], thickness: number}>} of each body */
-const shapes = new WeakMap();
 
 /** The points of what is drawn of a body, body axes [m]. */
 function listPoints(body) {
@@ -28,27 +26,48 @@ function listPoints(body) {
 }
 
 /**
- * Get where the name of a body stands: the middle of what is drawn of it, and its longest axis, from one end to the
- * other, with its thickness across that; body axes [m].
+ * Find the middle of what is drawn of a body, and its longest axis, from one end to the other, with its thickness
+ * across that; body axes [m]. The place of its name depends on them.
  */
-function getShape(body) {
-  if (!shapes.has(body)) {
-    const points = listPoints(body);
-    const middle = points.reduce((sum, p) => add(sum, scale(p, 1 / points.length)), [0, 0, 0]);
-    const findFarthest = (from) =>
-      points.reduce((far, p) => (norm(subtract(p, from)) > norm(subtract(far, from)) ? p : far), middle);
-    const end = findFarthest(middle);
-    const axis = subtract(findFarthest(end), end);
-    const along = normalize(axis);
-    const thickness = points.reduce((most, p) => Math.max(most, norm(cross(along, subtract(p, middle)))), 0);
-    shapes.set(body, { middle, axis, thickness });
+const findSlenderShape = rememberByObject((body) => {
+  const points = listPoints(body);
+  const middle = points.reduce((sum, p) => add(sum, scale(p, 1 / points.length)), [0, 0, 0]);
+  const findFarthest = (from) =>
+    points.reduce((far, p) => (norm(subtract(p, from)) > norm(subtract(far, from)) ? p : far), middle);
+  const end = findFarthest(middle);
+  const axis = subtract(findFarthest(end), end);
+  const along = normalize(axis);
+  const thickness = points.reduce((most, p) => Math.max(most, norm(cross(along, subtract(p, middle)))), 0);
+  return { middle, axis, thickness };
+});
+
+/**
+ * Compute the paths of the joints that move, world axes [m]: a point for each frame.
+ * @type {(data: CaseData) => Vector[][]}
+ */
+const computeJointPaths = rememberByObject(({ scene, count }) => {
+  const joints = scene.joints.filter((joint) => joint.a >= 0 || joint.b >= 0).slice(0, MAX_PATHS);
+  const paths = joints.map(() => []);
+  for (let frame = 0; frame < count; frame += 1) {
+    const poses = computePoses(scene, frame, 0);
+    joints.forEach((joint, k) => paths[k].push(locatePoint(poses, joint.b, joint.q)));
   }
-  return shapes.get(body);
+  const least = MIN_PATH * scene.radius;
+  const isMoving = (path) => path.some((place) => place.some((c, i) => Math.abs(c - path[0][i]) > least));
+  return paths.filter(isMoving);
+});
+
+/** Draw the paths of the joints; they are drawn first, so that the machine stands before them. */
+function drawPaths(pen, view, data, colours) {
+  for (const path of computeJointPaths(data)) {
+    const places = path.map((place) => view.project(place));
+    drawPolyline(pen, places, colours.accent, 1);
+  }
 }
 
 /** Write the name of a body at its middle, or beside it where it is so thin that the name would cover it. */
 function writeBodyName(labels, body, k, poses, view, colours) {
-  const { middle, axis, thickness } = getShape(body);
+  const { middle, axis, thickness } = findSlenderShape(body);
   const [x, y] = view.project(locatePoint(poses, k, middle));
   const [dx, dy] = view.projectVector(rotateDirection(poses, k, axis));
   const half = thickness * view.scale;
@@ -85,8 +104,8 @@ function paintMachine(pen, scene, poses, view, options, colours) {
 
 /**
  * Draw the machine at a frame.
- * @param {HTMLCanvasElement} canvas @param {import("./data.js").CaseData} data @param {import("./view.js").View} view
- * @param {object} options the frame and what is chosen to be drawn @param {import("./labels.js").LabelList} labels
+ * @param {HTMLCanvasElement} canvas @param {CaseData} data @param {View} view
+ * @param {object} options the frame and what is chosen to be drawn @param {LabelList} labels
  */
 export function drawMachine(canvas, data, view, options, colours, labels) {
   const { pen, width, height } = clearCanvas(canvas);

@@ -1,8 +1,18 @@
-/** @file Draws in pixels: lines, shapes, arrows and text on sharp canvases. */
+/** @file Draws in pixels: lines, shapes, arrows and text on sharp canvases, in the colours of the style sheet. */
 
 /** The font of all text on canvases. */
 export const FONT = '12px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
-const HEAD = 9;
+const HEAD = 9; // pixels: of an arrow
+/** Custom properties of the style sheet. */
+const COLOUR_NAMES = ["paper", "ink", "faint", "line", "panel", "accent", "positive", "negative", "force", "moment"];
+
+/** Read the colours of the style sheet, light or dark. @returns {Colours} */
+export function readColours() {
+  const style = getComputedStyle(document.documentElement);
+  const found = { dark: matchMedia("(prefers-color-scheme: dark)").matches };
+  for (const name of COLOUR_NAMES) found[name] = style.getPropertyValue(`--${name}`).trim();
+  return found;
+}
 
 /** Draw a polyline. @param {number[][]} points */
 export function drawPolyline(pen, points, colour, width = 1.5, dash = []) {

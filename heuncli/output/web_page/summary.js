@@ -1,9 +1,9 @@
 /** @file The summary table: the greatest loads of the run, when they occur, and their values at the shown frame. */
 
-import { formatInstant, formatAllDigits, formatNumber } from "./digits.js";
+import { listArrowChoices, readVector } from "./arrows.js";
+import { formatAllDigits, formatInstant, formatNumber, formatUnit } from "./digits.js";
 import { makeElement } from "./elements.js";
-import { listArrowChoices, readVector } from "./arrow_choices.js";
-import { norm } from "./vectors.js";
+import { norm } from "./poses.js";
 
 const MAX_ROWS = 12; // rows
 const MOMENTS = new Set(["T", "M", "M1", "M2"]);
@@ -103,7 +103,7 @@ export class SummaryTable {
       line.append(makeElement("th", caption, { scope: "row" }));
       const all = Number.isFinite(value) ? `${formatAllDigits(value * row.size)} ${row.unit}` : "";
       line.append(makeElement("td", formatNumber(value * row.size, row.style), { title: all }));
-      line.append(makeElement("td", row.unit === "1" ? "" : row.unit, { class: "unit" }));
+      line.append(makeElement("td", formatUnit(row.unit), { class: "unit" }));
       if (isMoving) {
         const turn = crank ? `${Math.round(crank.values[frame])}°` : "";
         const when = `${formatInstant(data.time[frame], span, 3)} s`;

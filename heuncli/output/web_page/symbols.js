@@ -1,8 +1,8 @@
 /** @file Symbols of joints and the ground, as engineers draw them, and the world's axes in the corner. */
 
-import { rotateDirection, locatePoint } from "./poses.js";
+import { rememberByObject } from "./data.js";
+import { cross, locatePoint, norm, normalize, rotateDirection } from "./poses.js";
 import { drawArrow, drawPolyline, drawRing, drawShape } from "./strokes.js";
-import { cross, norm, normalize } from "./vectors.js";
 
 const R = 5.5; // pixels: radius of a joint
 const DOT = 2; // pixels: radius of one of many joints
@@ -139,31 +139,25 @@ const BETWEEN_POINTS = {
 /** The kinds of joints that have a symbol. */
 export const DRAWN_KINDS = [AT_POINT, SLIDING, BETWEEN_POINTS].flatMap(Object.keys);
 
-/** @type {WeakMap<object, number>} half of the thickness of each body [m] */
-const halfThicknesses = new WeakMap();
-
-/** Get half of the smallest edge of a body's box [m], about the distance of its face from its middle. */
-function getHalfThickness(body) {
-  if (!halfThicknesses.has(body)) {
-    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-    for (const { corners, ball } of body.surfaces) {
-      const edges = ball ? [-1, 1].flatMap((s) => ball.center.map((c) => c + s * ball.radius)) : corners;
-      for (let i = 0; i < edges.length; i += 1) {
-        low[i % 3] = Math.min(low[i % 3], edges[i]);
-        high[i % 3] = Math.max(high[i % 3], edges[i]);
-      }
+/** Find half of the smallest edge of a body's box [m], about the distance of its face from its middle. */
+const findHalfThickness = rememberByObject((body) => {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (const { corners, ball } of body.surfaces) {
+    const edges = ball ? [-1, 1].flatMap((s) => ball.center.map((c) => c + s * ball.radius)) : corners;
+    for (let i = 0; i < edges.length; i += 1) {
+      low[i % 3] = Math.min(low[i % 3], edges[i]);
+      high[i % 3] = Math.max(high[i % 3], edges[i]);
     }
-    halfThicknesses.set(body, body.surfaces.length ? Math.min(...high.map((h, i) => h - low[i])) / 2 : 0);
   }
-  return halfThicknesses.get(body);
-}
+  return body.surfaces.length ? Math.min(...high.map((h, i) => h - low[i])) / 2 : 0;
+});
 
 /**
  * Compute the depth of what joins two bodies [m]: in front of the faces of both.
  * @param {number[][]} places on the screen
  */
 export function computeDepth(view, scene, a, b, places) {
-  const thick = [a, b].map((k) => (k < 0 ? 0 : getHalfThickness(scene.bodies[k])));
+  const thick = [a, b].map((k) => (k < 0 ? 0 : findHalfThickness(scene.bodies[k])));
   const middle = places.reduce((sum, place) => sum + place[2], 0) / places.length;
   return middle + Math.min(MAX_OFFSET * view.radius, 1.3 * Math.max(...thick)) + CLEARANCE * view.radius;
 }

@@ -1,19 +1,93 @@
-"""Tables of the section forces along a series of cuts by cause: the minimum and the maximum among the cuts."""
+"""The tables by cause of a whole page: of its blocks, and of its series of cuts.
+
+Along a series of cuts the minimum and the maximum among the cuts have a row each. Few runs ask for tables by cause: the
+page imports this module only then.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.output.documents.document import OutputTable
-from heuncli.output.tables.cause_tables import ShareLine, make_share_table, make_shares_heading
+from heuncli.output.tables.cause_tables import (
+    ShareLine,
+    collect_shares,
+    make_extremes_tables,
+    make_instants_tables,
+    make_share_table,
+    make_shares_heading,
+)
 from heuncli.output.tables.cut_tables import format_place
-from heuncli.results.results import CutPosition, Extremes, Results
+from heuncli.output.tables.table_blocks import TableBlock
+from heuncli.results.results import Array, CutPosition, Extremes, Results
 from heuncli.results.results_schema import SHARES
-from heuncli.study.quantities.channels import Channel
+from heuncli.study.quantities.channels import Channel, iter_channels
 from heuncli.study.quantities.cut_series import CutSeries
 from heuncli.study.quantities.digits import StatedErrors, write_times
+from heuncli.study.quantities.labels import Labels
+
+
+class ShareSource(Protocol):
+    """Solves a run's loads by cause at any instants."""
+
+    def compute_shares(self, times: Array) -> Results:
+        """Return the results with shares at instants (n,), in ascending order."""
+
+    def compute_shares_along(self, name: str, times: Array, places: Sequence[CutPosition]) -> Results:
+        """Return the results with shares at instants (n,), with a series of cuts that is cut only at these places."""
+
+
+class PageContents(NamedTuple):
+    """The blocks and the series of cuts of a page, with the labels and the stated errors of its run."""
+
+    blocks: Sequence[TableBlock]
+    cut_series: Sequence[CutSeries]
+    labels: Labels
+    stated_errors: StatedErrors
+
+
+def make_page_extremes_tables(
+    contents: PageContents, search_result: Extremes, shares: ShareSource, span: float
+) -> list[OutputTable]:
+    """Make the tables of what each cause contributes to the extremes; span: of the run [s]."""
+    found = search_result.find([path for block in contents.blocks for path in block.paths])
+    instants = np.unique(np.concatenate([found.low_at, found.high_at]))
+    results = shares.compute_shares(instants) if len(instants) else None
+    numbers = {} if results is None else collect_shares(iter_channels(results, contents.labels), results)
+    tables: list[OutputTable] = []
+    for block in contents.blocks:
+        tables += make_extremes_tables(block, numbers, instants, found, contents.stated_errors, span)
+    for series in contents.cut_series:
+        tables += find_series_extremes_tables(series, contents.stated_errors, search_result, shares)
+    return tables
+
+
+def make_page_instants_tables(
+    contents: PageContents, results: Results, horizon: float | None, instant_errors: StatedErrors
+) -> list[OutputTable]:
+    """Make the tables of what each cause contributes to the blocks at the instants of results with shares.
+
+    instant_errors: of the results at these instants
+    """
+    numbers = collect_shares(iter_channels(results, contents.labels), results)
+    tables: list[OutputTable] = []
+    for block in contents.blocks:
+        tables += make_instants_tables(block, numbers, results.time, horizon, instant_errors)
+    return tables
+
+
+def find_series_extremes_tables(
+    series: CutSeries, stated_errors: StatedErrors, search_result: Extremes, shares: ShareSource
+) -> list[OutputTable]:
+    """Solve the shares where the section forces along a series of cuts are extreme, and make their tables."""
+    found = search_result.find([load.path for load in series.loads])
+    instants = np.unique(np.concatenate([found.low_at, found.high_at]))
+    results = shares.compute_shares_along(series.name, instants, [place for both in found.places for place in both])
+    return make_series_extremes_tables(series, results, found, stated_errors)
 
 
 def make_series_extremes_tables(
