@@ -126,7 +126,7 @@ def test_cuts_of_a_body_held_twice(count: int) -> None:
     assert named[0] == named[1] and "N" in named[0] and "force.x" in named[0]
 
 
-@pytest.mark.parametrize("what", ["dependent", "ordinary", "open"])
+@pytest.mark.parametrize("what", ["dependent", "is_regular", "open"])
 def test_disagreement_is_looked_at(what: str) -> None:
     """Where the two sides differ in rank, in being singular or in what is open, instants between are looked at."""
     found = study(moving(windows(1, 0.3, 1.0), (0.0, 0.2), 1e-6))
@@ -137,7 +137,7 @@ def test_disagreement_is_looked_at(what: str) -> None:
     assert whole is not None
     changed = {
         "dependent": whole._replace(dependent=whole.dependent + (np.arange(len(whole.times)) % 2)),
-        "ordinary": whole._replace(ordinary=np.arange(len(whole.times)) % 2 > 0),
+        "is_regular": whole._replace(is_regular=np.arange(len(whole.times)) % 2 > 0),
         "open": whole._replace(open=tuple(None if mask is None else mask & odd(mask) for mask in whole.open)),
     }[what]
     assert not VerdictsBetween([changed]).covers(found.find_recovery(at, WANTED).solutions).any()
