@@ -33,7 +33,7 @@ from heuncli.scene.expressions.measured_signals import (
     integrate_table,
     smooth_points,
 )
-from heuncli.scene.expressions.programs import TableFunction
+from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.scene.file_format.format import TableEntry
 
 INTEGRAL_ERROR = 1e-9  # largest error between the points, as a part of the integral's range
@@ -177,15 +177,23 @@ def rebuild_table(table: TableFunction, entry: TableEntry, y: Array, slopes: Arr
     return replace(made, dimensions=table.dimensions)
 
 
+def require_unit_of_x(key: str, amount: Expression, table: TableFunction, words: tuple[str, str, str]) -> None:
+    """Raise SignalKeyError for an amount along x that has another dimension than x.
+
+    words: what it is; how the hint calls it; what may be given in Hz instead where x is a time
+    """
+    own, expected = amount.dimension, table.dimensions[0]
+    if own is not None and expected is not None and own != expected:
+        what, to_give, in_hertz = words
+        hint = f"give the {to_give} in the unit of x" + (f", or {in_hertz} in Hz" * (expected == TIME))
+        raise SignalKeyError(key, f"the {what} is {describe(own)}, but x is {describe(expected)}", hint, "dimension")
+
+
 def choose_cut_off(table: TableFunction, entry: TableEntry) -> float:
     """Return the period of the cut-off [as x]. Raises SignalKeyError if the points cannot be smoothed by it."""
     assert entry.smooth is not None and entry.smooth.constant is not None
-    cut_off, own, expected = entry.smooth.constant, entry.smooth.dimension, table.dimensions[0]
-    if own is not None and expected is not None and own != expected:
-        hint = "give the period at the cut-off in the unit of x" + (", or its frequency in Hz" * (expected == TIME))
-        raise SignalKeyError(
-            "smooth", f"the cut-off is {describe(own)}, but x is {describe(expected)}", hint, "dimension"
-        )
+    cut_off, expected = entry.smooth.constant, table.dimensions[0]
+    require_unit_of_x("smooth", entry.smooth, table, ("cut-off", "period at the cut-off", "its frequency"))
     x = np.frombuffer(table.x)
     step, span = float(np.median(np.diff(x))), float(x[-1] - x[0])
     if cut_off <= 0.0:
@@ -235,17 +243,13 @@ PIECE_COEFFICIENTS = 4  # a piece of a table is a cubic
 def resample_table(table: TableFunction, entry: TableEntry) -> TableFunction:
     """Return a table through points at even steps, about as long as its entry says. Raises SignalKeyError."""
     assert entry.resample is not None and entry.resample.constant is not None
-    asked, own, expected = entry.resample.constant, entry.resample.dimension, table.dimensions[0]
-    if own is not None and expected is not None and own != expected:
-        hint = "give the step in the unit of x" + (", or the rate in Hz" * (expected == TIME))
-        raise SignalKeyError(
-            RESAMPLE_KEY, f"the step is {describe(own)}, but x is {describe(expected)}", hint, "dimension"
-        )
+    requested_step, expected = entry.resample.constant, table.dimensions[0]
+    require_unit_of_x(RESAMPLE_KEY, entry.resample, table, ("step", "step", "the rate"))
     x = np.frombuffer(table.x)
     span = float(x[-1] - x[0])
-    if asked <= 0.0:
-        raise SignalKeyError(RESAMPLE_KEY, f"the step is {asked:g}", "give a step above 0, or a rate in Hz")
-    count = max(round(span / asked), 1)
+    if requested_step <= 0.0:
+        raise SignalKeyError(RESAMPLE_KEY, f"the step is {requested_step:g}", "give a step above 0, or a rate in Hz")
+    count = max(round(span / requested_step), 1)
     if not MIN_RESAMPLED_STEPS <= count <= MAX_RESAMPLED_STEPS:
         message = f"the table of length {format_amount(span, expected)} takes {count:,} steps"
         raise SignalKeyError(

@@ -134,7 +134,7 @@ def read_joint(
         return None
     if not axes:
         return SdfJoint(scoped_name, element, kind, parent, child, NO_AXIS._replace(frame=scoped_name))
-    # all others turn about their first axis; second_axis, lead and gear tell what else they do
+    # all others turn about their first axis; second_axis, lead and gear say what else they do
     if kind not in ("prismatic", "continuous"):
         kind = find_kind_of_turning(axes[0])
     second_axis = axes[1] if len(axes) > 1 else None
